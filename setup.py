@@ -1,0 +1,69 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""One package for colcon (ament_python) and for pip."""
+
+from pathlib import Path
+
+from setuptools import find_packages, setup
+
+PACKAGE = "werrimbi_odom"
+
+# A full ROS 2 installation brings these; from PyPI they are asked for as werrimbi_odom[ros].
+ROS = [
+    "ros-jazzy-rclpy>=7.1.6",
+    "ros-jazzy-common-interfaces>=5.3.6",
+    "ros-jazzy-rmw-fastrtps-cpp>=8.4.3",
+]
+TOOLS = ["rich>=13.7", "rosbags>=0.11", "scipy>=1.11", "plotly>=6.1", "kaleido>=1.0"]
+SIMULATION = ["mujoco>=3.2", "rich>=13.7", "rosbags>=0.11"]
+TEST = [
+    "pytest>=8.0",
+    "hypothesis>=6.100",
+    "mpmath>=1.3",
+    "mypy>=1.10",
+    "ruff>=0.5",
+    "import-linter>=2.0",
+    "colcon-common-extensions>=0.3",
+    "catkin_pkg>=1.0",
+]
+
+
+def data_files() -> list[tuple[str, list[str]]]:
+    """What ROS looks for under share/: the package itself, its config and its launch files."""
+    share = Path("share") / PACKAGE
+    found = [
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (str(share), ["package.xml"]),
+    ]
+    for folder in ("config", "launch"):
+        files = sorted(str(path) for path in Path(folder).glob("*") if path.is_file())
+        if files:
+            found.append((str(share / folder), files))
+    return found
+
+
+setup(
+    name=PACKAGE,
+    version="0.1.0",
+    description="Wheel odometry that knows how wrong it is, and can tell its user why",
+    license="Apache-2.0",
+    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
+    package_data={PACKAGE: ["py.typed", "recordings/**/*"]},
+    data_files=data_files(),
+    python_requires=">=3.10",
+    install_requires=["numpy>=1.26", "ruamel.yaml>=0.17.21"],
+    extras_require={
+        "ros": ROS,
+        "tools": TOOLS,
+        "simulation": SIMULATION,
+        "test": TEST,
+        "all": sorted({*ROS, *TOOLS, *SIMULATION, *TEST}),
+    },
+    zip_safe=False,
+    entry_points={
+        "console_scripts": [
+            f"odom_node = {PACKAGE}.ros.odom_node:main",
+            f"werrimbi = {PACKAGE}.cli.main:main",
+        ],
+    },
+)

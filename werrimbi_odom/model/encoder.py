@@ -1,0 +1,354 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""From cumulative counters to wheel travel, through everything that happens to real counters.
+
+Counters are cumulative, so a lost, doubled or late message loses no motion: the next good one holds
+it all. What would make the pose jump is a counter that starts anew; see `Encoder` for how that is
+told from motion.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, field, fields
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+Counts = NDArray[np.float64] | NDArray[np.int64]
+
+CLOCK_JUMP = 1.0
+"""A stamp older than the last by more than this [s] is a clock set back, not a late message."""
+
+_LEARNED_MARGIN = 4.0  # a wheel may go this many times faster than it ever did ...
+_LEARNED_FLOOR = 1.0  # ... or one turn a second, before a fall to zero is called a reset
+
+
+@dataclass(slots=True)
+class EncoderTally:
+    """What happened to the messages so far; every one of them is counted once in `messages`."""
+
+    messages: int = 0
+    accepted: int = 0
+    duplicates: int = 0
+    out_of_order: int = 0
+    not_finite: int = 0
+    implausible: int = 0
+    clock_jumps: int = 0
+    gaps: int = 0
+    wraps: int = 0
+    resets: int = 0
+    jumps: int = 0
+
+    def as_dict(self) -> dict[str, int]:
+        """Counts by name."""
+        return {item.name: int(getattr(self, item.name)) for item in fields(self)}
+
+
+@dataclass(frozen=True, slots=True)
+class EncoderLimits:
+    """When counters are doubted.
+
+    Parameters
+    ----------
+    max_wheel_speed : float
+        Fastest that a wheel can go [m/s]; 0 when unknown. Given, faster steps are refused until
+        a second message confirms them. Unknown, nothing but a fall back to zero is doubted.
+    gap_duration : float
+        Intervals longer than this [s] are counted as gaps; their motion is kept.
+    """
+
+    max_wheel_speed: float = 0.0
+    gap_duration: float = 1.0
+
+
+class WheelStep(NamedTuple):
+    """Travel between two accepted messages."""
+
+    time: float
+    """Stamp of the later message [s]."""
+    duration: float
+    """Seconds since the earlier one; greater than zero."""
+    left: float
+    """Signed travel of the left wheel [m]."""
+    right: float
+    """Signed travel of the right wheel [m]."""
+    left_lost: float = 0.0
+    """Variance of left travel that no counter saw [m²]; zero but for a reset."""
+    right_lost: float = 0.0
+    """Variance of right travel that no counter saw [m²]; zero but for a reset."""
+
+
+class _Reading(NamedTuple):
+    time: float
+    left: float
+    right: float
+
+
+@dataclass(slots=True)
+class Encoder:
+    """Counters to wheel travel, a message at a time, in constant time and memory.
+
+    A counter has been reset (a restarted driver) when it falls to near zero faster than its wheel
+    can turn, or when both fall to exactly zero from further away than one message explains. The
+    travel of that one interval is lost: it is taken as zero, with the last speed over the interval
+    as its standard deviation, and counting goes on from the new reading.
+    """
+
+    robot: Robot
+    limits: EncoderLimits = field(default_factory=EncoderLimits)
+    tally: EncoderTally = field(default_factory=EncoderTally)
+    _last: _Reading | None = None
+    _doubted: _Reading | None = None
+    _period: float = 0.0
+    _fastest: float = 0.0
+    _left_speed: float = 0.0
+    _right_speed: float = 0.0
+
+    def step(self, time: float, left: float, right: float) -> WheelStep | None:
+        """Travel since the last accepted message.
+
+        Parameters
+        ----------
+        time : float
+            Stamp of the message [s].
+        left, right : float or int
+            Cumulative signed counts (whole or not; integers of any size stay exact).
+
+        Returns
+        -------
+        WheelStep or None
+            None for the first message and for one that is refused; `tally` says why.
+        """
+        self.tally.messages += 1
+        if not (math.isfinite(time) and math.isfinite(left) and math.isfinite(right)):
+            self.tally.not_finite += 1
+            return None
+        reading = _Reading(time, left, right)
+        if self._last is None:
+            self._last = reading
+            self.tally.accepted += 1
+            return None
+        duration = self._duration(time - self._last.time)
+        if duration is None:
+            return None
+        return self._advance(reading, duration)
+
+    def _duration(self, elapsed: float) -> float | None:
+        """Seconds to divide by, or None when the message does not follow the last one."""
+        if elapsed > 0.0:
+            return elapsed
+        if elapsed == 0.0:
+            self.tally.duplicates += 1
+            return None
+        if elapsed >= -CLOCK_JUMP:
+            self.tally.out_of_order += 1
+            return None
+        self.tally.clock_jumps += 1
+        return self._period or 1.0
+
+    def _advance(self, reading: _Reading, duration: float) -> WheelStep | None:
+        assert self._last is not None
+        last, robot = self._last, self.robot
+        left = wrapped(reading.left - last.left, robot.encoder_bits)
+        right = wrapped(reading.right - last.right, robot.encoder_bits)
+        if self._was_reset(reading, left, right, duration):
+            self.tally.resets += 1
+            return self._anchor_anew(reading, duration)
+        limit = self.limits.max_wheel_speed
+        if limit > 0.0 and self._exceeds(limit, last, reading, duration):
+            if self._doubted is None or self._exceeds(
+                limit, self._doubted, reading, reading.time - self._doubted.time
+            ):
+                self.tally.implausible += 1
+                self._doubted = reading
+                return None
+            self.tally.jumps += 1
+            return self._anchor_anew(reading, duration)
+        self.tally.wraps += int(left != reading.left - last.left)
+        self.tally.wraps += int(right != reading.right - last.right)
+        self.tally.gaps += int(duration > self.limits.gap_duration)
+        left_travel, right_travel = left * robot.left_tick, right * robot.right_tick
+        self._left_speed, self._right_speed = left_travel / duration, right_travel / duration
+        turns = max(
+            abs(left) / robot.left_ticks_per_revolution,
+            abs(right) / robot.right_ticks_per_revolution,
+        )
+        self._fastest = max(self._fastest, turns / duration)
+        self._accept(reading, duration)
+        return WheelStep(reading.time, duration, left_travel, right_travel)
+
+    def _anchor_anew(self, reading: _Reading, duration: float) -> WheelStep:
+        lost_left, lost_right = self._left_speed * duration, self._right_speed * duration
+        self._accept(reading, duration)
+        return WheelStep(reading.time, duration, 0.0, 0.0, lost_left**2, lost_right**2)
+
+    def _accept(self, reading: _Reading, duration: float) -> None:
+        self._last, self._doubted, self._period = reading, None, duration
+        self.tally.accepted += 1
+
+    def _exceeds(self, limit: float, start: _Reading, end: _Reading, duration: float) -> bool:
+        robot = self.robot
+        left = wrapped(end.left - start.left, robot.encoder_bits) * robot.left_tick
+        right = wrapped(end.right - start.right, robot.encoder_bits) * robot.right_tick
+        return max(abs(left), abs(right)) > limit * abs(duration)
+
+    def _was_reset(self, reading: _Reading, left: float, right: float, duration: float) -> bool:
+        assert self._last is not None
+        last, robot = self._last, self.robot
+        per_left, per_right = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
+        usual = min(duration, self._period or duration)
+        if reading.left == 0 and reading.right == 0:
+            far = max(abs(last.left) / per_left, abs(last.right) / per_right)
+            if far > self._reach(usual):
+                return True
+        reach = self._reach(duration)
+        return bool(
+            fell_to_zero(reading.left / per_left, last.left / per_left, left / per_left, reach)
+            or fell_to_zero(
+                reading.right / per_right, last.right / per_right, right / per_right, reach
+            )
+        )
+
+    def _reach(self, duration: float) -> float:
+        """Turns that a wheel can have made in a time [s]."""
+        return duration * _reach_rate(self.robot, self.limits, self._fastest)
+
+
+def wrapped(difference: float, bits: int) -> float:
+    """A difference of counts read from counters that wrap at `bits` (0: they do not)."""
+    if bits == 0:
+        return difference
+    half = 1 << (bits - 1)
+    return (difference + half) % (2 * half) - half
+
+
+def fell_to_zero(new: float, old: float, step: float, reach: float) -> bool:
+    """Whether a counter came to near zero further than a wheel can reach; all in turns."""
+    return (abs(new) <= reach) & (abs(old) > reach) & (abs(step) > reach)
+
+
+def _reach_rate(robot: Robot, limits: EncoderLimits, fastest: float) -> float:
+    """Fastest that a wheel is believed to turn [turns/s]."""
+    if limits.max_wheel_speed > 0.0:
+        return limits.max_wheel_speed / (2.0 * math.pi * robot.wheel_radius)
+    return max(_LEARNED_FLOOR, _LEARNED_MARGIN * fastest)
+
+
+@dataclass(frozen=True, slots=True)
+class WheelSteps:
+    """The accepted steps of a recorded run; arrays of shape (n,), as in `WheelStep`.
+
+    `row` is the row of the record at which each step ends; `first_row` the one at which the first
+    begins (-1 when no row was accepted).
+    """
+
+    first_row: int
+    row: NDArray[np.intp]
+    time: Floats
+    duration: Floats
+    left: Floats
+    right: Floats
+    left_lost: Floats
+    right_lost: Floats
+    tally: EncoderTally
+
+
+def wheel_steps(
+    robot: Robot,
+    time: Floats,
+    left: Counts,
+    right: Counts,
+    limits: EncoderLimits | None = None,
+) -> WheelSteps:
+    """All steps of a record at once; the same as feeding its rows to an `Encoder`.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,), [s]
+    left, right : ndarray, shape (n,)
+        Cumulative signed counts, integer or float.
+    """
+    limits = limits or EncoderLimits()
+    quiet = _steps_of_quiet_record(robot, time, left, right, limits)
+    return quiet or _steps_one_by_one(robot, time, left, right, limits)
+
+
+def _steps_of_quiet_record(
+    robot: Robot, time: Floats, left: Counts, right: Counts, limits: EncoderLimits
+) -> WheelSteps | None:
+    """All steps in array operations, or None when any row needs `Encoder`'s judgement."""
+    duration = np.diff(time)
+    if time.size == 0 or not (duration > 0.0).all() or not np.isfinite(time[[0, -1]]).all():
+        return None
+    raw_left, raw_right = np.diff(left), np.diff(right)
+    if not (np.isfinite(raw_left).all() and np.isfinite(raw_right).all()):
+        return None
+    left_count = _wrapped_all(raw_left, robot.encoder_bits)
+    right_count = _wrapped_all(raw_right, robot.encoder_bits)
+    left_turns = left_count / robot.left_ticks_per_revolution
+    right_turns = right_count / robot.right_ticks_per_revolution
+    rate = np.maximum(np.abs(left_turns), np.abs(right_turns)) / duration
+    fastest_before = np.maximum.accumulate(np.concatenate([[0.0], rate[:-1]]))
+    if limits.max_wheel_speed > 0.0:
+        reach = duration * _reach_rate(robot, limits, 0.0)
+    else:
+        reach = duration * np.maximum(_LEARNED_FLOOR, _LEARNED_MARGIN * fastest_before)
+    doubtful = (left[1:] == 0) & (right[1:] == 0) & (rate > 0.0)
+    sides = (
+        (left, left_turns, robot.left_ticks_per_revolution),
+        (right, right_turns, robot.right_ticks_per_revolution),
+    )
+    for counts, turns, per_turn in sides:
+        in_turns = np.asarray(counts, dtype=np.float64) / per_turn
+        fell = (np.abs(in_turns[1:]) <= reach) & (np.abs(in_turns[:-1]) > reach)
+        doubtful |= fell & (np.abs(turns) > reach)
+    left_travel, right_travel = left_count * robot.left_tick, right_count * robot.right_tick
+    if limits.max_wheel_speed > 0.0:
+        fastest_travel = np.maximum(np.abs(left_travel), np.abs(right_travel))
+        doubtful |= fastest_travel > limits.max_wheel_speed * duration
+    if doubtful.any():
+        return None
+    tally = EncoderTally(
+        messages=time.size,
+        accepted=time.size,
+        gaps=int(np.count_nonzero(duration > limits.gap_duration)),
+        wraps=int(
+            np.count_nonzero(left_count != raw_left) + np.count_nonzero(right_count != raw_right)
+        ),
+    )
+    none_lost = np.zeros(duration.size)
+    rows = np.arange(1, time.size)
+    return WheelSteps(
+        0, rows, time[1:], duration, left_travel, right_travel, none_lost, none_lost, tally
+    )
+
+
+def _steps_one_by_one(
+    robot: Robot, time: Floats, left: Counts, right: Counts, limits: EncoderLimits
+) -> WheelSteps:
+    encoder = Encoder(robot, limits)
+    rows: list[int] = []
+    steps: list[WheelStep] = []
+    first_row = -1
+    readings = zip(time.tolist(), left.tolist(), right.tolist(), strict=True)
+    for row, reading in enumerate(readings):
+        step = encoder.step(*reading)
+        if step is not None:
+            rows.append(row)
+            steps.append(step)
+        elif first_row < 0 and encoder.tally.accepted:
+            first_row = row
+    table = np.array(steps, dtype=np.float64).reshape(-1, len(WheelStep._fields))
+    return WheelSteps(first_row, np.array(rows, dtype=np.intp), *table.T, encoder.tally)
+
+
+def _wrapped_all(difference: Counts, bits: int) -> Counts:
+    if bits == 0 or (bits == 64 and difference.dtype.kind == "i"):
+        return difference  # int64 differences wrap by themselves
+    half = 1 << (bits - 1)
+    return (difference + half) % (2 * half) - half

@@ -1,0 +1,196 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Streaming odometry: ticks in, a pose that knows its covariance out; constant cost and memory."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+from werrimbi_odom.model.covariance import (
+    CERTAIN,
+    PoseCovariance,
+    carried,
+    noise_of_wheel_variances,
+    path_noise,
+    piece_covariance,
+)
+from werrimbi_odom.model.encoder import Encoder, EncoderLimits, EncoderTally, WheelStep
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
+from werrimbi_odom.model.pieces import OpenPiece, Piece, PieceRule, PieceTolerance
+from werrimbi_odom.model.pose import Pose
+from werrimbi_odom.model.robot import Robot
+
+
+class TwistCovariance(NamedTuple):
+    """Covariance of (forward speed, yaw rate) over the last interval."""
+
+    speed: float
+    """(m/s)²"""
+    cross: float
+    """m·rad/s²"""
+    yaw_rate: float
+    """(rad/s)²"""
+
+
+@dataclass(frozen=True, slots=True)
+class Estimate:
+    """Everything the odometer knows after one message."""
+
+    time: float
+    """Stamp of the message [s]."""
+    pose: Pose
+    """In the odometry frame; yaw goes on counting past a whole turn."""
+    covariance: PoseCovariance[float]
+    """Of the pose, in the odometry frame."""
+    twist: BodyMotion[float]
+    """Speed forward and to the left [m/s] and yaw rate [rad/s], mean over the last interval."""
+    twist_covariance: TwistCovariance
+    """Of the twist: wheel noise over the last interval, and the quantisation of its two readings."""
+    distance: float
+    """Travel of the axle's midpoint since the start, both directions counted [m]."""
+    closed: Piece | None
+    """The piece that this message brought to its end, if it did."""
+
+
+class Odometer:
+    """Wheel odometry with the closed-form covariance of Chong and Kleeman.
+
+    The pose is integrated exactly at every message; the covariance is that of the pieces finished
+    so far, carried to the present pose, and of the open piece in closed form up to now.
+
+    Parameters
+    ----------
+    robot : Robot
+    tolerance : PieceTolerance
+        When a piece ends.
+    limits : EncoderLimits
+        When counters are doubted.
+    """
+
+    def __init__(
+        self,
+        robot: Robot,
+        tolerance: PieceTolerance | None = None,
+        limits: EncoderLimits | None = None,
+    ) -> None:
+        self.robot = robot
+        self.distance = 0.0
+        self._rule = PieceRule.of(robot, tolerance or PieceTolerance())
+        self._encoder = Encoder(robot, limits or EncoderLimits())
+        self._time = 0.0
+        self._pose = Pose()
+        self._piece = OpenPiece(0.0, Pose(), CERTAIN)
+
+    @property
+    def tally(self) -> EncoderTally:
+        """What became of the messages."""
+        return self._encoder.tally
+
+    @property
+    def piece(self) -> Piece:
+        """The open piece as it stands."""
+        return self._piece.finished(self._time, self.robot.track)
+
+    def update(self, time: float, left: float, right: float) -> Estimate | None:
+        """Take the counters of one message.
+
+        Parameters
+        ----------
+        time : float
+            Stamp [s].
+        left, right : float or int
+            Cumulative signed counts.
+
+        Returns
+        -------
+        Estimate or None
+            None for the first message (there is no interval yet) and for one that was refused;
+            `tally` says why.
+        """
+        step = self._encoder.step(time, left, right)
+        if step is None:
+            if self._encoder.tally.accepted == 1:
+                self._begin(time)
+            return None
+        travel = WheelTravel(step.left, step.right)
+        motion = wheels_to_body(travel, self.robot.track)
+        pose = self._moved(motion)
+        closed = self._cut(step, travel, motion, pose)
+        self._time, self._pose = time, pose
+        self.distance += abs(motion.along)
+        return self._estimate(step, motion, closed)
+
+    def set_pose(self, pose: Pose, covariance: PoseCovariance[float] = CERTAIN) -> Piece:
+        """Go on from another pose, known with a covariance; returns the piece that this ends."""
+        finished = self.piece
+        self._pose = pose
+        self._piece = OpenPiece(self._time, pose, covariance)
+        return finished
+
+    def covariance(self) -> PoseCovariance[float]:
+        """Of the present pose, in the odometry frame."""
+        piece = self._piece
+        noise = path_noise(self.robot, piece.left, piece.right)
+        dx, dy = self._pose.x - piece.start.x, self._pose.y - piece.start.y
+        own = piece_covariance(piece.motion, noise, piece.start.yaw)
+        return carried(piece.covariance_start, dx, dy) + own
+
+    def _begin(self, time: float) -> None:
+        self._time = time
+        self._piece.time_start = time
+
+    def _moved(self, motion: BodyMotion[float]) -> Pose:
+        dx, dy = displacement(motion, self._pose.yaw)
+        return Pose(self._pose.x + dx, self._pose.y + dy, self._pose.yaw + motion.turn)
+
+    def _cut(
+        self, step: WheelStep, travel: WheelTravel[float], motion: BodyMotion[float], pose: Pose
+    ) -> Piece | None:
+        """Let the step go on with the open piece, or end that and begin another with it."""
+        lost = step.left_lost > 0.0 or step.right_lost > 0.0
+        if not lost and self._piece.extend(self._rule, travel, motion, pose):
+            return None
+        finished = self.piece
+        covariance = self.covariance()
+        if lost:
+            covariance += lost_travel_covariance(self.robot, step, self._pose.yaw)
+        travelled = self._piece.travelled_after
+        self._piece = OpenPiece(self._time, self._pose, covariance, travelled)
+        self._piece.extend(self._rule, travel, motion, pose)
+        return finished
+
+    def _estimate(
+        self, step: WheelStep, motion: BodyMotion[float], closed: Piece | None
+    ) -> Estimate:
+        per_second = 1.0 / step.duration
+        return Estimate(
+            step.time,
+            self._pose,
+            self.covariance(),
+            BodyMotion(
+                motion.along * per_second, motion.sideways * per_second, motion.turn * per_second
+            ),
+            twist_covariance(self.robot, step),
+            self.distance,
+            closed,
+        )
+
+
+def lost_travel_covariance(robot: Robot, step: WheelStep, yaw: float) -> PoseCovariance[float]:
+    """Covariance of the travel that a counter reset hid, about a pose with heading `yaw`."""
+    noise = noise_of_wheel_variances(step.left_lost, step.right_lost, robot.track)
+    return piece_covariance(BodyMotion(0.0, 0.0, 0.0), noise, yaw)
+
+
+def twist_covariance(robot: Robot, step: WheelStep) -> TwistCovariance:
+    """Covariance of the mean twist of one step.
+
+    A counter read at an instant is uniform over one count, so the difference of two readings has
+    a variance of a sixth of a squared count beside the noise of the wheel (equation 4).
+    """
+    left = robot.left_wheel_noise**2 * abs(step.left) + robot.left_tick**2 / 6.0
+    right = robot.right_wheel_noise**2 * abs(step.right) + robot.right_tick**2 / 6.0
+    noise = noise_of_wheel_variances(left + step.left_lost, right + step.right_lost, robot.track)
+    scale = 1.0 / step.duration**2
+    return TwistCovariance(noise.a * scale, noise.c * scale, noise.b * scale)

@@ -1,0 +1,80 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the model knows about a robot: geometry, encoders, noise."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, fields
+
+
+@dataclass(frozen=True, slots=True)
+class Robot:
+    """A differential-drive robot; names as in diff_drive_controller, units SI.
+
+    Parameters
+    ----------
+    wheel_separation : float
+        Nominal distance between the two wheel contact points [m].
+    wheel_radius : float
+        Nominal radius of both wheels [m].
+    left_ticks_per_revolution, right_ticks_per_revolution : float
+        Counts of each encoder for one turn of its wheel; gear included.
+    wheel_separation_multiplier : float
+        C_B of the UMBmark calibration (paper, equation 9).
+    left_wheel_radius_multiplier, right_wheel_radius_multiplier : float
+        C_L and C_R of the UMBmark calibration (paper, equations 10 and 11).
+    encoder_bits : int
+        Width at which the counters wrap; 0 when they do not.
+    left_wheel_noise, right_wheel_noise : float
+        k_L and k_R [m^0.5]: a wheel that travels a distance s errs with variance k² s
+        (paper, equation 4). The defaults are the paper's own robot (section 5.2).
+
+    Raises
+    ------
+    ValueError
+        When a value is not finite or outside its physical range; the message names the field.
+    """
+
+    wheel_separation: float
+    wheel_radius: float
+    left_ticks_per_revolution: float
+    right_ticks_per_revolution: float
+    wheel_separation_multiplier: float = 1.0
+    left_wheel_radius_multiplier: float = 1.0
+    right_wheel_radius_multiplier: float = 1.0
+    encoder_bits: int = 0
+    left_wheel_noise: float = 4.0e-4
+    right_wheel_noise: float = 5.8e-4
+
+    def __post_init__(self) -> None:
+        for field in fields(self):
+            value = getattr(self, field.name)
+            if not math.isfinite(value):
+                raise ValueError(f"{field.name} must be a finite number, not {value}")
+            if field.name.endswith("_noise"):
+                if value < 0.0:
+                    raise ValueError(f"{field.name} must not be negative, it is {value}")
+            elif field.name != "encoder_bits" and value <= 0.0:
+                raise ValueError(f"{field.name} must be greater than zero, it is {value}")
+        if self.encoder_bits != 0 and not 2 <= self.encoder_bits <= 64:
+            raise ValueError(
+                f"encoder_bits must be 0 (never wraps) or from 2 to 64, it is {self.encoder_bits}"
+            )
+
+    @property
+    def track(self) -> float:
+        """Effective wheel separation B [m]."""
+        return self.wheel_separation * self.wheel_separation_multiplier
+
+    @property
+    def left_tick(self) -> float:
+        """Travel of the left wheel for one count [m]."""
+        radius = self.wheel_radius * self.left_wheel_radius_multiplier
+        return 2.0 * math.pi * radius / self.left_ticks_per_revolution
+
+    @property
+    def right_tick(self) -> float:
+        """Travel of the right wheel for one count [m]."""
+        radius = self.wheel_radius * self.right_wheel_radius_multiplier
+        return 2.0 * math.pi * radius / self.right_ticks_per_revolution

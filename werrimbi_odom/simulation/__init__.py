@@ -1,0 +1,59 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A differential-drive robot in the MuJoCo physics engine.
+
+It imports nothing else of this package: what it records is a fair test of the odometry, because
+nothing of the odometry's own physics went into it. The engine rolls real wheels on a real floor.
+
+>>> from werrimbi_odom.simulation import TrueRobot, record, square, write_run
+>>> recording = record(TrueRobot(), square(side=1.0), seed=1)
+>>> len(recording.t_s) == len(recording.left_ticks)
+True
+
+Reading order: `robot` (what is true), `manoeuvre` (what is commanded), `chassis` and `engine` (what
+happens), `wheel_noise`, `sensors` (what is seen of it), `recorder` (one drive), `run_folder`.
+"""
+
+from .engine import Pose, TruePath
+from .manoeuvre import Manoeuvre, Pace, moves
+from .manoeuvres import (
+    arcs,
+    chain,
+    figure_eight,
+    free,
+    out_and_back,
+    pivots,
+    spin,
+    spins,
+    square,
+    start_stop,
+)
+from .recorder import record
+from .recording import Recording
+from .robot import Nominal, TrueRobot
+from .run_folder import write_run
+from .sensors import ReferenceSensor
+
+__all__ = [
+    "Manoeuvre",
+    "Nominal",
+    "Pace",
+    "Pose",
+    "Recording",
+    "ReferenceSensor",
+    "TruePath",
+    "TrueRobot",
+    "arcs",
+    "chain",
+    "figure_eight",
+    "free",
+    "moves",
+    "out_and_back",
+    "pivots",
+    "record",
+    "spin",
+    "spins",
+    "square",
+    "start_stop",
+    "write_run",
+]

@@ -1,0 +1,193 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The physics engine: commands in, the true path and the wheels' angles out."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import mujoco
+import numpy as np
+from numpy.typing import NDArray
+
+from .chassis import IMPEDANCE, STEP, TIME_CONSTANT, Chassis, to_mjcf
+
+Floats = NDArray[np.float64]
+
+PERIOD = 5e-3
+"""Of the speed controller, and of the recorded true path [s]."""
+
+CURVE_CREEP = TIME_CONSTANT * IMPEDANCE / 2 - STEP / 2
+"""Outward creep of the engine's wheels over speed times yaw rate [s]; measured: 0.451 ms."""
+
+
+class Pose(NamedTuple):
+    """Of the axle's midpoint on the floor: x, y [m], yaw [rad], the yaw counting full turns."""
+
+    x: float
+    y: float
+    yaw: float
+
+
+class Stride(NamedTuple):
+    """What the robot did in one period of the controller.
+
+    Time at its end and period [s], hub travel by each wheel's turning [m], pose at its end.
+    """
+
+    time: float
+    period: float
+    left: float
+    right: float
+    pose: Pose
+
+
+class Shift(NamedTuple):
+    """A small motion that no wheel turned for: along, sideways (left) [m], turn [rad]."""
+
+    along: float
+    sideways: float
+    turn: float
+
+
+Shifter = Callable[[Stride], Shift]
+"""Says by how much the robot moved besides its wheels' rolling; may remember what it saw."""
+
+
+@dataclass(frozen=True)
+class TruePath:
+    """What truly happened, free of any measuring noise; arrays of shape (n,), every PERIOD.
+
+    Parameters
+    ----------
+    t_s : ndarray
+        Time since the simulation began [s].
+    x_m, y_m, yaw_rad : ndarray
+        The axle's midpoint in the world; the yaw counts full turns.
+    left_angle_rad, right_angle_rad : ndarray
+        Angles of the encoders' shafts against the body, positive forwards.
+    """
+
+    t_s: Floats
+    x_m: Floats
+    y_m: Floats
+    yaw_rad: Floats
+    left_angle_rad: Floats
+    right_angle_rad: Floats
+
+
+class Engine:
+    """A robot standing on MuJoCo's floor, ready to be driven. The only mutable thing here."""
+
+    def __init__(self, chassis: Chassis, start: Pose, angles: tuple[float, float]) -> None:
+        self._chassis = chassis
+        self._model = mujoco.MjModel.from_xml_string(to_mjcf(chassis))
+        self._data = mujoco.MjData(self._model)
+        joints = ("x", "y", "yaw", "left", "right")
+        self._x, self._y, self._yaw, self._left, self._right = (
+            int(self._model.joint(name).qposadr[0]) for name in joints
+        )
+        self._data.qpos[[self._left, self._right]] = angles
+        self._data.act[:] = angles
+        self._settle()
+        self._data.qpos[[self._x, self._y, self._yaw]] = start
+        self._data.qvel[:] = 0.0
+
+    def _settle(self) -> None:
+        """Let the robot sink into its contacts, then make its wheels larger by half of that."""
+        self._run(500)
+        sunk = {"left": 0.0, "right": 0.0}
+        for contact in self._data.contact:
+            for geom in contact.geom:
+                name = self._model.geom(geom).name
+                if name in sunk:
+                    sunk[name] = -float(contact.dist)
+        for side, depth in sunk.items():
+            self._model.geom(side).size[0] += depth / 2
+        self._run(500)
+
+    def _run(self, steps: int) -> None:
+        mujoco.mj_step(self._model, self._data, steps)
+
+    @property
+    def pose(self) -> Pose:
+        """Of the axle's midpoint in the world."""
+        q = self._data.qpos
+        return Pose(float(q[self._x]), float(q[self._y]), float(q[self._yaw]))
+
+    @property
+    def angles(self) -> tuple[float, float]:
+        """Of the encoders' shafts, left and right [rad]."""
+        return float(self._data.qpos[self._left]), float(self._data.qpos[self._right])
+
+    def advance(self, left_speed: float, right_speed: float) -> None:
+        """Hold the commanded speeds of the motors [rad/s] for one PERIOD."""
+        self._data.ctrl[:] = (left_speed, right_speed, left_speed, right_speed)
+        self._run(round(PERIOD / STEP))
+
+    def move(self, shift: Shift) -> None:
+        """Move the whole robot on the floor, and turn its velocity with it.
+
+        The floor is the same everywhere, so contacts and forces do not notice.
+        """
+        q, v = self._data.qpos, self._data.qvel
+        middle = float(q[self._yaw]) + shift.turn / 2
+        cos, sin = math.cos(middle), math.sin(middle)
+        q[self._x] += cos * shift.along - sin * shift.sideways
+        q[self._y] += sin * shift.along + cos * shift.sideways
+        q[self._yaw] += shift.turn
+        cos, sin = math.cos(shift.turn), math.sin(shift.turn)
+        vx, vy = float(v[self._x]), float(v[self._y])
+        v[self._x], v[self._y] = cos * vx - sin * vy, sin * vx + cos * vy
+
+
+def drive(
+    chassis: Chassis,
+    wheel_speeds: Floats,
+    *,
+    start: Pose,
+    angles: tuple[float, float],
+    shifters: Sequence[Shifter] = (),
+) -> TruePath:
+    """Drive a robot through the given motor speeds.
+
+    Parameters
+    ----------
+    chassis : Chassis
+    wheel_speeds : ndarray, shape (n, 2)
+        Commanded mean speeds of the left and right motor in each PERIOD [rad/s].
+    start : Pose
+    angles : (left, right)
+        Of the encoders' shafts at the start [rad].
+    shifters : sequence of Shifter
+        Motions besides rolling, applied after each PERIOD, each seeing the same stride.
+
+    Returns
+    -------
+    TruePath, of n + 1 rows
+    """
+    engine = Engine(chassis, start, angles)
+    rows = np.empty((len(wheel_speeds) + 1, 6))
+    before = engine.pose
+    left, right = engine.angles
+    rows[0] = (0.0, *before, left, right)
+    for i, (left_speed, right_speed) in enumerate(wheel_speeds, start=1):
+        engine.advance(left_speed, right_speed)
+        now, (new_left, new_right) = engine.pose, engine.angles
+        stride = Stride(
+            time=i * PERIOD,
+            period=PERIOD,
+            left=(new_left - left) * chassis.left.radius,
+            right=(new_right - right) * chassis.right.radius,
+            pose=now,
+        )
+        speed = (stride.left + stride.right) / 2 / PERIOD
+        engine.move(Shift(0.0, CURVE_CREEP * speed * (now.yaw - before.yaw), 0.0))
+        for shifter in shifters:
+            engine.move(shifter(stride))
+        before, left, right = engine.pose, new_left, new_right
+        rows[i] = (stride.time, *before, left, right)
+    return TruePath(*np.ascontiguousarray(rows.T))

@@ -1,0 +1,125 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a robot is told to drive: speed and yaw rate, piecewise linear in time."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+Floats = NDArray[np.float64]
+Knot = tuple[float, float, float]
+
+
+@dataclass(frozen=True)
+class Manoeuvre:
+    """A scripted drive: what goes to the robot's speed controller, as from a joystick.
+
+    Parameters
+    ----------
+    name : str
+        Used as the run folder's name.
+    knots : tuple of (time, speed, yaw_rate)
+        Corners of the piecewise linear commands [s, m/s, rad/s], times not decreasing; anticlockwise
+        is positive. Two knots at the same time make a step.
+    """
+
+    name: str
+    knots: tuple[Knot, ...]
+
+    @property
+    def duration(self) -> float:
+        """Time of the last knot [s]."""
+        return self.knots[-1][0]
+
+    def commands(self, times: Floats) -> tuple[Floats, Floats]:
+        """Mean speed and yaw rate over each interval between `times`.
+
+        Means, not samples: so the commanded path closes however its corners lie on the time grid.
+
+        Parameters
+        ----------
+        times : ndarray, shape (n + 1,)
+            Increasing [s]. The commands are zero before the first and after the last knot.
+
+        Returns
+        -------
+        speed, yaw_rate : ndarray, shape (n,)
+            [m/s], [rad/s].
+        """
+        t, speed, yaw_rate = (np.array(column) for column in zip(*self.knots, strict=True))
+        return _means(t, speed, times), _means(t, yaw_rate, times)
+
+
+def _means(t: Floats, value: Floats, times: Floats) -> Floats:
+    """Mean of the piecewise linear `value` between successive `times`, exact."""
+    at = np.clip(times, t[0], t[-1])
+    integral_at_knots = np.concatenate(([0.0], np.cumsum(np.diff(t) * (value[1:] + value[:-1]) / 2)))
+    left = np.clip(np.searchsorted(t, at, side="right") - 1, 0, len(t) - 2)
+    width = t[left + 1] - t[left]
+    slope = np.divide(
+        value[left + 1] - value[left], width, out=np.zeros_like(width), where=width > 0
+    )
+    since = at - t[left]
+    integral = integral_at_knots[left] + value[left] * since + slope * since**2 / 2
+    means: Floats = np.diff(integral) / np.diff(times)
+    return means
+
+
+@dataclass(frozen=True)
+class Pace:
+    """How briskly to drive: limits of a move.
+
+    Parameters
+    ----------
+    speed, acceleration : float
+        [m/s], [m/s^2].
+    yaw_rate, yaw_acceleration : float
+        [rad/s], [rad/s^2].
+    pause : float
+        Standstill after each move [s].
+    """
+
+    speed: float = 0.4
+    acceleration: float = 0.5
+    yaw_rate: float = 1.2
+    yaw_acceleration: float = 2.5
+    pause: float = 0.3
+
+
+def moves(
+    name: str, steps: Sequence[tuple[float, float]], pace: Pace | None = None
+) -> Manoeuvre:
+    """A manoeuvre of moves from rest to rest, each along a line, an arc or on the spot.
+
+    Parameters
+    ----------
+    name : str
+    steps : sequence of (length, turn)
+        Signed length [m] and turn [rad] of each move; both at once make an arc.
+    pace : Pace, optional
+    """
+    pace = pace or Pace()
+    knots: list[Knot] = [(0.0, 0.0, 0.0)]
+    for length, turn in steps:
+        start = knots[-1][0]
+        knots += [(start + t, length * rate, turn * rate) for t, rate in _trapezium(length, turn, pace)]
+        knots.append((knots[-1][0] + pace.pause, 0.0, 0.0))
+    return Manoeuvre(name, tuple(knots))
+
+
+def _trapezium(length: float, turn: float, pace: Pace) -> list[tuple[float, float]]:
+    """Corners (time, rate) of a move's progress from 0 to 1 within the limits of `pace`."""
+    rate = min(_ratio(pace.speed, length), _ratio(pace.yaw_rate, turn))
+    ramp = min(_ratio(pace.acceleration, length), _ratio(pace.yaw_acceleration, turn))
+    rate = min(rate, ramp**0.5)  # a short move never reaches full speed
+    rise = rate / ramp
+    cruise = 1.0 / rate - rise
+    return [(0.0, 0.0), (rise, rate), (rise + cruise, rate), (2 * rise + cruise, 0.0)]
+
+
+def _ratio(limit: float, amount: float) -> float:
+    return limit / abs(amount) if amount else float("inf")

@@ -1,0 +1,141 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The library of manoeuvres: squares, out and back, spins, eights, arcs, free and hard driving."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from .manoeuvre import Knot, Manoeuvre, Pace, moves
+
+
+def square(
+    side: float = 2.0, sense: str = "ccw", *, laps: int = 1, pace: Pace | None = None
+) -> Manoeuvre:
+    """`laps` squares of `side` [m], corners turned on the spot, left (`ccw`) or right (`cw`).
+
+    The last corner is turned too, so a perfect robot ends where and as it began (UMBmark).
+    """
+    corner = {"ccw": math.pi / 2, "cw": -math.pi / 2}[sense]
+    return moves(f"square_{sense}", [(side, 0.0), (0.0, corner)] * (4 * laps), pace)
+
+
+def out_and_back(
+    distance: float = 10.0, *, turn_round: bool = False, laps: int = 1, pace: Pace | None = None
+) -> Manoeuvre:
+    """Forwards by `distance` [m] and backwards again, as in the paper's section 5.2.
+
+    With `turn_round`, half a turn at each end instead of driving backwards.
+    """
+    if turn_round:
+        lap = [(distance, 0.0), (0.0, math.pi), (distance, 0.0), (0.0, -math.pi)]
+    else:
+        lap = [(distance, 0.0), (-distance, 0.0)]
+    return moves("out_and_back", lap * laps, pace)
+
+
+def spin(turns: float = 5.0, *, pace: Pace | None = None) -> Manoeuvre:
+    """`turns` full turns on the spot in one go, anticlockwise where positive."""
+    return moves("spin", [(0.0, 2 * math.pi * turns)], pace)
+
+
+def spins(turns: float = 2.0, *, pairs: int = 2, pace: Pace | None = None) -> Manoeuvre:
+    """Spins to the left and to the right in turn, `pairs` of each."""
+    angle = 2 * math.pi * turns
+    return moves("spins", [(0.0, angle), (0.0, -angle)] * pairs, pace)
+
+
+def figure_eight(radius: float = 1.0, *, laps: int = 1, pace: Pace | None = None) -> Manoeuvre:
+    """Circles of `radius` [m], one to the left and one to the right in each lap."""
+    around = 2 * math.pi * radius
+    lap = [(around, 2 * math.pi), (around, -2 * math.pi)]
+    return moves("figure_eight", lap * laps, pace)
+
+
+def arcs(
+    radii: tuple[float, ...] = (0.3, 0.6, 1.2, 2.4),
+    *,
+    angle: float = math.pi,
+    pace: Pace | None = None,
+) -> Manoeuvre:
+    """Arcs of several radii [m], each left forwards, left backwards, right forwards, right back."""
+    steps = [
+        (direction * radius * angle, direction * sense * angle)
+        for radius in radii
+        for sense in (1.0, -1.0)
+        for direction in (1.0, -1.0)
+    ]
+    return moves("arcs", steps, pace)
+
+
+def pivots(angle: float = math.pi, *, base: float = 0.35, pace: Pace | None = None) -> Manoeuvre:
+    """Turns about one standing wheel, each wheel, both ways; `base` [m] is the wheel base."""
+    half = base / 2
+    steps = [
+        (along * half * angle, turn * angle)
+        for along, turn in ((1, 1), (-1, -1), (1, -1), (-1, 1))
+    ]
+    return moves("pivots", [(float(a), float(b)) for a, b in steps], pace)
+
+
+def start_stop(
+    hops: int = 12, *, length: float = 0.5, acceleration: float = 2.5, speed: float = 0.8
+) -> Manoeuvre:
+    """Hard starts and stops: `hops` forwards of `length` [m], and as many back."""
+    pace = Pace(speed=speed, acceleration=acceleration, pause=0.25)
+    return moves("start_stop", [(length, 0.0)] * hops + [(-length, 0.0)] * hops, pace)
+
+
+def free(
+    duration: float = 60.0,
+    *,
+    seed: int = 0,
+    speed: float = 0.5,
+    yaw_rate: float = 1.5,
+    acceleration: float = 0.6,
+    backwards: float = 0.2,
+) -> Manoeuvre:
+    """Driving about as with a joystick: new speed and yaw rate every second or two.
+
+    Parameters
+    ----------
+    duration : float
+        [s]; ends at rest, a little later.
+    seed : int
+        The same seed gives the same drive.
+    speed, yaw_rate : float
+        Largest values [m/s, rad/s].
+    acceleration : float
+        Typical ramp of the speed [m/s^2]; the yaw rate's is four times as many rad/s^2.
+    backwards : float
+        Share of the time spent driving backwards, 0 to 1.
+    """
+    rng = np.random.default_rng(seed)
+    knots: list[Knot] = [(0.0, 0.0, 0.0)]
+    while knots[-1][0] < duration:
+        v = speed * rng.uniform(0.15, 1.0) * (-1.0 if rng.uniform() < backwards else 1.0)
+        w = yaw_rate * rng.uniform(-1.0, 1.0)
+        kind = rng.choice(["curve", "line", "spin", "rest"], p=[0.6, 0.25, 0.1, 0.05])
+        v, w = {"curve": (v, w), "line": (v, 0.0), "spin": (0.0, w), "rest": (0.0, 0.0)}[str(kind)]
+        _ramp(knots, v, w, acceleration)
+        knots.append((knots[-1][0] + rng.uniform(0.4, 2.5), v, w))
+    _ramp(knots, 0.0, 0.0, acceleration)
+    return Manoeuvre("free", tuple(knots))
+
+
+def _ramp(knots: list[Knot], speed: float, yaw_rate: float, acceleration: float) -> None:
+    """Append the knot where the new speed and yaw rate are reached."""
+    t, v, w = knots[-1]
+    takes = max(abs(speed - v) / acceleration, abs(yaw_rate - w) / (4 * acceleration), 0.05)
+    knots.append((t + takes, speed, yaw_rate))
+
+
+def chain(name: str, *parts: Manoeuvre) -> Manoeuvre:
+    """Several manoeuvres, one after the other, as one."""
+    knots: list[Knot] = []
+    for part in parts:
+        start = knots[-1][0] if knots else 0.0
+        knots += [(start + t, v, w) for t, v, w in part.knots]
+    return Manoeuvre(name, tuple(knots))
