@@ -82,9 +82,7 @@ def path_noise(robot: Robot, left: Number, right: Number) -> PathNoise[Number]:
 
 def noise_of_wheel_variances(left: Number, right: Number, track: float) -> PathNoise[Number]:
     """Noise of the body from the variances of the two wheels' travel [m²]."""
-    return PathNoise(
-        0.25 * (left + right), (left + right) / track**2, 0.5 * (right - left) / track
-    )
+    return PathNoise(0.25 * (left + right), (left + right) / track**2, 0.5 * (right - left) / track)
 
 
 def piece_covariance(
@@ -118,7 +116,10 @@ def piece_covariance(
     bend = 0.5 * c * along * h * T
     along2, sideways2, cross = along * along, sideways * sideways, along * sideways
     p_xx = (
-        a - spread - bend - c * sideways * S * S
+        a
+        - spread
+        - bend
+        - c * sideways * S * S
         + b * (along2 * m_xx + sideways2 * m_yy - 2.0 * cross * m_xy)
     )
     p_yy = spread - bend + b * (along2 * m_yy + sideways2 * m_xx + 2.0 * cross * m_xy)

@@ -224,5 +224,3 @@ def _reversed(travel: float, lowest: float, highest: float, flicker: float) -> b
     forwards = lowest >= -flicker and travel >= highest - flicker
     backwards = highest <= flicker and travel <= lowest + flicker
     return not (forwards or backwards)
-
-

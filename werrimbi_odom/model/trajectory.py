@@ -129,7 +129,9 @@ def _chained(
     end = np.append(begin[1:], x.size - 1)
     own = _own_covariance(robot, pieces, end - 1, yaw[begin])
     hidden = piece_covariance(
-        BodyMotion(*np.zeros((3, begin.size))), PathNoise(*(part[begin] for part in lost)), yaw[begin]
+        BodyMotion(*np.zeros((3, begin.size))),
+        PathNoise(*(part[begin] for part in lost)),
+        yaw[begin],
     )
     rows = zip(
         (x[end] - x[begin]).tolist(),

@@ -1,0 +1,289 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every parameter of the robot file, declared once: for the node, the command line and the docs."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Literal
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pieces import PieceTolerance
+from werrimbi_odom.model.robot import Robot
+
+Kind = Literal["float", "integer", "boolean", "string", "strings"]
+Value = float | int | bool | str | tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """One parameter: its type, unit, range, and what a wrong value does."""
+
+    name: str
+    kind: Kind
+    default: Value | None
+    """None: the file must say it."""
+    unit: str
+    says: str
+    minimum: float | None = None
+    above: float | None = None
+    """Lower bound that is itself not allowed."""
+    maximum: float | None = None
+    choices: tuple[str, ...] = ()
+
+    def checked(self, value: object) -> Value:
+        """The value in this parameter's type.
+
+        Raises
+        ------
+        InputError
+            When the type or the range is wrong; the message names the parameter and the mend.
+        """
+        if self.kind in ("float", "integer"):
+            return self._checked_number(value)
+        if self.kind == "boolean":
+            if not isinstance(value, bool):
+                raise self._wrong(value, "true or false")
+            return value
+        if self.kind == "string":
+            if not isinstance(value, str) or not value:
+                raise self._wrong(value, "a text")
+            if self.choices and value not in self.choices:
+                raise self._wrong(value, "one of " + ", ".join(self.choices))
+            return value
+        if isinstance(value, str) or not isinstance(value, Sequence) or not value:
+            raise self._wrong(value, "a list of names")
+        if not all(isinstance(item, str) and item for item in value):
+            raise self._wrong(value, "a list of names")
+        return tuple(value)
+
+    def _checked_number(self, value: object) -> float | int:
+        number = "a whole number" if self.kind == "integer" else "a number"
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise self._wrong(value, number)
+        if not math.isfinite(value) or (self.kind == "integer" and value != int(value)):
+            raise self._wrong(value, number)
+        if self.above is not None and value <= self.above:
+            raise self._wrong(value, f"{number} greater than {self.above:g}")
+        if self.minimum is not None and value < self.minimum:
+            raise self._wrong(value, f"{number} of at least {self.minimum:g}")
+        if self.maximum is not None and value > self.maximum:
+            raise self._wrong(value, f"{number} of at most {self.maximum:g}")
+        if self.choices and str(int(value)) not in self.choices:
+            raise self._wrong(value, "one of " + ", ".join(self.choices))
+        return int(value) if self.kind == "integer" else float(value)
+
+    def _wrong(self, value: object, wanted: str) -> InputError:
+        unit = f" ({self.unit})" if self.unit else ""
+        return InputError(f"{self.name} must be {wanted}{unit}, not {value!r}")
+
+
+PARAMETERS: tuple[Parameter, ...] = (
+    Parameter(
+        "wheel_separation",
+        "float",
+        None,
+        "m",
+        "Nominal distance between the wheels' contact points. Too large: turns come out too small.",
+        above=0.0,
+    ),
+    Parameter(
+        "wheel_radius",
+        "float",
+        None,
+        "m",
+        "Nominal radius of both wheels. Too large: every distance comes out too long.",
+        above=0.0,
+    ),
+    Parameter(
+        "wheel_separation_multiplier",
+        "float",
+        1.0,
+        "",
+        "C_B of the UMBmark calibration: effective over nominal separation.",
+        above=0.0,
+    ),
+    Parameter(
+        "left_wheel_radius_multiplier",
+        "float",
+        1.0,
+        "",
+        "C_L of the UMBmark calibration: effective over nominal radius of the left wheel.",
+        above=0.0,
+    ),
+    Parameter(
+        "right_wheel_radius_multiplier",
+        "float",
+        1.0,
+        "",
+        "C_R of the UMBmark calibration: effective over nominal radius of the right wheel.",
+        above=0.0,
+    ),
+    Parameter(
+        "left_ticks_per_revolution",
+        "float",
+        None,
+        "ticks",
+        "Counts of the left encoder for one turn of its wheel, gear and edges included. "
+        "May be left out by the node when positions come in radians: then there is no quantisation.",
+        above=0.0,
+    ),
+    Parameter(
+        "right_ticks_per_revolution",
+        "float",
+        None,
+        "ticks",
+        "The same for the right encoder.",
+        above=0.0,
+    ),
+    Parameter(
+        "encoder_bits",
+        "integer",
+        0,
+        "bits",
+        "Width at which the counters wrap; 0: they do not. Wrong: the pose jumps at each wrap.",
+        choices=("0", "8", "16", "32"),
+    ),
+    Parameter(
+        "left_wheel_noise",
+        "float",
+        4.0e-4,
+        "m^0.5",
+        "k_L: the left wheel errs by k_L·√s over a travel s. Default: the paper's robot.",
+        minimum=0.0,
+    ),
+    Parameter(
+        "right_wheel_noise",
+        "float",
+        5.8e-4,
+        "m^0.5",
+        "k_R: the same for the right wheel. Default: the paper's robot.",
+        minimum=0.0,
+    ),
+    Parameter(
+        "piece_path_tolerance",
+        "float",
+        0.003,
+        "m",
+        "How far the path may leave a piece's arc. Smaller: more pieces, not a better pose.",
+        above=0.0,
+    ),
+    Parameter(
+        "piece_heading_tolerance",
+        "float",
+        0.01,
+        "rad",
+        "How far the heading may leave a piece's arc. Smaller: more pieces, not a better pose.",
+        above=0.0,
+    ),
+    Parameter(
+        "max_wheel_speed",
+        "float",
+        0.0,
+        "m/s",
+        "Fastest that a wheel can go; 0: unknown. Given, faster steps are refused until a second "
+        "message confirms them. Too small: true motion is refused (/diagnostics counts it).",
+        minimum=0.0,
+    ),
+    Parameter(
+        "gap_duration",
+        "float",
+        1.0,
+        "s",
+        "Intervals longer than this count as gaps on /diagnostics; their motion is kept.",
+        above=0.0,
+    ),
+    Parameter("odom_frame_id", "string", "odom", "", "Frame of the pose (REP-105)."),
+    Parameter("base_frame_id", "string", "base_link", "", "Frame of the robot (REP-105)."),
+    Parameter(
+        "enable_odom_tf",
+        "boolean",
+        False,
+        "",
+        "Broadcast odom -> base_link on /tf; needs tf2_ros. Off where an EKF broadcasts it.",
+    ),
+    Parameter(
+        "input_type",
+        "string",
+        "joint_state",
+        "",
+        "Kind of the input messages.",
+        choices=("joint_state", "int32_pair", "int64_pair", "int64_multi_array"),
+    ),
+    Parameter(
+        "position_unit",
+        "string",
+        "radians",
+        "",
+        "Unit of JointState positions: radians of the wheel, or ticks of its encoder.",
+        choices=("radians", "ticks"),
+    ),
+    Parameter(
+        "left_wheel_names",
+        "strings",
+        ("left_wheel_joint",),
+        "",
+        "Joints of the left side; several (four wheels) are averaged.",
+    ),
+    Parameter(
+        "right_wheel_names",
+        "strings",
+        ("right_wheel_joint",),
+        "",
+        "Joints of the right side; several (four wheels) are averaged.",
+    ),
+    Parameter(
+        "pairing_window",
+        "float",
+        0.02,
+        "s",
+        "Left and right counts that arrive within this time are one reading (int32_pair, "
+        "int64_pair). Too large: a reading of one wheel may be paired with an older one.",
+        above=0.0,
+    ),
+)
+
+
+def defaults() -> dict[str, Value]:
+    """Values of all parameters that need not be given."""
+    return {item.name: item.default for item in PARAMETERS if item.default is not None}
+
+
+def find(name: str) -> Parameter:
+    """The parameter of a name.
+
+    Raises
+    ------
+    InputError
+        For an unknown name; the message offers the nearest known one.
+    """
+    for item in PARAMETERS:
+        if item.name == name:
+            return item
+    near = difflib.get_close_matches(name, [item.name for item in PARAMETERS], n=1, cutoff=0.0)
+    raise InputError(f"unknown parameter {name}; the nearest known one is {near[0]}")
+
+
+def robot_of(values: Mapping[str, Value]) -> Robot:
+    """The robot that a complete set of checked values describes."""
+    return Robot(**{item.name: values[item.name] for item in fields(Robot)})  # type: ignore[arg-type]
+
+
+def tolerance_of(values: Mapping[str, Value]) -> PieceTolerance:
+    """When pieces end, of a complete set of checked values."""
+    return PieceTolerance(
+        path=float(values["piece_path_tolerance"]),  # type: ignore[arg-type]
+        heading=float(values["piece_heading_tolerance"]),  # type: ignore[arg-type]
+    )
+
+
+def limits_of(values: Mapping[str, Value]) -> EncoderLimits:
+    """When counters are doubted, of a complete set of checked values."""
+    return EncoderLimits(
+        max_wheel_speed=float(values["max_wheel_speed"]),  # type: ignore[arg-type]
+        gap_duration=float(values["gap_duration"]),  # type: ignore[arg-type]
+    )
