@@ -23,8 +23,8 @@ class Manoeuvre:
     name : str
         Used as the run folder's name.
     knots : tuple of (time, speed, yaw_rate)
-        Corners of the piecewise linear commands [s, m/s, rad/s], times not decreasing; anticlockwise
-        is positive. Two knots at the same time make a step.
+        Corners of the piecewise linear commands [s, m/s, rad/s], times not decreasing;
+        anticlockwise is positive. Two knots at the same time make a step.
     """
 
     name: str
@@ -57,7 +57,9 @@ class Manoeuvre:
 def _means(t: Floats, value: Floats, times: Floats) -> Floats:
     """Mean of the piecewise linear `value` between successive `times`, exact."""
     at = np.clip(times, t[0], t[-1])
-    integral_at_knots = np.concatenate(([0.0], np.cumsum(np.diff(t) * (value[1:] + value[:-1]) / 2)))
+    integral_at_knots = np.concatenate(
+        ([0.0], np.cumsum(np.diff(t) * (value[1:] + value[:-1]) / 2))
+    )
     left = np.clip(np.searchsorted(t, at, side="right") - 1, 0, len(t) - 2)
     width = t[left + 1] - t[left]
     slope = np.divide(
@@ -90,9 +92,7 @@ class Pace:
     pause: float = 0.3
 
 
-def moves(
-    name: str, steps: Sequence[tuple[float, float]], pace: Pace | None = None
-) -> Manoeuvre:
+def moves(name: str, steps: Sequence[tuple[float, float]], pace: Pace | None = None) -> Manoeuvre:
     """A manoeuvre of moves from rest to rest, each along a line, an arc or on the spot.
 
     Parameters
@@ -106,7 +106,9 @@ def moves(
     knots: list[Knot] = [(0.0, 0.0, 0.0)]
     for length, turn in steps:
         start = knots[-1][0]
-        knots += [(start + t, length * rate, turn * rate) for t, rate in _trapezium(length, turn, pace)]
+        knots += [
+            (start + t, length * rate, turn * rate) for t, rate in _trapezium(length, turn, pace)
+        ]
         knots.append((knots[-1][0] + pace.pause, 0.0, 0.0))
     return Manoeuvre(name, tuple(knots))
 

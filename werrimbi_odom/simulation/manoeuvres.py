@@ -74,8 +74,7 @@ def pivots(angle: float = math.pi, *, base: float = 0.35, pace: Pace | None = No
     """Turns about one standing wheel, each wheel, both ways; `base` [m] is the wheel base."""
     half = base / 2
     steps = [
-        (along * half * angle, turn * angle)
-        for along, turn in ((1, 1), (-1, -1), (1, -1), (-1, 1))
+        (along * half * angle, turn * angle) for along, turn in ((1, 1), (-1, -1), (1, -1), (-1, 1))
     ]
     return moves("pivots", [(float(a), float(b)) for a, b in steps], pace)
 

@@ -92,7 +92,8 @@ def wheel_speeds(robot: TrueRobot, manoeuvre: Manoeuvre) -> NDArray[np.float64]:
         Left and right [rad/s] in each PERIOD, with REST before and after.
     """
     periods = math.ceil((manoeuvre.duration + 2 * REST) / PERIOD)
-    speed, yaw_rate = manoeuvre.commands(PERIOD * np.arange(periods + 1) - REST)
+    times = PERIOD * np.arange(periods + 1, dtype=np.float64) - REST
+    speed, yaw_rate = manoeuvre.commands(times)
     half, radius = robot.nominal.wheel_separation / 2, robot.nominal.wheel_radius
     return np.column_stack((speed - half * yaw_rate, speed + half * yaw_rate)) / radius
 

@@ -26,7 +26,10 @@ def write_run(recording: Recording, folder: str | Path) -> Path:
     names = "".join(f",{name}" for name in recording.channels)
     lines = [f"t_s,left_ticks,right_ticks{names}\n"]
     ticks = zip(
-        recording.t_s, recording.left_ticks, recording.right_ticks, *recording.channels.values(),
+        recording.t_s,
+        recording.left_ticks,
+        recording.right_ticks,
+        *recording.channels.values(),
         strict=True,
     )
     for t, left, right, *channels in ticks:

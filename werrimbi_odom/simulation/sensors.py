@@ -15,6 +15,9 @@ from .engine import Pose, TruePath
 Floats = NDArray[np.float64]
 Counts = NDArray[np.int64]
 
+WORLD = Pose(0.0, 0.0, 0.0)
+"""The frame of the world itself."""
+
 
 @dataclass(frozen=True)
 class ReferenceSensor:
@@ -33,7 +36,7 @@ class ReferenceSensor:
     rate_hz: float = 20.0
     sigma_xy: float = 1e-3
     sigma_yaw: float = 2e-3
-    frame: Pose = Pose(0.0, 0.0, 0.0)
+    frame: Pose = WORLD
 
     def times(self, end: float, rng: np.random.Generator) -> Floats:
         """Times of the samples until `end` [s], started anywhere in the first 0.3 s."""

@@ -1,0 +1,143 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""With nothing hidden, the engine's robot is the ideal robot of the textbook.
+
+The dead reckoning is written here, so that the simulation is judged by nothing of ours.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+from werrimbi_odom.simulation import (
+    Manoeuvre,
+    Recording,
+    TrueRobot,
+    arcs,
+    engine,
+    figure_eight,
+    free,
+    moves,
+    out_and_back,
+    pivots,
+    record,
+    spin,
+    square,
+    start_stop,
+)
+
+Floats = NDArray[np.float64]
+
+NOMINAL = TrueRobot()
+ODD = TrueRobot(wheel_separation=0.357, left_wheel_radius=0.0505, right_wheel_radius=0.0495)
+BRISK = {"speed": 0.8, "yaw_rate": 2.5, "acceleration": 2.0}
+DRIVES = [
+    square(1.0),
+    square(1.0, "cw"),
+    out_and_back(5.0),
+    spin(3.0),
+    figure_eight(0.5),
+    arcs((0.3, 1.0)),
+    pivots(),
+    start_stop(3),
+    free(30.0, seed=1),
+    free(30.0, seed=2, **BRISK),
+]
+
+
+def exact_arcs(left: Floats, right: Floats, base: float, start: Floats) -> Floats:
+    """Poses (n, 3) from cumulative travel of the wheels (n,) [m], each step an exact arc."""
+    steps_left, steps_right = np.diff(left), np.diff(right)
+    middle = (steps_left + steps_right) / 2
+    turn = (steps_right - steps_left) / base
+    yaw = start[2] + np.concatenate(([0.0], np.cumsum(turn)))
+    chord = middle * np.sinc(turn / (2 * np.pi))
+    heading = yaw[:-1] + turn / 2
+    x = start[0] + np.concatenate(([0.0], np.cumsum(chord * np.cos(heading))))
+    y = start[1] + np.concatenate(([0.0], np.cumsum(chord * np.sin(heading))))
+    return np.column_stack((x, y, yaw))
+
+
+def distance(poses: Floats) -> float:
+    """Length of the path through `poses` (n, 3) [m]."""
+    return float(np.hypot(np.diff(poses[:, 0]), np.diff(poses[:, 1])).sum())
+
+
+def true_poses(recording: Recording) -> Floats:
+    path = recording.true_path
+    return np.column_stack((path.x_m, path.y_m, path.yaw_rad))
+
+
+def reckoned_from_angles(recording: Recording, robot: TrueRobot) -> Floats:
+    path = recording.true_path
+    return exact_arcs(
+        path.left_angle_rad * robot.left_wheel_radius,
+        path.right_angle_rad * robot.right_wheel_radius,
+        robot.wheel_separation,
+        true_poses(recording)[0],
+    )
+
+
+@pytest.mark.parametrize("robot", [NOMINAL, ODD], ids=["nominal", "odd"])
+@pytest.mark.parametrize("drive", DRIVES, ids=lambda d: d.name)
+def test_rolling_is_exact_dead_reckoning(robot: TrueRobot, drive: Manoeuvre) -> None:
+    recording = record(robot, drive, seed=3)
+    error = reckoned_from_angles(recording, robot) - true_poses(recording)
+    assert np.hypot(error[:, 0], error[:, 1]).max() < 1.0e-4
+    assert np.abs(error[:, 2]).max() < 4.0e-5
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_counters_alone_close_to_a_hundredth_of_a_percent_of_the_distance(seed: int) -> None:
+    """The issue asks for 0.2 %. What is left is the counters' rounding to a tick."""
+    recording = record(NOMINAL, free(60.0, seed=seed), seed=seed)
+    path = recording.true_path
+    tick = 2 * math.pi * NOMINAL.left_wheel_radius / NOMINAL.left_ticks_per_revolution
+    first = [np.interp(recording.t_s[0], path.t_s, v) for v in (path.x_m, path.y_m, path.yaw_rad)]
+    last = [np.interp(recording.t_s[-1], path.t_s, v) for v in (path.x_m, path.y_m)]
+    poses = exact_arcs(
+        recording.left_ticks * tick,
+        recording.right_ticks * tick,
+        NOMINAL.wheel_separation,
+        np.array(first),
+    )
+    assert math.hypot(*(poses[-1, :2] - last)) < 1e-4 * distance(poses)
+
+
+def test_the_robot_drives_where_it_is_told_when_its_beliefs_are_true() -> None:
+    path = record(NOMINAL, square(2.0), seed=5).true_path
+    assert math.hypot(path.x_m[-1] - path.x_m[0], path.y_m[-1] - path.y_m[0]) < 1e-3
+    assert path.yaw_rad[-1] - path.yaw_rad[0] == pytest.approx(2 * math.pi, abs=2e-3)
+
+
+def test_a_base_that_is_wider_than_believed_turns_too_little() -> None:
+    path = record(TrueRobot(wheel_separation=0.357), spin(3.0), seed=5).true_path
+    turned = path.yaw_rad[-1] - path.yaw_rad[0]
+    assert turned == pytest.approx(6 * math.pi * 0.35 / 0.357, rel=1e-4)
+
+
+def test_larger_wheels_go_further() -> None:
+    robot = TrueRobot(left_wheel_radius=0.051, right_wheel_radius=0.051)
+    path = record(robot, moves("line", [(2.0, 0.0)]), seed=5).true_path
+    went = math.hypot(path.x_m[-1] - path.x_m[0], path.y_m[-1] - path.y_m[0])
+    assert went == pytest.approx(2.0 * 0.051 / 0.05, rel=1e-4)
+
+
+def test_the_engines_curve_creep_is_what_theory_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Uncorrected, wheels creep outwards by CURVE_CREEP * speed * yaw rate: 0.45 ms of it."""
+    creep = engine.CURVE_CREEP
+    assert creep == pytest.approx(4.5e-4)
+    monkeypatch.setattr(engine, "CURVE_CREEP", 0.0)
+    recording = record(NOMINAL, figure_eight(0.5), seed=1)
+    path, reckoned = recording.true_path, reckoned_from_angles(recording, NOMINAL)
+    ahead = (reckoned[1:, 2] + reckoned[:-1, 2]) / 2
+    step = np.diff(true_poses(recording), axis=0)
+    sideways = np.cos(ahead) * step[:, 1] - np.sin(ahead) * step[:, 0]
+    along = np.cos(ahead) * step[:, 0] + np.sin(ahead) * step[:, 1]
+    regressor = along / np.diff(path.t_s) * step[:, 2]
+    measured = -(sideways @ regressor) / (regressor @ regressor)
+    assert measured == pytest.approx(creep, rel=0.02)
