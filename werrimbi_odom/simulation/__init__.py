@@ -31,6 +31,7 @@ from .manoeuvres import (
 from .recorder import record
 from .recording import Recording
 from .robot import Nominal, TrueRobot
+from .robot_file import write_robot_file
 from .run_folder import write_run
 from .sensors import ReferenceSensor
 
@@ -55,5 +56,6 @@ __all__ = [
     "spins",
     "square",
     "start_stop",
+    "write_robot_file",
     "write_run",
 ]

@@ -6,7 +6,7 @@ Why these settings (measured; the figures are in docs/simulation.md):
 
 - Wheels are spheres: one contact point each, straight below the centre, wherever the body leans.
 - The skid is frictionless, so only the wheels decide where the robot goes.
-- MuJoCo's contacts are springs that give way. A wheel sinks in by a few micrometres, and the contact
+- MuJoCo's contacts are springs that give way. A wheel sinks in by some micrometres; its contact
   acts halfway down: the rolling radius is short by half the penetration.
 - Friction removes slip with a time constant of TIME_CONSTANT * IMPEDANCE / 2, as an acceleration
   that leaves out the turning of the contact itself. So in a curve the wheels creep outwards by
@@ -46,7 +46,7 @@ MOTOR_STIFFNESS = 4.0
 
 @dataclass(frozen=True)
 class WheelPlan:
-    """One wheel: `side` ("left" or "right"), `y` of its hub from the body's middle [m], `radius`."""
+    """One wheel: "left" or "right", its hub's `y` from the body's middle [m], its radius [m]."""
 
     side: str
     y: float

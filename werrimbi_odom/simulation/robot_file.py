@@ -1,0 +1,65 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Writing the robot file that a user of the robot would have: nominal values, commented."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from .robot import TrueRobot
+
+_TEMPLATE = """\
+# The robot as its maker believes it to be. The node and the command line read this same file:
+#   odom_node --ros-args --params-file robot.yaml
+#   werrimbi odom --robot robot.yaml RUN --out odom.csv
+odom_node:
+  ros__parameters:
+    wheel_separation: {wheel_separation:<18}# m, between the wheels' contact points
+    wheel_radius: {wheel_radius:<22}# m
+    wheel_separation_multiplier: 1.0    # calibration of the base; 1: as measured with the ruler
+    left_wheel_radius_multiplier: 1.0   # calibration of the left wheel
+    right_wheel_radius_multiplier: 1.0  # calibration of the right wheel
+    left_ticks_per_revolution: {left_ticks_per_revolution:<9}# counts in one turn of the wheel
+    right_ticks_per_revolution: {right_ticks_per_revolution}
+    encoder_bits: 0                     # the counters do not wrap
+    left_wheel_noise: {left_wheel_noise:<18}# k_L, m^0.5: a wheel errs by k * sqrt(path)
+    right_wheel_noise: {right_wheel_noise:<17}# k_R
+    odom_frame_id: odom
+    base_frame_id: base_link
+    enable_odom_tf: false               # true where no filter (EKF) publishes odom -> base_link
+    input_type: joint_state             # wheel angles in radians on joint_states
+    left_wheel_names: [left_wheel_joint]
+    right_wheel_names: [right_wheel_joint]
+"""
+
+
+def write_robot_file(robot: TrueRobot, path: str | Path) -> Path:
+    """Write what the maker believes of `robot`; its true geometry stays out, its noise goes in.
+
+    Parameters
+    ----------
+    robot : TrueRobot
+    path : path
+        Of the YAML file; its folder must exist.
+
+    Returns
+    -------
+    Path of the file
+    """
+    path = Path(path)
+    text = _TEMPLATE.format(
+        wheel_separation=_real(robot.nominal.wheel_separation),
+        wheel_radius=_real(robot.nominal.wheel_radius),
+        left_ticks_per_revolution=_real(robot.left_ticks_per_revolution),
+        right_ticks_per_revolution=_real(robot.right_ticks_per_revolution),
+        left_wheel_noise=_real(robot.left_wheel_noise),
+        right_wheel_noise=_real(robot.right_wheel_noise),
+    )
+    path.write_text(text, encoding="utf-8")
+    return path
+
+
+def _real(value: float) -> str:
+    """Digits that every YAML reader takes for a real number: with a point, also before an e."""
+    digits = repr(float(value))
+    return digits if "." in digits else digits.replace("e", ".0e")
