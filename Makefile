@@ -1,0 +1,51 @@
+# Two commands do everything on a fresh machine: `make demo` and `make test`.
+# `make help` lists the others.
+
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+READY := $(VENV)/.ready
+
+# An environment of ROS wheels exports these to its children; ours must find its own.
+unexport PYTHONPATH LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
+
+.PHONY: help setup demo test lint bench evidence pictures lock clean
+
+help:  ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## /{printf "make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+setup: $(READY)  ## the environment .venv with everything in it
+
+$(READY): setup.py setup.cfg constraints.txt
+	$(PYTHON) -c 'import sys; sys.exit(0 if (3, 10) <= sys.version_info[:2] <= (3, 13) else "werrimbi_odom needs Python 3.10 to 3.13 (the ROS 2 Jazzy wheels do); try: make PYTHON=python3.12 " + " ".join(sys.argv[1:]))'
+	$(PYTHON) -m venv $(VENV)
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[all]'
+	@touch $@
+
+demo: setup  ## recorded ticks through the real node; ROBOT=robot.yaml RUN=folder-or-bag for your own
+	$(BIN)/python -m werrimbi_odom.demo $(if $(ROBOT),--robot '$(ROBOT)') $(if $(RUN),--run '$(RUN)') --out demo
+
+test: setup lint  ## linters, then all tests but the long ones
+	$(BIN)/python -m pytest -m 'not evidence'
+
+lint: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/mypy
+	$(BIN)/lint-imports
+
+bench: setup  ## how fast, as ratios measured side by side
+	$(BIN)/python benchmark/core_speed.py
+	$(BIN)/python benchmark/node_cost.py
+
+evidence: setup  ## the long tests: many seeds, soaks
+	$(BIN)/python -m pytest -m evidence
+
+pictures: setup  ## the pictures of the README, made anew (needs Chrome or Chromium)
+	$(BIN)/python docs/make_pictures.py
+
+lock: setup  ## constraints.txt from what .venv holds
+	$(BIN)/python -m pip freeze --exclude-editable --exclude werrimbi_odom | grep -v '@' > constraints.txt
+
+clean:
+	rm -rf $(VENV) build install log demo

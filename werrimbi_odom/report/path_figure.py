@@ -1,0 +1,129 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The path on the floor with its growing 95 % ellipses, against what was measured."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+Floats = NDArray[np.float64]
+
+CHI2_95_OF_2 = 5.991464547107979
+"""95 % quantile of chi-squared with two degrees of freedom: the ellipse's squared radius in σ."""
+
+# Okabe and Ito's palette: told apart by the colour-blind.
+BLUE, ORANGE, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#6B6B6B"
+
+
+@dataclass(frozen=True, slots=True)
+class PathDrawing:
+    """What to draw: positions [m], their covariances [m²] and, if measured, the reference."""
+
+    x: Floats
+    y: Floats
+    covariance: Floats
+    """Shape (n, 2, 2)."""
+    reference_x: Floats | None = None
+    reference_y: Floats | None = None
+    title: str = ""
+    subtitle: str = ""
+
+
+def ellipse(x: float, y: float, covariance: Floats, points: int = 73) -> tuple[Floats, Floats]:
+    """Outline of the 95 % ellipse about a point, [m]."""
+    variances, axes = np.linalg.eigh(covariance)
+    radii = np.sqrt(np.maximum(variances, 0.0) * CHI2_95_OF_2)
+    angle = np.linspace(0.0, 2.0 * np.pi, points)
+    outline = axes @ (radii[:, None] * np.stack([np.cos(angle), np.sin(angle)]))
+    return x + outline[0], y + outline[1]
+
+
+def spread_along_path(x: Floats, y: Floats, count: int) -> NDArray[np.intp]:
+    """Indices of `count` points at equal distances of path, the last one among them."""
+    travelled = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(y)))])
+    wanted = np.linspace(0.0, travelled[-1], count + 1)[1:]
+    return np.unique(np.minimum(np.searchsorted(travelled, wanted), x.size - 1))
+
+
+def path_figure(drawing: PathDrawing, *, ellipses: int = 12) -> go.Figure:
+    """The figure, interactive; equal scales on both axes."""
+    import plotly.graph_objects as go
+
+    figure = go.Figure()
+    if drawing.reference_x is not None and drawing.reference_y is not None:
+        figure.add_scatter(
+            x=drawing.reference_x,
+            y=drawing.reference_y,
+            mode="lines",
+            name="measured",
+            line={"color": GREY, "width": 5},
+            opacity=0.55,
+            hovertemplate="measured<br>x %{x:.3f} m<br>y %{y:.3f} m<extra></extra>",
+        )
+    for order, index in enumerate(spread_along_path(drawing.x, drawing.y, ellipses)):
+        outline_x, outline_y = ellipse(
+            float(drawing.x[index]), float(drawing.y[index]), drawing.covariance[index]
+        )
+        figure.add_scatter(
+            x=outline_x,
+            y=outline_y,
+            mode="lines",
+            fill="toself",
+            fillcolor="rgba(213, 94, 0, 0.16)",
+            line={"color": ORANGE, "width": 1.2},
+            name="95 % ellipse",
+            legendgroup="ellipse",
+            showlegend=order == 0,
+            hoverinfo="skip",
+        )
+    figure.add_scatter(
+        x=drawing.x,
+        y=drawing.y,
+        mode="lines",
+        name="odometry",
+        line={"color": BLUE, "width": 2},
+        hovertemplate="odometry<br>x %{x:.3f} m<br>y %{y:.3f} m<extra></extra>",
+    )
+    _mark(figure, drawing.x[0], drawing.y[0], "start", "circle", GREEN)
+    _mark(figure, drawing.x[-1], drawing.y[-1], "end", "square", BLUE)
+    if drawing.reference_x is not None and drawing.reference_y is not None:
+        last_x, last_y = _last_known(drawing.reference_x, drawing.reference_y)
+        _mark(figure, last_x, last_y, "measured end", "x", "black")
+    heading = f"<b>{drawing.title}</b>"
+    if drawing.subtitle:
+        heading += f"<br><span style='font-size:14px'>{drawing.subtitle}</span>"
+    figure.update_layout(
+        title={"text": heading, "x": 0.02, "xanchor": "left", "y": 0.96, "yanchor": "top"},
+        template="plotly_white",
+        font={"size": 15},
+        margin={"l": 70, "r": 25, "t": 95, "b": 65},
+        legend={"bordercolor": "#cccccc", "borderwidth": 1},
+        width=1000,
+        height=760,
+    )
+    figure.update_xaxes(title="x [m]", zeroline=False)
+    figure.update_yaxes(title="y [m]", zeroline=False, scaleanchor="x", scaleratio=1)
+    return figure
+
+
+def _mark(figure: go.Figure, x: float, y: float, name: str, symbol: str, colour: str) -> None:
+    figure.add_scatter(
+        x=[x],
+        y=[y],
+        mode="markers",
+        name=name,
+        marker={"symbol": symbol, "size": 11, "color": colour, "line": {"width": 1}},
+        hovertemplate=f"{name}<br>x %{{x:.3f}} m<br>y %{{y:.3f}} m<extra></extra>",
+    )
+
+
+def _last_known(x: Floats, y: Floats) -> tuple[float, float]:
+    known = np.flatnonzero(np.isfinite(x) & np.isfinite(y))
+    return (float(x[known[-1]]), float(y[known[-1]])) if known.size else (np.nan, np.nan)
