@@ -11,10 +11,12 @@ nothing of the odometry's own physics went into it. The engine rolls real wheels
 True
 
 Reading order: `robot` (what is true), `manoeuvre` (what is commanded), `chassis` and `engine` (what
-happens), `wheel_noise`, `sensors` (what is seen of it), `recorder` (one drive), `run_folder`.
+happens), `wheel_noise`, `sensors` (what is seen of it), `recorder` (one drive), `run_folder`,
+`sessions` (a day of drives), `hidden` (effects for others to find).
 """
 
 from .engine import Pose, TruePath
+from .hidden import CATALOGUE, Hidden, Peculiarity, UnknownEffectError, hide
 from .manoeuvre import Manoeuvre, Pace, moves
 from .manoeuvres import (
     arcs,
@@ -34,24 +36,32 @@ from .robot import Nominal, TrueRobot
 from .robot_file import write_robot_file
 from .run_folder import write_run
 from .sensors import ReferenceSensor
+from .sessions import drives, session
 
 __all__ = [
+    "CATALOGUE",
+    "Hidden",
     "Manoeuvre",
     "Nominal",
     "Pace",
+    "Peculiarity",
     "Pose",
     "Recording",
     "ReferenceSensor",
     "TruePath",
     "TrueRobot",
+    "UnknownEffectError",
     "arcs",
     "chain",
+    "drives",
     "figure_eight",
     "free",
+    "hide",
     "moves",
     "out_and_back",
     "pivots",
     "record",
+    "session",
     "spin",
     "spins",
     "square",

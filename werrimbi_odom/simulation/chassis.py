@@ -18,6 +18,7 @@ Why these settings (measured; the figures are in docs/simulation.md):
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from .robot import TrueRobot
@@ -44,13 +45,39 @@ MOTOR_STIFFNESS = 4.0
 """Its integral part: torque for an error of the angle [N m/rad]; no travel is lost for good."""
 
 
+BEARING_DRAG = 0.5
+"""Torque that brakes a wheel with play [N m]: less, and the robot coasts through the play."""
+
+
 @dataclass(frozen=True)
 class WheelPlan:
-    """One wheel: "left" or "right", its hub's `y` from the body's middle [m], its radius [m]."""
+    """One wheel.
+
+    Parameters
+    ----------
+    side : str
+        "left" or "right".
+    y : float
+        Of its hub along the axle from the body's middle, left positive [m].
+    radius : float
+        Rolling radius [m].
+    offset : float
+        From the axle to the wheel's centre [m]; not zero: an eccentric wheel.
+    phase : float
+        Angle of the wheel [rad] at which its centre is straight ahead of the axle.
+    ovality : float
+        (largest - smallest radius) / (2 radius); the wheel is an ellipsoid.
+    play : float
+        Free angle between the encoder's shaft and the wheel [rad].
+    """
 
     side: str
     y: float
     radius: float
+    offset: float = 0.0
+    phase: float = 0.0
+    ovality: float = 0.0
+    play: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -62,16 +89,24 @@ class Chassis:
     left, right : WheelPlan
     mass : float
         Of everything [kg].
+    axle_yaw : float
+        How far the axle is turned against the body, anticlockwise [rad].
     """
 
     left: WheelPlan
     right: WheelPlan
     mass: float
+    axle_yaw: float = 0.0
 
     @property
     def height(self) -> float:
         """Of the axle above the floor [m]."""
         return (self.left.radius + self.right.radius) / 2
+
+    @property
+    def wheels(self) -> tuple[WheelPlan, WheelPlan]:
+        """Left and right."""
+        return self.left, self.right
 
 
 def chassis_of(robot: TrueRobot) -> Chassis:
@@ -94,7 +129,6 @@ def to_mjcf(chassis: Chassis) -> str:
     wheel_mass = 0.03 * chassis.mass
     hull_mass = chassis.mass - 2 * wheel_mass
     skid = 0.02
-    wheels = "".join(_wheel(plan, height, wheel_mass) for plan in (chassis.left, chassis.right))
     return f"""
 <mujoco>
   <option timestep="{STEP}" integrator="Euler" cone="elliptic" impratio="{IMPRATIO}"/>
@@ -113,23 +147,62 @@ def to_mjcf(chassis: Chassis) -> str:
       <geom name="hull" type="box" size="0.15 0.1 0.02" pos="-0.04 0 0" mass="{hull_mass}"
             contype="0" conaffinity="0"/>
       <geom name="skid" type="sphere" size="{skid}" pos="{-SKID_BEHIND} 0 {skid - height}"
-            mass="0.001" condim="1" friction="0 0 0" priority="1"/>{wheels}
+            mass="0.001" condim="1" friction="0 0 0" priority="1"/>
+      <body name="axle" euler="0 0 {math.degrees(chassis.axle_yaw)}">
+        {"".join(_wheel(wheel, height, wheel_mass) for wheel in chassis.wheels)}
+      </body>
     </body>
   </worldbody>
-  <actuator>
-    <velocity name="left_speed" joint="left" kv="{MOTOR_DAMPING}"/>
-    <velocity name="right_speed" joint="right" kv="{MOTOR_DAMPING}"/>
-    <intvelocity name="left_travel" joint="left" kp="{MOTOR_STIFFNESS}" actrange="-1e9 1e9"/>
-    <intvelocity name="right_travel" joint="right" kp="{MOTOR_STIFFNESS}" actrange="-1e9 1e9"/>
+  <tendon>{"".join(_play(wheel) for wheel in chassis.wheels if wheel.play)}
+  </tendon>
+  <actuator>{"".join(_motor(wheel) for wheel in chassis.wheels)}
   </actuator>
 </mujoco>"""
 
 
+def shaft_joint(plan: WheelPlan) -> str:
+    """Name of the joint that the motor drives and the encoder watches."""
+    return f"{plan.side}_shaft" if plan.play else plan.side
+
+
 def _wheel(plan: WheelPlan, height: float, mass: float) -> str:
     # Hubs at the height of their own radius keep the body level when the radii differ.
+    hub = f"0 {plan.y} {plan.radius - height}"
+    ahead, up = plan.offset * math.cos(plan.phase), plan.offset * math.sin(plan.phase)
+    if plan.ovality:
+        long, short = plan.radius * (1 + plan.ovality), plan.radius * (1 - plan.ovality)
+        shape = f'type="ellipsoid" size="{long} {plan.radius} {short}"'
+    else:
+        shape = f'type="sphere" size="{plan.radius}"'
+    drag = f'frictionloss="{BEARING_DRAG}"' if plan.play else ""
+    body = f"""
+        <body name="{plan.side}" pos="{hub}">
+          <joint name="{plan.side}" type="hinge" axis="0 1 0" armature="0.001" {drag}/>
+          <geom name="{plan.side}" {shape} pos="{ahead} 0 {up}" mass="{mass}"
+                condim="3" friction="1.5 0 0"/>
+        </body>"""
+    if plan.play:
+        body += f"""
+        <body name="{plan.side}_shaft" pos="{hub}">
+          <joint name="{plan.side}_shaft" type="hinge" axis="0 1 0" armature="0.001"/>
+          <inertial pos="0 0 0" mass="0.01" diaginertia="1e-6 1e-6 1e-6"/>
+        </body>"""
+    return body
+
+
+def _play(plan: WheelPlan) -> str:
+    """Shaft and wheel turn freely against each other between two stops."""
     return f"""
-      <body name="{plan.side}" pos="0 {plan.y} {plan.radius - height}">
-        <joint name="{plan.side}" type="hinge" axis="0 1 0" armature="0.001"/>
-        <geom name="{plan.side}" type="sphere" size="{plan.radius}" mass="{mass}"
-              condim="3" friction="1.5 0 0"/>
-      </body>"""
+    <fixed name="{plan.side}_play" limited="true" range="{-plan.play / 2} {plan.play / 2}"
+           solreflimit="{TIME_CONSTANT} 1" solimplimit="{IMPEDANCE} {IMPEDANCE} 0.001">
+      <joint joint="{plan.side}" coef="1"/>
+      <joint joint="{plan.side}_shaft" coef="-1"/>
+    </fixed>"""
+
+
+def _motor(plan: WheelPlan) -> str:
+    joint = shaft_joint(plan)
+    return f"""
+    <velocity name="{plan.side}_speed" joint="{joint}" kv="{MOTOR_DAMPING}"/>
+    <intvelocity name="{plan.side}_travel" joint="{joint}" kp="{MOTOR_STIFFNESS}"
+                 actrange="-1e9 1e9"/>"""

@@ -13,7 +13,7 @@ import mujoco
 import numpy as np
 from numpy.typing import NDArray
 
-from .chassis import IMPEDANCE, STEP, TIME_CONSTANT, Chassis, to_mjcf
+from .chassis import IMPEDANCE, STEP, TIME_CONSTANT, Chassis, shaft_joint, to_mjcf
 
 Floats = NDArray[np.float64]
 
@@ -83,31 +83,39 @@ class Engine:
     """A robot standing on MuJoCo's floor, ready to be driven. The only mutable thing here."""
 
     def __init__(self, chassis: Chassis, start: Pose, angles: tuple[float, float]) -> None:
-        self._chassis = chassis
         self._model = mujoco.MjModel.from_xml_string(to_mjcf(chassis))
         self._data = mujoco.MjData(self._model)
-        joints = ("x", "y", "yaw", "left", "right")
-        self._x, self._y, self._yaw, self._left, self._right = (
-            int(self._model.joint(name).qposadr[0]) for name in joints
-        )
-        self._data.qpos[[self._left, self._right]] = angles
+        self._x, self._y, self._yaw = (self._place(name) for name in ("x", "y", "yaw"))
+        self._wheels = [self._place(wheel.side) for wheel in chassis.wheels]
+        self._shafts = [self._place(shaft_joint(wheel)) for wheel in chassis.wheels]
+        self._radii = {wheel.side: wheel.radius for wheel in chassis.wheels}
+        self._data.qpos[self._wheels] = angles
+        self._data.qpos[self._shafts] = angles
         self._data.act[:] = angles
         self._settle()
         self._data.qpos[[self._x, self._y, self._yaw]] = start
         self._data.qvel[:] = 0.0
 
+    def _place(self, joint: str) -> int:
+        return int(self._model.joint(joint).qposadr[0])
+
     def _settle(self) -> None:
         """Let the robot sink into its contacts, then make its wheels larger by half of that."""
         self._run(500)
-        sunk = {"left": 0.0, "right": 0.0}
+        sunk = dict.fromkeys(self._radii, 0.0)
         for contact in self._data.contact:
             for geom in contact.geom:
                 name = self._model.geom(geom).name
                 if name in sunk:
                     sunk[name] = -float(contact.dist)
         for side, depth in sunk.items():
-            self._model.geom(side).size[0] += depth / 2
+            self._grow(side, depth / 2)
         self._run(500)
+
+    def _grow(self, side: str, by: float) -> None:
+        geom = self._model.geom(side)
+        geom.size[:] += by
+        geom.rbound[:] += by  # else the engine would not look for contacts so far out
 
     def _run(self, steps: int) -> None:
         mujoco.mj_step(self._model, self._data, steps)
@@ -119,13 +127,29 @@ class Engine:
         return Pose(float(q[self._x]), float(q[self._y]), float(q[self._yaw]))
 
     @property
-    def angles(self) -> tuple[float, float]:
-        """Of the encoders' shafts, left and right [rad]."""
-        return float(self._data.qpos[self._left]), float(self._data.qpos[self._right])
+    def wheel_angles(self) -> tuple[float, float]:
+        """Of the wheels, left and right [rad]."""
+        left, right = self._data.qpos[self._wheels]
+        return float(left), float(right)
+
+    @property
+    def shaft_angles(self) -> tuple[float, float]:
+        """Of the encoders' shafts, left and right [rad]: the wheels', but for play."""
+        left, right = self._data.qpos[self._shafts]
+        return float(left), float(right)
+
+    def radius(self, side: str) -> float:
+        """Present rolling radius of a wheel [m]."""
+        return self._radii[side]
+
+    def set_radius(self, side: str, radius: float) -> None:
+        """Let a wheel swell or shrink to `radius` [m]."""
+        self._grow(side, radius - self._radii[side])
+        self._radii[side] = radius
 
     def advance(self, left_speed: float, right_speed: float) -> None:
         """Hold the commanded speeds of the motors [rad/s] for one PERIOD."""
-        self._data.ctrl[:] = (left_speed, right_speed, left_speed, right_speed)
+        self._data.ctrl[:] = (left_speed, left_speed, right_speed, right_speed)
         self._run(round(PERIOD / STEP))
 
     def move(self, shift: Shift) -> None:
@@ -144,6 +168,10 @@ class Engine:
         v[self._x], v[self._y] = cos * vx - sin * vy, sin * vx + cos * vy
 
 
+Reshaper = Callable[[Engine, Stride], None]
+"""Changes the robot while it drives, after each PERIOD; may remember what it saw."""
+
+
 def drive(
     chassis: Chassis,
     wheel_speeds: Floats,
@@ -151,6 +179,7 @@ def drive(
     start: Pose,
     angles: tuple[float, float],
     shifters: Sequence[Shifter] = (),
+    reshapers: Sequence[Reshaper] = (),
 ) -> TruePath:
     """Drive a robot through the given motor speeds.
 
@@ -164,6 +193,8 @@ def drive(
         Of the encoders' shafts at the start [rad].
     shifters : sequence of Shifter
         Motions besides rolling, applied after each PERIOD, each seeing the same stride.
+    reshapers : sequence of Reshaper
+        Changes of the robot, applied after each PERIOD.
 
     Returns
     -------
@@ -171,23 +202,24 @@ def drive(
     """
     engine = Engine(chassis, start, angles)
     rows = np.empty((len(wheel_speeds) + 1, 6))
-    before = engine.pose
-    left, right = engine.angles
-    rows[0] = (0.0, *before, left, right)
+    before, wheels = engine.pose, engine.wheel_angles
+    rows[0] = (0.0, *before, *engine.shaft_angles)
     for i, (left_speed, right_speed) in enumerate(wheel_speeds, start=1):
         engine.advance(left_speed, right_speed)
-        now, (new_left, new_right) = engine.pose, engine.angles
+        now, turned = engine.pose, engine.wheel_angles
         stride = Stride(
             time=i * PERIOD,
             period=PERIOD,
-            left=(new_left - left) * chassis.left.radius,
-            right=(new_right - right) * chassis.right.radius,
+            left=(turned[0] - wheels[0]) * engine.radius("left"),
+            right=(turned[1] - wheels[1]) * engine.radius("right"),
             pose=now,
         )
         speed = (stride.left + stride.right) / 2 / PERIOD
         engine.move(Shift(0.0, CURVE_CREEP * speed * (now.yaw - before.yaw), 0.0))
         for shifter in shifters:
             engine.move(shifter(stride))
-        before, left, right = engine.pose, new_left, new_right
-        rows[i] = (stride.time, *before, left, right)
+        for reshape in reshapers:
+            reshape(engine, stride)
+        before, wheels = engine.pose, turned
+        rows[i] = (stride.time, *before, *engine.shaft_angles)
     return TruePath(*np.ascontiguousarray(rows.T))

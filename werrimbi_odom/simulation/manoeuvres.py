@@ -80,11 +80,17 @@ def pivots(angle: float = math.pi, *, base: float = 0.35, pace: Pace | None = No
 
 
 def start_stop(
-    hops: int = 12, *, length: float = 0.5, acceleration: float = 2.5, speed: float = 0.8
+    hops: int = 6,
+    *,
+    length: float = 0.5,
+    acceleration: float = 2.5,
+    speed: float = 0.8,
+    laps: int = 2,
 ) -> Manoeuvre:
-    """Hard starts and stops: `hops` forwards of `length` [m], and as many back."""
+    """Hard starts and stops: `hops` of `length` [m] forwards and as many back, `laps` times."""
     pace = Pace(speed=speed, acceleration=acceleration, pause=0.25)
-    return moves("start_stop", [(length, 0.0)] * hops + [(-length, 0.0)] * hops, pace)
+    lap = [(length, 0.0)] * hops + [(-length, 0.0)] * hops
+    return moves("start_stop", lap * laps, pace)
 
 
 def free(

@@ -5,13 +5,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from functools import reduce
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .chassis import chassis_of
-from .engine import PERIOD, Pose, drive
+from .engine import PERIOD, Pose, TruePath, drive
+from .hidden.peculiarity import Peculiarity
 from .manoeuvre import Manoeuvre
 from .recording import Recording
 from .robot import TrueRobot
@@ -30,6 +33,7 @@ def record(
     reference: ReferenceSensor | None = None,
     ticks_rate_hz: float = 50.0,
     start: Pose | None = None,
+    hidden: Sequence[Peculiarity] = (),
 ) -> Recording:
     """Drive `robot` through `manoeuvre` in the physics engine and record it.
 
@@ -46,35 +50,70 @@ def record(
         How often the counters are read.
     start : Pose, optional
         Where the robot begins, in the world; by default anywhere within a metre, facing anywhere.
+    hidden : sequence of Peculiarity
+        What is odd about the robot, its floor or its recording; acts in this order.
     """
-    reference = reference or ReferenceSensor()
+    robot = reduce(lambda so_far, odd: odd.robot(so_far), hidden, robot)
+    chassis = reduce(lambda so_far, odd: odd.chassis(so_far), hidden, chassis_of(robot))
+    sensor = reduce(
+        lambda so_far, odd: odd.reference(so_far), hidden, reference or ReferenceSensor()
+    )
+
+    def rng_of(number: int) -> np.random.Generator:
+        return _stream(seed, "hidden", number)
+
+    shifters = [odd.shifter(robot, rng_of(i)) for i, odd in enumerate(hidden)]
+    reshapers = [odd.reshaper(chassis, rng_of(i)) for i, odd in enumerate(hidden)]
+
     rng = _stream(seed, "start")
     anywhere = Pose(*rng.uniform((-1.0, -1.0, -math.pi), (1.0, 1.0, math.pi)))
     angles = rng.uniform(0.0, 2 * math.pi, 2)
     path = drive(
-        chassis_of(robot),
+        chassis,
         wheel_speeds(robot, manoeuvre),
         start=anywhere if start is None else start,
         angles=(float(angles[0]), float(angles[1])),
-        shifters=[wheel_noise(robot, _stream(seed, "wheel noise"))],
+        shifters=[
+            wheel_noise(robot, _stream(seed, "wheel noise")),
+            *(shifter for shifter in shifters if shifter),
+        ],
+        reshapers=[reshaper for reshaper in reshapers if reshaper],
     )
+    recording = _sample(robot, manoeuvre.name, path, sensor, ticks_rate_hz, seed)
+    for number, odd in enumerate(hidden):
+        recording = odd.recording(recording, robot, rng_of(number))
+    return recording
+
+
+def _sample(
+    robot: TrueRobot,
+    name: str,
+    path: TruePath,
+    sensor: ReferenceSensor,
+    ticks_rate_hz: float,
+    seed: int,
+) -> Recording:
+    """What encoders and reference saw of the true path."""
     end = float(path.t_s[-1])
     t = sampling_times(ticks_rate_hz, end, _stream(seed, "encoders"))
     zeros = _stream(seed, "counters").integers(-100_000, 100_000, 2)
     if robot.counters_keep_zero:
         zeros = np.zeros_like(zeros)
+    left, right = (
+        count(path.t_s, angle, t, resolution, int(zero))
+        for angle, resolution, zero in (
+            (path.left_angle_rad, robot.left_ticks_per_revolution, zeros[0]),
+            (path.right_angle_rad, robot.right_ticks_per_revolution, zeros[1]),
+        )
+    )
     rng = _stream(seed, "reference")
-    reference_t = reference.times(end, rng)
-    x, y, yaw = reference.measure(path, reference_t, rng)
+    reference_t = sensor.times(end, rng)
+    x, y, yaw = sensor.measure(path, reference_t, rng)
     return Recording(
-        name=manoeuvre.name,
+        name=name,
         t_s=t,
-        left_ticks=count(
-            path.t_s, path.left_angle_rad, t, robot.left_ticks_per_revolution, int(zeros[0])
-        ),
-        right_ticks=count(
-            path.t_s, path.right_angle_rad, t, robot.right_ticks_per_revolution, int(zeros[1])
-        ),
+        left_ticks=left,
+        right_ticks=right,
         reference_t_s=reference_t,
         reference_x_m=x,
         reference_y_m=y,
@@ -109,6 +148,6 @@ _PURPOSES: tuple[Purpose, ...] = (
 )
 
 
-def _stream(seed: int, purpose: Purpose) -> np.random.Generator:
-    """Random numbers of one purpose in the run `seed`."""
-    return np.random.default_rng([seed, _PURPOSES.index(purpose)])
+def _stream(seed: int, purpose: Purpose, number: int = 0) -> np.random.Generator:
+    """Random numbers of one purpose in the run `seed`, always from their beginning."""
+    return np.random.default_rng([seed, _PURPOSES.index(purpose), number])

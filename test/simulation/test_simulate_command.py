@@ -1,0 +1,145 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi simulate`: a session in a folder, all or nothing, the truth apart from the runs."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+import pytest
+from ruamel.yaml import YAML
+
+import werrimbi_odom.simulation
+from werrimbi_odom.cli import simulate
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.simulation import drives, moves
+
+
+def call(*words: str) -> int:
+    parser = argparse.ArgumentParser()
+    simulate.add_arguments(parser)
+    return simulate.run(parser.parse_args(words))
+
+
+@pytest.fixture
+def short_day(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two little drives in place of eleven long ones."""
+    day = {"train/hop": moves("hop", [(0.2, 0.0)]), "holdout/bend": moves("bend", [(0.2, 0.3)])}
+    monkeypatch.setattr("werrimbi_odom.simulation.sessions.drives", lambda seed: day)
+
+
+@pytest.mark.usefixtures("short_day")
+def test_it_writes_robot_runs_and_truth(tmp_path: Path) -> None:
+    out = tmp_path / "new" / "day"
+    assert call("--out", str(out), "--hide", "track_width=1.02", "--seed", "5") == 0
+    files = sorted(str(f.relative_to(out)) for f in out.rglob("*") if f.is_file())
+    assert files == [
+        "holdout/bend/reference.csv",
+        "holdout/bend/ticks.csv",
+        "robot.yaml",
+        "train/hop/reference.csv",
+        "train/hop/ticks.csv",
+        "truth.json",
+    ]
+    truth = json.loads((out / "truth.json").read_text(encoding="utf-8"))
+    assert truth["seed"] == 5
+    assert truth["hidden"][0]["effect"] == "track_width"
+    assert truth["hidden"][0]["parameters"] == {"multiplier": 1.02}
+    says = YAML(typ="safe").load((out / "robot.yaml").read_text(encoding="utf-8"))
+    assert says["odom_node"]["ros__parameters"]["wheel_separation"] == 0.35
+
+
+@pytest.mark.usefixtures("short_day")
+def test_the_same_seed_writes_the_same_files(tmp_path: Path) -> None:
+    def contents(name: str, seed: str) -> dict[str, str]:
+        out = tmp_path / name
+        call("--out", str(out), "--hide", "random", "--seed", seed)
+        return {
+            str(f.relative_to(out)): f.read_text(encoding="utf-8")
+            for f in out.rglob("*")
+            if f.is_file()
+        }
+
+    first = contents("first", "1")
+    assert first == contents("second", "1")
+    assert first["train/hop/ticks.csv"] != contents("third", "2")["train/hop/ticks.csv"]
+
+
+@pytest.mark.usefixtures("short_day")
+def test_nothing_is_said_of_what_is_hidden(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    call("--out", str(tmp_path / "day"), "--hide", "track_width")
+    printed = capsys.readouterr()
+    assert "track" not in printed.out + printed.err
+
+
+@pytest.mark.usefixtures("short_day")
+def test_an_empty_folder_may_be_filled(tmp_path: Path) -> None:
+    (tmp_path / "day").mkdir()
+    assert call("--out", str(tmp_path / "day")) == 0
+    truth = json.loads((tmp_path / "day" / "truth.json").read_text(encoding="utf-8"))
+    assert truth["hidden"] == []
+
+
+def test_a_folder_with_something_in_it_is_left_alone(tmp_path: Path) -> None:
+    (tmp_path / "thesis.tex").write_text("all of it", encoding="utf-8")
+    with pytest.raises(InputError, match="not empty"):
+        call("--out", str(tmp_path))
+    assert [f.name for f in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+def test_a_file_is_left_alone(tmp_path: Path) -> None:
+    file = tmp_path / "day"
+    file.write_text("mine", encoding="utf-8")
+    with pytest.raises(InputError, match="is a file"):
+        call("--out", str(file))
+    assert file.read_text(encoding="utf-8") == "mine"
+
+
+@pytest.mark.parametrize(
+    ("wish", "answer"),
+    [
+        ("trackwidth", "did you mean track_width"),
+        ("track_width=wide", "not a number"),
+        ("track_width=nan", "finite"),
+        ("", "nothing called ''"),
+    ],
+)
+def test_a_wish_that_cannot_be_met(tmp_path: Path, wish: str, answer: str) -> None:
+    with pytest.raises(InputError, match=answer) as refusal:
+        call("--out", str(tmp_path / "day"), "--hide", wish)
+    assert "\n" not in str(refusal.value)
+    assert not (tmp_path / "day").exists()
+
+
+@pytest.mark.usefixtures("short_day")
+def test_a_failure_half_way_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(recording: object, folder: Path) -> Path:
+        folder.mkdir(parents=True)
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(werrimbi_odom.simulation, "write_run", full)
+    with pytest.raises(InputError, match="No space left"):
+        call("--out", str(tmp_path / "day"))
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_out_is_asked_for() -> None:
+    with pytest.raises(InputError, match="--out"):
+        call()
+
+
+def test_the_list_needs_no_folder(capsys: pytest.CaptureFixture[str]) -> None:
+    assert call("--list") == 0
+    assert "track_width" in capsys.readouterr().out
+
+
+def test_a_day_has_seven_drives_to_learn_from_and_four_to_test() -> None:
+    names = list(drives(1))
+    assert sum(name.startswith("train/") for name in names) == 7
+    assert sum(name.startswith("holdout/") for name in names) == 4
+    minutes = sum(drive.duration for drive in drives(1).values()) / 60
+    assert 9.0 < minutes < 13.0

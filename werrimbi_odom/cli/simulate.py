@@ -1,0 +1,170 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi simulate`: drives of a robot in a physics engine, with an effect hidden in it."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import shutil
+import sys
+import tempfile
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import asdict
+from pathlib import Path
+from typing import TYPE_CHECKING, TypeVar
+
+from werrimbi_odom.errors import InputError
+
+if TYPE_CHECKING:
+    from werrimbi_odom.simulation import Hidden
+
+Item = TypeVar("Item")
+
+HELP = "runs made by a physics engine, with a hidden effect"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `werrimbi simulate`."""
+    parser.description = (
+        "Drives a robot through a physics engine and writes DIR/robot.yaml, eleven runs below "
+        "DIR/train and DIR/holdout, and what was hidden in DIR/truth.json. Read that last."
+    )
+    parser.add_argument("--out", metavar="DIR", type=Path, help="new or empty folder to write")
+    parser.add_argument(
+        "--hide",
+        metavar="EFFECT[=STRENGTH]",
+        action="append",
+        default=[],
+        help="effect to hide, several times for several; STRENGTH in the effect's own unit, else "
+        "drawn from a realistic range; `random` takes any effect of the library",
+    )
+    parser.add_argument(
+        "--seed",
+        metavar="N",
+        type=int,
+        default=1,
+        help="the same seed, the same drives (default 1)",
+    )
+    parser.add_argument(
+        "--list", action="store_true", help="list what can be hidden, with units, and stop"
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Write the session; 0 on success.
+
+    Raises
+    ------
+    InputError
+        When an effect does not exist or the folder cannot be written.
+    """
+    try:
+        from werrimbi_odom import simulation
+    except ModuleNotFoundError as missing:
+        raise InputError(
+            f"simulate needs the Python package {missing.name}: pip install {missing.name}"
+        ) from missing
+
+    if arguments.list:
+        for entry in simulation.CATALOGUE:
+            print(f"{entry.name:24}{entry.range_in_words:36}{entry.says}")
+        return 0
+    if arguments.out is None:
+        raise InputError("simulate: --out DIR is missing")
+    if arguments.seed < 0:
+        raise InputError("simulate: --seed must not be negative")
+    hidden = _chosen(arguments.hide, arguments.seed)
+    robot = simulation.TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
+    odd = [each.peculiarity for each in hidden]
+    with _new_folder(arguments.out) as folder:
+        written = robot
+        for each in odd:
+            written = each.written(written)
+        simulation.write_robot_file(written, folder / "robot.yaml")
+        runs = simulation.session(robot, arguments.seed, hidden=odd)
+        for name, recording in _with_progress(runs, len(simulation.drives(arguments.seed))):
+            simulation.write_run(recording, folder / name)
+        truth = _truth(hidden, arguments.seed, robot)
+        (folder / "truth.json").write_text(json.dumps(truth, indent=2) + "\n", encoding="utf-8")
+    out = arguments.out
+    print(f"{out}: robot.yaml, 7 runs in train, 4 in holdout; what is hidden stands in truth.json")
+    print(f"next: werrimbi compare --robot {out}/robot.yaml {out}/train/*")
+    return 0
+
+
+def _chosen(wishes: Sequence[str], seed: int) -> list[Hidden]:
+    """What was asked for with --hide, its strengths drawn where they were not given."""
+    from werrimbi_odom.simulation import UnknownEffectError, hide
+
+    hidden = []
+    for number_of_wish, wish in enumerate(wishes):
+        name, _, number = wish.partition("=")
+        try:
+            strength = float(number) if number else None
+        except ValueError:
+            raise InputError(f"--hide {wish}: the strength {number!r} is not a number") from None
+        if strength is not None and not abs(strength) < float("inf"):
+            raise InputError(f"--hide {wish}: the strength must be finite")
+        try:
+            hidden.append(hide(name, strength, seed=seed, number=number_of_wish))
+        except UnknownEffectError as error:
+            raise InputError(f"--hide {wish}: {error} (all: werrimbi simulate --list)") from error
+    return hidden
+
+
+def _truth(hidden: Sequence[Hidden], seed: int, robot: object) -> dict[str, object]:
+    return {
+        "hidden": [
+            {
+                "effect": each.entry.name,
+                "strength": each.strength,
+                "unit": each.entry.unit,
+                "says": each.entry.says,
+                "kind": each.entry.kind,
+                "parameters": asdict(each.peculiarity),
+            }
+            for each in hidden
+        ],
+        "seed": seed,
+        "robot_before_hiding": asdict(robot),  # type: ignore[call-overload]
+    }
+
+
+@contextmanager
+def _new_folder(out: Path) -> Iterator[Path]:
+    """A folder beside `out` to fill; it becomes `out` when all went well, and vanishes if not."""
+    target = out.absolute()
+    try:
+        if out.exists() and not out.is_dir():
+            raise InputError(f"{out} is a file; --out wants a new or empty folder")
+        if out.is_dir() and any(out.iterdir()):
+            raise InputError(f"{out} is not empty; --out wants a new or empty folder")
+        target.parent.mkdir(parents=True, exist_ok=True)
+        folder = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
+    except OSError as error:
+        raise InputError(f"{out} cannot be written: {error.strerror}") from error
+    try:
+        yield folder
+        umask = os.umask(0)
+        os.umask(umask)
+        folder.chmod(0o777 & ~umask)  # mkdtemp's folders are for their owner alone
+        folder.replace(target)
+    except OSError as error:
+        raise InputError(f"{out} cannot be written: {error.strerror}") from error
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def _with_progress(items: Iterator[Item], total: int) -> Iterator[Item]:
+    """Show a progress bar on a terminal."""
+    if not sys.stderr.isatty():
+        yield from items
+        return
+    from rich.console import Console
+    from rich.progress import track
+
+    console = Console(stderr=True)
+    yield from track(items, "driving", total=total, console=console, transient=True)

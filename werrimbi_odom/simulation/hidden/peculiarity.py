@@ -1,0 +1,54 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What can be odd about a robot, its floor or its recording, and where in a drive it acts."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..chassis import Chassis
+from ..engine import Reshaper, Shifter
+from ..recording import Recording
+from ..robot import TrueRobot
+from ..sensors import ReferenceSensor
+
+
+@dataclass(frozen=True)
+class Peculiarity:
+    """A hidden effect. Each stage of a drive passes through it; by default it changes nothing.
+
+    A subclass overrides the stage at which its physics acts. `rng` is the run's own, and begins
+    anew in each stage: what differs from run to run is drawn from it, alike in every stage.
+    """
+
+    def robot(self, robot: TrueRobot) -> TrueRobot:
+        """The robot as it truly is, against what its maker believes."""
+        return robot
+
+    def written(self, robot: TrueRobot) -> TrueRobot:
+        """The robot as its user writes it into the robot file, by mistake."""
+        return robot
+
+    def chassis(self, chassis: Chassis) -> Chassis:
+        """The body in the engine."""
+        return chassis
+
+    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter | None:
+        """Motion besides rolling, for which no force stands."""
+        return None
+
+    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper | None:
+        """Changes of the body while it drives."""
+        return None
+
+    def reference(self, sensor: ReferenceSensor) -> ReferenceSensor:
+        """What measures the robot from outside."""
+        return sensor
+
+    def recording(
+        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
+    ) -> Recording:
+        """What was recorded."""
+        return recording

@@ -1,0 +1,105 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A day with the robot: eleven drives of about a minute, seven to learn from, four to test."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+
+from .hidden.peculiarity import Peculiarity
+from .manoeuvre import Manoeuvre, Pace, moves
+from .manoeuvres import arcs, chain, figure_eight, free, out_and_back, pivots, spins, square
+from .manoeuvres import start_stop as hops
+from .recorder import record
+from .recording import Recording
+from .robot import TrueRobot
+from .sensors import ReferenceSensor
+
+SLOW = Pace(speed=0.2, acceleration=0.3, yaw_rate=0.6, yaw_acceleration=1.0)
+FAST = Pace(speed=0.7, acceleration=1.2, yaw_rate=2.0, yaw_acceleration=4.0)
+
+
+def drives(seed: int) -> dict[str, Manoeuvre]:
+    """The session's manoeuvres by the names of their run folders.
+
+    Between them they hold what an effect may depend on: lines in all directions, curves to both
+    sides, slow and fast, spins, driving backwards, hard starts and stops, standing still.
+    """
+    return {
+        "train/square_ccw": square(1.5, laps=2),
+        "train/square_cw": square(1.5, "cw", laps=2),
+        "train/free_calm": free(60.0, seed=10 * seed + 1, speed=0.4, yaw_rate=1.0),
+        "train/free_brisk": free(
+            60.0, seed=10 * seed + 2, speed=0.8, yaw_rate=2.0, acceleration=1.5
+        ),
+        "train/start_stop": hops(3, laps=4),
+        "train/arcs": chain(
+            "arcs",
+            arcs((0.4, 0.8), angle=math.pi / 2, pace=SLOW),
+            arcs((0.4, 0.8, 1.6), angle=math.pi / 2, pace=FAST),
+        ),
+        "train/eights_and_spins": chain(
+            "eights_and_spins",
+            figure_eight(0.6, pace=FAST),
+            figure_eight(0.6, pace=SLOW),
+            spins(1.0, pairs=1),
+            pivots(),
+        ),
+        "holdout/free_calm": free(60.0, seed=10 * seed + 3, speed=0.4, yaw_rate=1.0),
+        "holdout/free_brisk": free(
+            60.0, seed=10 * seed + 4, speed=0.8, yaw_rate=2.0, acceleration=1.5
+        ),
+        "holdout/to_and_fro": chain(
+            "to_and_fro",
+            out_and_back(2.0, laps=2, pace=FAST),
+            out_and_back(2.0, turn_round=True, laps=1),
+            spins(0.5, pairs=2, pace=FAST),
+            out_and_back(1.0, laps=2),
+        ),
+        "holdout/slalom": chain("slalom", _slalom(FAST), _slalom(SLOW), square(1.0, pace=FAST)),
+    }
+
+
+def _slalom(pace: Pace) -> Manoeuvre:
+    gates = [(0.8, 1.2), (0.8, -2.4), (0.8, 2.4), (0.8, -1.2), (0.0, math.pi)]
+    return moves("slalom", gates * 2, pace)
+
+
+def session(
+    robot: TrueRobot,
+    seed: int,
+    *,
+    hidden: Sequence[Peculiarity] = (),
+    reference: ReferenceSensor | None = None,
+    ticks_rate_hz: float = 50.0,
+) -> Iterator[tuple[str, Recording]]:
+    """Record the session's drives, one after the other.
+
+    Parameters
+    ----------
+    robot : TrueRobot
+    seed : int
+        Of the whole session; each run has its own from it.
+    hidden : sequence of Peculiarity
+        What is odd, in all runs alike.
+    reference : ReferenceSensor, optional
+    ticks_rate_hz : float
+
+    Yields
+    ------
+    (name, Recording)
+        Name of the run folder, as in `drives`.
+    """
+    for number, (name, manoeuvre) in enumerate(drives(seed).items()):
+        yield (
+            name,
+            record(
+                robot,
+                manoeuvre,
+                seed=1000 * seed + number,
+                reference=reference,
+                ticks_rate_hz=ticks_rate_hz,
+                hidden=hidden,
+            ),
+        )
