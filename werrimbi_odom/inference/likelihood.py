@@ -48,7 +48,10 @@ class Variances:
 
 @dataclass(frozen=True, slots=True)
 class Innovations:
-    """Measured minus expected pose at the end of each leg, in the reference's frame."""
+    """Measured minus expected pose at the end of each leg.
+
+    In the frame of the robot at the leg's start: (along, sideways, heading) [m, m, rad].
+    """
 
     value: Floats
     """Shape (g, m, 3); zero where nothing was measured."""
@@ -122,7 +125,7 @@ def _of_increments(
     swing = piece_covariance(
         leg, PathNoise(np.zeros(run.legs), run.intervals, np.zeros(run.legs)), np.zeros(run.legs)
     ).matrix()
-    reading = _reading_noise(robot)
+    reading = reading_noise(robot)
     covariance = (
         _wheel_part(prediction, variances)
         + variances.yaw[:, None, None, None] * swing
@@ -169,11 +172,12 @@ def _of_poses(
     reading = np.zeros((sets, 3, 3))
     reading[:, 0, 0] = reading[:, 1, 1] = variances.xy
     reading[:, 2, 2] = variances.yaw
-    reading += np.diag(_reading_noise(robot))
+    reading += np.diag(reading_noise(robot))
     missing = _UNMEASURED * _diagonal(~finite)
     wheel = _wheel_part(prediction, variances)
     values = np.zeros((sets, count, 3))
     covariances = np.empty((sets, count, 3, 3))
+    turns = np.empty((sets, count, 3, 3))
     width = slopes.shape[-1] + (start_yaw is not None)
     changes = np.zeros((count, 3, width))
     state = np.zeros((sets, 3)) + np.where(finite[0], measured[0], 0.0)
@@ -189,6 +193,7 @@ def _of_poses(
         cos, sin = np.cos(state[:, 2]), np.sin(state[:, 2])
         turn[:, 0, 0] = turn[:, 1, 1] = cos
         turn[:, 0, 1], turn[:, 1, 0] = -sin, sin
+        turns[:, leg] = turn
         move = turn @ prediction.relative[leg]
         lever[:, 0, 2], lever[:, 1, 2] = -move[:, 1], move[:, 0]
         state = state + move
@@ -212,7 +217,10 @@ def _of_poses(
         spread = spread - gain @ spread
         spread = 0.5 * (spread + spread.transpose(0, 2, 1))
         slope = slope + gain[0] @ changes[leg]
-    return Innovations(values, covariances, changes, known)
+    back = turns.transpose(0, 1, 3, 2)
+    return Innovations(
+        (back @ values[..., None])[..., 0], back @ covariances @ turns, back[0] @ changes, known
+    )
 
 
 def _wheel_part(prediction: Prediction, variances: Variances) -> Floats:
@@ -223,7 +231,7 @@ def _wheel_part(prediction: Prediction, variances: Variances) -> Floats:
     )
 
 
-def _reading_noise(robot: Robot) -> Floats:
+def reading_noise(robot: Robot) -> Floats:
     """Variance of a pose from reading both counters once, uniform over one count; shape (3,)."""
     left, right = robot.left_tick**2 / 12.0, robot.right_tick**2 / 12.0
     along = 0.25 * (left + right)

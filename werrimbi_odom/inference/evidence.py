@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where the model fails, before any name is given to it: what do the errors depend on?
+
+Under a complete model the whitened innovations depend on nothing. Each cell of the evidence map
+asks whether the error of one channel (along, sideways, heading) goes with one measured variable of
+the leg. It is a score test: the pattern that such a dependence would leave in the innovations, less
+what recalibration could explain of it, against what is there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from werrimbi_odom.inference.fit import MULTIPLIERS, CalibrationFit
+from werrimbi_odom.inference.likelihood import ReferenceKind, Variances, innovations
+from werrimbi_odom.inference.matching import MatchedRun
+from werrimbi_odom.inference.prediction import (
+    Prediction,
+    calibration_changes,
+    predict,
+    sensitivity,
+)
+from werrimbi_odom.model.pose import Floats
+
+CHANNELS = ("along", "sideways", "heading")
+
+
+@dataclass(frozen=True, slots=True)
+class Dependence:
+    """One cell of the evidence map."""
+
+    channel: str
+    """along, sideways or heading: which error."""
+    variable: str
+    """What it goes with."""
+    slope: float
+    """Error per unit of the variable [m or rad per unit]."""
+    p_value: float
+    """Corrected for the number of cells looked at (Bonferroni)."""
+
+
+def dependences(
+    runs: Sequence[MatchedRun], fit: CalibrationFit, kind: ReferenceKind
+) -> tuple[Dependence, ...]:
+    """All cells of the map for a fitted calibration, the most certain first."""
+    from scipy.stats import chi2
+
+    sigma = [fit.noises[name].value for name in fit.noises]
+    variances = Variances(*(np.array([value**2]) for value in sigma))
+    free = [name for name in MULTIPLIERS if fit.multipliers[name].determined]
+    names, values, explained, patterns = [], [], [], []
+    for index, run in enumerate(runs):
+        prediction = predict(fit.robot, run)
+        variables = leg_variables(run, prediction)
+        names = list(variables)
+        changes = calibration_changes(fit.robot, run)
+        plain = sensitivity(fit.robot, run, [changes[name] for name in free])
+        marks = np.zeros((run.legs, 3, 3 * len(variables)))
+        for column, values_of_legs in enumerate(variables.values()):
+            for channel in range(3):
+                marks[:, channel, 3 * column + channel] = values_of_legs
+        white, slopes = innovations(
+            fit.robot,
+            run,
+            prediction,
+            variances,
+            kind,
+            change=np.concatenate([plain, marks], axis=-1),
+            excluded=fit.excluded[index],
+            start_yaw=fit.start_yaw[index],
+        ).whitened()
+        flat = slopes.reshape(-1, slopes.shape[-1])
+        own_start = flat[:, plain.shape[-1] + marks.shape[-1] :]
+        flat = _less(flat[:, : plain.shape[-1] + marks.shape[-1]], own_start)
+        values.append(_less(white.reshape(-1, 1), own_start)[:, 0])
+        explained.append(flat[:, : plain.shape[-1]])
+        patterns.append(flat[:, plain.shape[-1] :])
+    basis = np.concatenate(explained)
+    unexplained = _less(np.concatenate(values)[:, None], basis)[:, 0]
+    marks = _less(np.concatenate(patterns), basis)
+    strength = np.sum(marks**2, axis=0)
+    usable = strength > 1e-9 * np.sum(np.concatenate(patterns) ** 2, axis=0)
+    score = marks.T @ unexplained
+    cells = []
+    for column in np.flatnonzero(usable):
+        statistic = score[column] ** 2 / strength[column]
+        cells.append(
+            Dependence(
+                CHANNELS[column % 3],
+                names[column // 3],
+                float(-score[column] / strength[column]),
+                float(min(1.0, chi2.sf(statistic, 1) * int(usable.sum()))),
+            )
+        )
+    return tuple(sorted(cells, key=lambda cell: cell.p_value))
+
+
+def leg_variables(run: MatchedRun, prediction: Prediction) -> dict[str, Floats]:
+    """What a leg's error may go with; arrays of shape (m,), named with their units."""
+    duration = np.diff(run.time[run.ends])
+    elapsed = run.time[run.ends[:-1]] - run.time[run.ends[0]]
+    heading = np.nan_to_num(run.measured.yaw[:-1])
+    travel, turn = prediction.along, prediction.turn
+    return {
+        "travel [m]": travel,
+        "path length [m]": prediction.length,
+        "turn [rad]": turn,
+        "size of the turn [rad]": np.abs(turn),
+        "travel × turn [m·rad]": travel * turn,
+        "speed × turn [m·rad/s]": travel * turn / duration,
+        "path towards the reference's x axis [m]": prediction.length * np.cos(heading),
+        "path towards the reference's y axis [m]": prediction.length * np.sin(heading),
+        "path × time since the start [m·s]": prediction.length * elapsed,
+        "duration [s]": duration,
+    }
+
+
+def _less(columns: Floats, basis: Floats) -> Floats:
+    """Columns less what the basis can explain of them."""
+    if basis.shape[-1] == 0:
+        return columns
+    return np.asarray(columns - basis @ np.linalg.lstsq(basis, columns, rcond=1e-10)[0])
