@@ -1,0 +1,157 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Plays recorded ticks to a running `odom_node` over DDS and collects what it answers."""
+
+from __future__ import annotations
+
+import math
+import time as clock
+from dataclasses import dataclass, field
+
+import numpy as np
+import rclpy
+from builtin_interfaces.msg import Time
+from geometry_msgs.msg import PoseWithCovarianceStamped
+from nav_msgs.msg import Odometry
+from numpy.typing import NDArray
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, ReliabilityPolicy
+from sensor_msgs.msg import JointState
+from visualization_msgs.msg import Marker, MarkerArray
+
+Floats = NDArray[np.float64]
+
+IN_FLIGHT = 40
+"""Messages sent ahead of the node's answers: enough to keep it busy, too few to be dropped."""
+PATIENCE = 0.5
+"""Seconds without an answer after which the player goes on (the node refused a message)."""
+
+
+@dataclass
+class Answers:
+    """What the node published while the ticks were played; arrays of shape (n,)."""
+
+    time: list[float] = field(default_factory=list)
+    x: list[float] = field(default_factory=list)
+    y: list[float] = field(default_factory=list)
+    yaw: list[float] = field(default_factory=list)
+    covariance: list[Floats] = field(default_factory=list)
+    """Of (x, y, yaw), each of shape (3, 3)."""
+    piece_kinds: dict[tuple[str, int], None] = field(default_factory=dict)
+    """(kind, number) of every piece whose marker was received."""
+
+    def counts_by_kind(self) -> dict[str, int]:
+        """How many lines, arcs and spins the node made of the run."""
+        kinds = [kind for kind, _ in self.piece_kinds]
+        return {kind: kinds.count(kind) for kind in ("line", "arc", "spin")}
+
+
+class Player(Node):  # type: ignore[misc]
+    """Publishes JointState on `joint_states` and listens to `odom` and `odom_node/pieces`."""
+
+    def __init__(self) -> None:
+        super().__init__("werrimbi_player")
+        deep = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE)
+        self.answers = Answers()
+        self.offset = 0.0
+        self._ticks = self.create_publisher(JointState, "joint_states", deep)
+        self._pose = self.create_publisher(PoseWithCovarianceStamped, "set_pose", 10)
+        self.create_subscription(Odometry, "odom", self._on_odometry, deep)
+        self.create_subscription(MarkerArray, "odom_node/pieces", self._on_pieces, 10)
+
+    def wait_for_node(self, seconds: float) -> bool:
+        """Wait until the node listens to ticks and poses; False when it does not come up."""
+        until = clock.monotonic() + seconds
+        while clock.monotonic() < until:
+            if self._ticks.get_subscription_count() and self._pose.get_subscription_count():
+                return True
+            rclpy.spin_once(self, timeout_sec=0.05)
+        return False
+
+    def play(
+        self,
+        time: Floats,
+        left: Floats,
+        right: Floats,
+        *,
+        names: tuple[str, str],
+        start: tuple[float, float, float],
+        frame: str,
+    ) -> Answers:
+        """Set the start pose, then send every row as fast as the node answers.
+
+        Parameters
+        ----------
+        time, left, right : ndarray, shape (n,)
+            Stamps [s] and cumulative counts, as recorded.
+        names : pair of str
+            Joint names of the two wheels.
+        start : (x, y, yaw)
+            [m, m, rad], in `frame`.
+        """
+        # A stamp of zero means "not stamped" to ROS, so a record that begins at zero begins later.
+        self.offset = max(0.0, 1.0 - float(time[0]))
+        self._set_pose(start, frame, float(time[0]) + self.offset)
+        last_answer, answered = clock.monotonic(), 0
+        base = 0  # messages that will get no answer: the first, and those refused
+        for row, (stamp, left_count, right_count) in enumerate(
+            zip(time.tolist(), left.tolist(), right.tolist(), strict=True)
+        ):
+            message = JointState()
+            message.header.stamp = stamp_of(stamp + self.offset)
+            message.name = list(names)
+            message.position = [float(left_count), float(right_count)]
+            self._ticks.publish(message)
+            rclpy.spin_once(self, timeout_sec=0.0)
+            while row - base - len(self.answers.time) > IN_FLIGHT:
+                rclpy.spin_once(self, timeout_sec=0.01)
+                if len(self.answers.time) > answered:
+                    answered, last_answer = len(self.answers.time), clock.monotonic()
+                elif clock.monotonic() - last_answer > PATIENCE:
+                    base, last_answer = row - answered, clock.monotonic()
+        self._listen_out()
+        return self.answers
+
+    def _set_pose(self, start: tuple[float, float, float], frame: str, stamp: float) -> None:
+        message = PoseWithCovarianceStamped()
+        message.header.frame_id = frame
+        message.header.stamp = stamp_of(stamp)
+        x, y, yaw = start
+        message.pose.pose.position.x, message.pose.pose.position.y = x, y
+        message.pose.pose.orientation.z = math.sin(0.5 * yaw)
+        message.pose.pose.orientation.w = math.cos(0.5 * yaw)
+        self._pose.publish(message)
+        # The first ticks must find the pose set, and nothing on the node's side says that it is.
+        until = clock.monotonic() + 0.3
+        while clock.monotonic() < until:
+            rclpy.spin_once(self, timeout_sec=0.05)
+
+    def _listen_out(self) -> None:
+        """Go on listening until nothing new has come for a while."""
+        quiet_since, heard = clock.monotonic(), -1
+        while clock.monotonic() - quiet_since < PATIENCE + 0.5:
+            rclpy.spin_once(self, timeout_sec=0.05)
+            now = len(self.answers.time) + len(self.answers.piece_kinds)
+            if now != heard:
+                quiet_since, heard = clock.monotonic(), now
+
+    def _on_odometry(self, message: Odometry) -> None:
+        answers, pose = self.answers, message.pose.pose
+        stamp = message.header.stamp.sec + 1e-9 * message.header.stamp.nanosec
+        answers.time.append(stamp - self.offset)
+        answers.x.append(pose.position.x)
+        answers.y.append(pose.position.y)
+        answers.yaw.append(2.0 * math.atan2(pose.orientation.z, pose.orientation.w))
+        block = np.asarray(message.pose.covariance).reshape(6, 6)[np.ix_([0, 1, 5], [0, 1, 5])]
+        answers.covariance.append(block)
+
+    def _on_pieces(self, message: MarkerArray) -> None:
+        for marker in message.markers:
+            if marker.ns in ("line", "arc", "spin") and marker.action == Marker.ADD:
+                self.answers.piece_kinds[(marker.ns, marker.id)] = None
+
+
+def stamp_of(seconds: float) -> Time:
+    """A ROS stamp of a time [s] that is not negative."""
+    nanoseconds = round(seconds * 1e9)
+    return Time(sec=nanoseconds // 1_000_000_000, nanosec=nanoseconds % 1_000_000_000)
