@@ -17,7 +17,7 @@ All functions take floats, or arrays of one shape, alike.
 from __future__ import annotations
 
 import math
-from typing import Generic, NamedTuple
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -25,20 +25,22 @@ from werrimbi_odom.model.motion import BodyMotion, Number
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
+Entry = TypeVar("Entry")  # a Number: mypy takes no methods on a tuple of a restricted type
 
-class PoseCovariance(NamedTuple, Generic[Number]):
+
+class PoseCovariance(NamedTuple, Generic[Entry]):
     """Covariance of the errors (δx, δy, δyaw) of a pose, all in the frame the pose is given in.
 
     Sampling: a draw e ~ N(0, P) means that the true pose is (x + e_x, y + e_y, yaw + e_yaw).
     Units m², m·rad and rad²; the order is that of the columns of `odom.csv`.
     """
 
-    xx: Number
-    xy: Number
-    xyaw: Number
-    yy: Number
-    yyaw: Number
-    yawyaw: Number
+    xx: Entry
+    xy: Entry
+    xyaw: Entry
+    yy: Entry
+    yyaw: Entry
+    yawyaw: Entry
 
     def matrix(self) -> Floats:
         """As an array of shape (..., 3, 3)."""
@@ -49,24 +51,13 @@ class PoseCovariance(NamedTuple, Generic[Number]):
         ]
         return np.moveaxis(np.array(rows, dtype=np.float64), (0, 1), (-2, -1))
 
-    def __add__(self, other: PoseCovariance[Number]) -> PoseCovariance[Number]:  # type: ignore[override]
-        """Covariance of the sum of two independent errors in one frame."""
-        return PoseCovariance(
-            self.xx + other.xx,
-            self.xy + other.xy,
-            self.xyaw + other.xyaw,
-            self.yy + other.yy,
-            self.yyaw + other.yyaw,
-            self.yawyaw + other.yawyaw,
-        )
-
 
 CERTAIN: PoseCovariance[float] = PoseCovariance(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
 """The covariance of a pose that is known exactly."""
 
 
 class PathNoise(NamedTuple, Generic[Number]):
-    """Noise of the body over a piece: a [m²] along the path, b [rad²] in heading, c [m·rad] between."""
+    """Noise of the body over a piece: a [m²] along, b [rad²] in heading, c [m·rad] between."""
 
     a: Number
     b: Number
@@ -146,8 +137,20 @@ def carried(covariance: PoseCovariance[Number], dx: Number, dy: Number) -> PoseC
     )
 
 
+def plus(one: PoseCovariance[Number], other: PoseCovariance[Number]) -> PoseCovariance[Number]:
+    """Covariance of the sum of two independent errors, both given in one frame."""
+    return PoseCovariance(
+        one.xx + other.xx,
+        one.xy + other.xy,
+        one.xyaw + other.xyaw,
+        one.yy + other.yy,
+        one.yyaw + other.yyaw,
+        one.yawyaw + other.yawyaw,
+    )
+
+
 def _turned(covariance: PoseCovariance[Number], angle: Number) -> PoseCovariance[Number]:
-    """A covariance given in a frame that is turned by `angle`, in the frame it is turned against."""
+    """A covariance from a frame that is turned by `angle`, in the frame it is turned against."""
     xx, xy, xyaw, yy, yyaw, yawyaw = covariance
     if isinstance(angle, np.ndarray):
         cos, sin = np.cos(angle), np.sin(angle)

@@ -77,8 +77,11 @@ class PathMoments(NamedTuple):
     """Var φ [rad²]."""
 
     def about_pose(self) -> PoseCovariance[Any]:
-        """Second moments of the error about the nominal pose: what a filter that is given the
-        nominal pose must be told. Contains the square of the mean shift."""
+        """Second moments of the error about the nominal pose.
+
+        What a filter that is given the nominal pose must be told; contains the square of the
+        mean shift.
+        """
         return _as_covariance(self, self.absolute, self.square)
 
     def about_mean(self) -> PoseCovariance[Any]:

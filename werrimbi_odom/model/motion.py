@@ -28,7 +28,8 @@ class WheelTravel(NamedTuple, Generic[Number]):
 class BodyMotion(NamedTuple, Generic[Number]):
     """Motion of the axle's midpoint over a step, as a constant twist held for the step.
 
-    `along` and `sideways` [m] are in the body frame (x forward, y left), `turn` [rad] anticlockwise.
+    `along` and `sideways` [m] are in the body frame (x forward, y left); `turn` [rad] is
+    anticlockwise.
     """
 
     along: Number

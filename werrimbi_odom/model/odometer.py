@@ -14,6 +14,7 @@ from werrimbi_odom.model.covariance import (
     noise_of_wheel_variances,
     path_noise,
     piece_covariance,
+    plus,
 )
 from werrimbi_odom.model.encoder import Encoder, EncoderLimits, EncoderTally, WheelStep
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
@@ -46,7 +47,7 @@ class Estimate:
     twist: BodyMotion[float]
     """Speed forward and to the left [m/s] and yaw rate [rad/s], mean over the last interval."""
     twist_covariance: TwistCovariance
-    """Of the twist: wheel noise over the last interval, and the quantisation of its two readings."""
+    """Of the twist: wheel noise over the last interval, quantisation of its two readings."""
     distance: float
     """Travel of the axle's midpoint since the start, both directions counted [m]."""
     closed: Piece | None
@@ -134,7 +135,7 @@ class Odometer:
         noise = path_noise(self.robot, piece.left, piece.right)
         dx, dy = self._pose.x - piece.start.x, self._pose.y - piece.start.y
         own = piece_covariance(piece.motion, noise, piece.start.yaw)
-        return carried(piece.covariance_start, dx, dy) + own
+        return plus(carried(piece.covariance_start, dx, dy), own)
 
     def _begin(self, time: float) -> None:
         self._time = time
@@ -154,7 +155,7 @@ class Odometer:
         finished = self.piece
         covariance = self.covariance()
         if lost:
-            covariance += lost_travel_covariance(self.robot, step, self._pose.yaw)
+            covariance = plus(covariance, lost_travel_covariance(self.robot, step, self._pose.yaw))
         travelled = self._piece.travelled_after
         self._piece = OpenPiece(self._time, self._pose, covariance, travelled)
         self._piece.extend(self._rule, travel, motion, pose)

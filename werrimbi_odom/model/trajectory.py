@@ -17,6 +17,7 @@ from werrimbi_odom.model.covariance import (
     noise_of_wheel_variances,
     path_noise,
     piece_covariance,
+    plus,
 )
 from werrimbi_odom.model.cutting import Cut, cut
 from werrimbi_odom.model.encoder import (
@@ -143,9 +144,9 @@ def _chained(
     chain = []
     for dx, dy, added, unseen in rows:
         if any(unseen):
-            covariance += PoseCovariance(*unseen)
+            covariance = plus(covariance, PoseCovariance(*unseen))
         chain.append(covariance)
-        covariance = carried(covariance, dx, dy) + PoseCovariance(*added)
+        covariance = plus(carried(covariance, dx, dy), PoseCovariance(*added))
     return chain
 
 
@@ -180,7 +181,7 @@ def _at_every_step(
         after = slice(block.start + 1, block.stop + 1)
         earlier = PoseCovariance(*at_start[:, own_piece])
         moved = carried(earlier, x[after] - x[begin], y[after] - y[begin])
-        result[:, after] = moved + _own_covariance(robot, pieces, block, yaw[begin])
+        result[:, after] = plus(moved, _own_covariance(robot, pieces, block, yaw[begin]))
     return PoseCovariance(*result)
 
 
