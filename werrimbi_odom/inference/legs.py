@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.likelihood import (
     ReferenceKind,
-    Variances,
     reading_noise,
     relative_errors,
 )
