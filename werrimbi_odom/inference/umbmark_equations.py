@@ -61,7 +61,7 @@ class Factors:
 
 def first_order_angles(squares: Squares) -> Angles:
     """Equations 5 to 7 of the paper."""
-    return _angles(
+    return angles_of(
         np.concatenate([squares.cw.mean(axis=0), squares.ccw.mean(axis=0)]), squares.side
     )
 
