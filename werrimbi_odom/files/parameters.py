@@ -270,7 +270,8 @@ def find(name: str) -> Parameter:
 
 def robot_of(values: Mapping[str, Value]) -> Robot:
     """The robot that a complete set of checked values describes."""
-    return Robot(**{item.name: values[item.name] for item in fields(Robot)})  # type: ignore[arg-type]
+    numbers = {item.name: values[item.name] for item in fields(Robot) if item.name in values}
+    return Robot(**numbers)  # type: ignore[arg-type]
 
 
 def tolerance_of(values: Mapping[str, Value]) -> PieceTolerance:

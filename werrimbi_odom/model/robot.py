@@ -1,11 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the model knows about a robot: geometry, encoders, noise."""
+"""What the model knows about a robot: geometry, encoders, noise, physical effects."""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
+
+from werrimbi_odom.model.effect import AppliedEffect
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,6 +31,8 @@ class Robot:
     left_wheel_noise, right_wheel_noise : float
         k_L and k_R [m^0.5]: a wheel that travels a distance s errs with variance k² s
         (paper, equation 4). The defaults are the paper's own robot (section 5.2).
+    effects : tuple of AppliedEffect
+        Physical effects that the model holds, in the order in which they act.
 
     Raises
     ------
@@ -46,9 +50,12 @@ class Robot:
     encoder_bits: int = 0
     left_wheel_noise: float = 4.0e-4
     right_wheel_noise: float = 5.8e-4
+    effects: tuple[AppliedEffect, ...] = ()
 
     def __post_init__(self) -> None:
         for field in fields(self):
+            if field.name == "effects":
+                continue
             value = getattr(self, field.name)
             if not math.isfinite(value):
                 raise ValueError(f"{field.name} must be a finite number, not {value}")
