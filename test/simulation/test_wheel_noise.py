@@ -30,9 +30,10 @@ def wheel_errors(path, robot: TrueRobot) -> tuple[np.ndarray, np.ndarray]:
     along = np.cos(ahead) * np.diff(path.x_m) + np.sin(ahead) * np.diff(path.y_m)
     half = robot.wheel_separation / 2
     moving = (np.abs(left) > 1e-4) & (np.abs(right) > 1e-4)  # at rest there is no noise to see
+    left_error, right_error = along - half * turn - left, along + half * turn - right
     return (
-        ((along - half * turn - left) / np.sqrt(np.abs(left)))[moving],
-        ((along + half * turn - right) / np.sqrt(np.abs(right)))[moving],
+        left_error[moving] / np.sqrt(np.abs(left[moving])),
+        right_error[moving] / np.sqrt(np.abs(right[moving])),
     )
 
 

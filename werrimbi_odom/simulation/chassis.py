@@ -38,15 +38,25 @@ IMPRATIO = 100
 SKID_BEHIND = 0.16
 """From the axle back to the skid [m]."""
 
-MOTOR_DAMPING = 1.0
+MOTOR_DAMPING = 5.0
 """Torque of the speed controller for an error of speed [N m s/rad]."""
 
-MOTOR_STIFFNESS = 4.0
+MOTOR_STIFFNESS = 50.0
 """Its integral part: torque for an error of the angle [N m/rad]; no travel is lost for good."""
 
+ROTOR = 0.01
+"""Inertia of a motor as its wheel feels it through the gear [kg m^2].
+
+With less, the speed controller's torque would outrun a step of the integrator on a wheel that
+hops off the floor, and the simulation explode.
+"""
 
 BEARING_DRAG = 0.5
 """Torque that brakes a wheel with play [N m]: less, and the robot coasts through the play."""
+
+
+STOP_TIME_CONSTANT = 0.01
+"""Of the stops of a wheel's play [s]; harder ones let the rotor's impact tear the wheel loose."""
 
 
 @dataclass(frozen=True)
@@ -108,6 +118,18 @@ class Chassis:
         """Left and right."""
         return self.left, self.right
 
+    @property
+    def giving(self) -> WheelPlan | None:
+        """The wheel whose tyre gives way sideways: one that is not round, if any.
+
+        The contact of such a wheel wanders ahead of and behind its axle. Two rigid wheels whose
+        contacts are not in line with the axle cannot both roll while the robot turns: they would
+        fight, one of them slide, and a sliding wheel loses its grip along as well. Real tyres give
+        way sideways by a little in each turn; here this wheel gives way freely (the engine sets it
+        back to its place after every period) and the other one keeps the robot's line.
+        """
+        return next((wheel for wheel in self.wheels if wheel.offset or wheel.ovality), None)
+
 
 def chassis_of(robot: TrueRobot) -> Chassis:
     """The body of a robot without peculiarities."""
@@ -129,6 +151,9 @@ def to_mjcf(chassis: Chassis) -> str:
     wheel_mass = 0.03 * chassis.mass
     hull_mass = chassis.mass - 2 * wheel_mass
     skid = 0.02
+    left, right = (
+        _wheel(wheel, height, wheel_mass, gives=wheel is chassis.giving) for wheel in chassis.wheels
+    )
     return f"""
 <mujoco>
   <option timestep="{STEP}" integrator="Euler" cone="elliptic" impratio="{IMPRATIO}"/>
@@ -149,7 +174,7 @@ def to_mjcf(chassis: Chassis) -> str:
       <geom name="skid" type="sphere" size="{skid}" pos="{-SKID_BEHIND} 0 {skid - height}"
             mass="0.001" condim="1" friction="0 0 0" priority="1"/>
       <body name="axle" euler="0 0 {math.degrees(chassis.axle_yaw)}">
-        {"".join(_wheel(wheel, height, wheel_mass) for wheel in chassis.wheels)}
+        {left}{right}
       </body>
     </body>
   </worldbody>
@@ -165,7 +190,7 @@ def shaft_joint(plan: WheelPlan) -> str:
     return f"{plan.side}_shaft" if plan.play else plan.side
 
 
-def _wheel(plan: WheelPlan, height: float, mass: float) -> str:
+def _wheel(plan: WheelPlan, height: float, mass: float, *, gives: bool) -> str:
     # Hubs at the height of their own radius keep the body level when the radii differ.
     hub = f"0 {plan.y} {plan.radius - height}"
     ahead, up = plan.offset * math.cos(plan.phase), plan.offset * math.sin(plan.phase)
@@ -174,17 +199,24 @@ def _wheel(plan: WheelPlan, height: float, mass: float) -> str:
         shape = f'type="ellipsoid" size="{long} {plan.radius} {short}"'
     else:
         shape = f'type="sphere" size="{plan.radius}"'
+    give = (
+        f'''
+          <joint name="{plan.side}_give" type="slide" axis="0 1 0" damping="1"/>'''
+        if gives
+        else ""
+    )
+    rotor = 0.001 if plan.play else ROTOR  # with play, it is the shaft that feels the motor
     drag = f'frictionloss="{BEARING_DRAG}"' if plan.play else ""
     body = f"""
-        <body name="{plan.side}" pos="{hub}">
-          <joint name="{plan.side}" type="hinge" axis="0 1 0" armature="0.001" {drag}/>
+        <body name="{plan.side}" pos="{hub}">{give}
+          <joint name="{plan.side}" type="hinge" axis="0 1 0" armature="{rotor}" {drag}/>
           <geom name="{plan.side}" {shape} pos="{ahead} 0 {up}" mass="{mass}"
                 condim="3" friction="1.5 0 0"/>
         </body>"""
     if plan.play:
         body += f"""
         <body name="{plan.side}_shaft" pos="{hub}">
-          <joint name="{plan.side}_shaft" type="hinge" axis="0 1 0" armature="0.001"/>
+          <joint name="{plan.side}_shaft" type="hinge" axis="0 1 0" armature="{ROTOR}"/>
           <inertial pos="0 0 0" mass="0.01" diaginertia="1e-6 1e-6 1e-6"/>
         </body>"""
     return body
@@ -194,7 +226,7 @@ def _play(plan: WheelPlan) -> str:
     """Shaft and wheel turn freely against each other between two stops."""
     return f"""
     <fixed name="{plan.side}_play" limited="true" range="{-plan.play / 2} {plan.play / 2}"
-           solreflimit="{TIME_CONSTANT} 1" solimplimit="{IMPEDANCE} {IMPEDANCE} 0.001">
+           solreflimit="{STOP_TIME_CONSTANT} 1" solimplimit="{IMPEDANCE} {IMPEDANCE} 0.001">
       <joint joint="{plan.side}" coef="1"/>
       <joint joint="{plan.side}_shaft" coef="-1"/>
     </fixed>"""

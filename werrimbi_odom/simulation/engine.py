@@ -24,6 +24,15 @@ CURVE_CREEP = TIME_CONSTANT * IMPEDANCE / 2 - STEP / 2
 """Outward creep of the engine's wheels over speed times yaw rate [s]; measured: 0.451 ms."""
 
 
+# By default MuJoCo writes its warnings to a file in whatever folder the user is in. The engine asks
+# for them itself, in `Engine.check`.
+mujoco.set_mju_user_warning(lambda message: None)
+
+
+class UnstableError(RuntimeError):
+    """The engine lost its footing: the robot asked for is beyond what it can simulate."""
+
+
 class Pose(NamedTuple):
     """Of the axle's midpoint on the floor: x, y [m], yaw [rad], the yaw counting full turns."""
 
@@ -88,6 +97,8 @@ class Engine:
         self._x, self._y, self._yaw = (self._place(name) for name in ("x", "y", "yaw"))
         self._wheels = [self._place(wheel.side) for wheel in chassis.wheels]
         self._shafts = [self._place(shaft_joint(wheel)) for wheel in chassis.wheels]
+        giving = chassis.giving
+        self._gives = [self._place(f"{giving.side}_give")] if giving else []
         self._radii = {wheel.side: wheel.radius for wheel in chassis.wheels}
         self._data.qpos[self._wheels] = angles
         self._data.qpos[self._shafts] = angles
@@ -151,6 +162,12 @@ class Engine:
         """Hold the commanded speeds of the motors [rad/s] for one PERIOD."""
         self._data.ctrl[:] = (left_speed, left_speed, right_speed, right_speed)
         self._run(round(PERIOD / STEP))
+        self._data.qpos[self._gives] = 0.0
+
+    def check(self) -> None:
+        """Raise UnstableError if anything went wrong since the beginning."""
+        if any(warning.number for warning in self._data.warning):
+            raise UnstableError("the physics engine became unstable; is the robot buildable?")
 
     def move(self, shift: Shift) -> None:
         """Move the whole robot on the floor, and turn its velocity with it.
@@ -222,4 +239,5 @@ def drive(
             reshape(engine, stride)
         before, wheels = engine.pose, turned
         rows[i] = (stride.time, *before, *engine.shaft_angles)
+    engine.check()
     return TruePath(*np.ascontiguousarray(rows.T))

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,12 +32,25 @@ class ReferenceSensor:
         Standard deviations of each coordinate [m] and of the yaw [rad], independent in each sample.
     frame : Pose
         The reference's own frame, as seen in the world: where its origin lies and how it is turned.
+    mount : Pose
+        Of the marker on the robot: ahead of and left of the axle's midpoint [m], and turned [rad].
+    delay : float
+        What is stamped t was measured at t - delay [s].
+    heading_delay : float
+        The yaw's further delay [s].
+    mirrored : str
+        "no", "y_down" (y and yaw with the wrong sign) or "exchanged" (x and y exchanged, yaw
+        clockwise from the new x), as in a left-handed frame.
     """
 
     rate_hz: float = 20.0
     sigma_xy: float = 1e-3
     sigma_yaw: float = 2e-3
     frame: Pose = WORLD
+    mount: Pose = WORLD
+    delay: float = 0.0
+    heading_delay: float = 0.0
+    mirrored: Literal["no", "y_down", "exchanged"] = "no"
 
     def times(self, end: float, rng: np.random.Generator) -> Floats:
         """Times of the samples until `end` [s], started anywhere in the first 0.3 s."""
@@ -47,14 +61,24 @@ class ReferenceSensor:
     ) -> tuple[Floats, Floats, Floats]:
         """Poses x, y [m], yaw [rad] in the reference's frame at `times`, with noise."""
         # Between the path's rows (5 ms) a chord differs from the arc by some micrometres at most.
-        x = np.interp(times, path.t_s, path.x_m) - self.frame.x
-        y = np.interp(times, path.t_s, path.y_m) - self.frame.y
-        yaw = np.interp(times, path.t_s, path.yaw_rad) - self.frame.yaw
+        at = times - self.delay
+        heading = np.interp(at, path.t_s, path.yaw_rad)
+        x = np.interp(at, path.t_s, path.x_m)
+        y = np.interp(at, path.t_s, path.y_m)
+        x += np.cos(heading) * self.mount.x - np.sin(heading) * self.mount.y - self.frame.x
+        y += np.sin(heading) * self.mount.x + np.cos(heading) * self.mount.y - self.frame.y
+        yaw = np.interp(at - self.heading_delay, path.t_s, path.yaw_rad)
+        yaw += self.mount.yaw - self.frame.yaw
         cos, sin = math.cos(self.frame.yaw), math.sin(self.frame.yaw)
+        x, y = cos * x + sin * y, cos * y - sin * x
+        if self.mirrored == "y_down":
+            y, yaw = -y, -yaw
+        elif self.mirrored == "exchanged":
+            x, y, yaw = y, x, math.pi / 2 - yaw
         noise = rng.standard_normal((3, len(times)))
         return (
-            cos * x + sin * y + self.sigma_xy * noise[0],
-            cos * y - sin * x + self.sigma_xy * noise[1],
+            x + self.sigma_xy * noise[0],
+            y + self.sigma_xy * noise[1],
             wrap(yaw + self.sigma_yaw * noise[2]),
         )
 

@@ -12,10 +12,17 @@ from typing import Literal
 
 import numpy as np
 
+from .counters import EncoderSkew, MissedTicks, WheelReversed, WheelsSwapped
+from .creep import CastorKick, LateralSlip, LongitudinalSlip, TurnDependentTrack
+from .floor import CablePull, FloorSlope, SlipperySpot
 from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
+from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount
+from .outside import RadiusFollowsPayload, RadiusFollowsTemperature, RadiusGrowsWithSpeed
 from .peculiarity import Peculiarity
+from .wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift
 
 Rng = np.random.Generator
+Make = Callable[[float, Rng], Peculiarity]
 Kind = Literal["effect", "mistake", "outside"]
 
 
@@ -47,7 +54,7 @@ class Entry:
     """
 
     name: str
-    make: Callable[[float, Rng], Peculiarity]
+    make: Make
     unit: str
     low: float
     high: float
@@ -79,35 +86,114 @@ class Hidden:
     peculiarity: Peculiarity
 
 
+def _mistake(name: str, make: Callable[[Rng], Peculiarity], says: str) -> Entry:
+    """All or nothing: a strength of 0 is no mistake, any other is one."""
+    return Entry(
+        name,
+        lambda strength, rng: make(rng) if strength else Peculiarity(),
+        "",
+        1.0,
+        1.0,
+        says,
+        signed=False,
+        kind="mistake",
+    )
+
+
+def _anywhere(rng: Rng) -> float:
+    """Any direction [rad]."""
+    return float(rng.uniform(-math.pi, math.pi))
+
+
+def _either(rng: Rng) -> bool:
+    return bool(rng.integers(2))
+
+
+def _lever_arm(length: float, rng: Rng) -> ReferenceMount:
+    direction = _anywhere(rng)
+    return ReferenceMount(x=length * math.cos(direction), y=length * math.sin(direction))
+
+
+def _radius_drift(per_drive: float, rng: Rng) -> RadiusDrift:
+    """A drive is 20 m or a minute."""
+    if _either(rng):
+        return RadiusDrift(per_drive / 20.0, "metre")
+    return RadiusDrift(per_drive / 60.0, "second")
+
+
+def _slippery_spot(loss: float, rng: Rng) -> SlipperySpot:
+    x, y, radius = rng.uniform((-0.8, -0.8, 0.3), (0.8, 0.8, 0.6))
+    return SlipperySpot(loss, float(x), float(y), float(radius))
+
+
+# fmt: off
 CATALOGUE: tuple[Entry, ...] = (
-    Entry(
-        "track_width",
-        lambda strength, rng: TrackWidth(strength),
-        "1",
-        0.003,
-        0.04,
-        "true base over believed base",
-        null=1.0,
-    ),
-    Entry(
-        "unequal_wheel_radii",
-        lambda strength, rng: UnequalWheelRadii(strength),
-        "1",
-        0.001,
-        0.02,
-        "right radius over left radius",
-        null=1.0,
-    ),
-    Entry(
-        "wheel_radius_scale",
-        lambda strength, rng: WheelRadiusScale(strength),
-        "1",
-        0.002,
-        0.03,
-        "true radii over believed radius",
-        null=1.0,
-    ),
+    Entry("track_width", lambda s, rng: TrackWidth(s), "1", 0.003, 0.04,
+            "true base over believed base", null=1.0),
+    Entry("unequal_wheel_radii", lambda s, rng: UnequalWheelRadii(s), "1", 0.001, 0.02,
+            "right radius over left radius", null=1.0),
+    Entry("wheel_radius_scale", lambda s, rng: WheelRadiusScale(s), "1", 0.002, 0.03,
+            "true radii over believed radius", null=1.0),
+    Entry("eccentric_left_wheel", lambda s, rng: EccentricWheel("left", s, _anywhere(rng)),
+            "m", 3e-4, 1.5e-3, "left axle off the wheel's centre", signed=False),
+    Entry("eccentric_right_wheel", lambda s, rng: EccentricWheel("right", s, _anywhere(rng)),
+            "m", 3e-4, 1.5e-3, "right axle off the wheel's centre", signed=False),
+    Entry("longitudinal_slip", lambda s, rng: LongitudinalSlip(s), "s^2/m", 0.003, 0.03,
+            "share of a wheel's travel lost per its acceleration", signed=False),
+    Entry("lateral_slip", lambda s, rng: LateralSlip(s), "s", 0.002, 0.02,
+            "outward creep per speed times yaw rate", signed=False),
+    Entry("turn_dependent_track",
+            lambda s, rng: TurnDependentTrack(s, "sense" if _either(rng) else "sharpness"),
+            "1", 0.004, 0.04, "growth of the base in sharp turns, or in left ones"),
+    Entry("sideways_drift", lambda s, rng: AskewAxle(s), "rad", 0.003, 0.03,
+            "direction of travel off the body's forward axis"),
+    Entry("floor_slope", lambda s, rng: FloorSlope(s, _anywhere(rng)), "m/m", 0.002, 0.02,
+            "drift downhill per metre of path", signed=False),
+    Entry("castor_kick", lambda s, rng: CastorKick(s, alternating=_either(rng)),
+            "rad", 0.004, 0.03, "heading gained after each reversal"),
+    Entry("left_backlash", lambda s, rng: Backlash("left", s), "m", 1e-3, 6e-3,
+            "free travel of the left rim", signed=False),
+    Entry("right_backlash", lambda s, rng: Backlash("right", s), "m", 1e-3, 6e-3,
+            "free travel of the right rim", signed=False),
+    Entry("left_missed_ticks",
+            lambda s, rng: MissedTicks("left", s, float(rng.uniform(0.25, 0.45))), "1", 0.003, 0.05,
+            "share of the left counts lost at speed", signed=False),
+    Entry("right_missed_ticks",
+            lambda s, rng: MissedTicks("right", s, float(rng.uniform(0.25, 0.45))), "1", 0.003,
+            0.05, "share of the right counts lost at speed", signed=False),
+    Entry("radius_drift", _radius_drift, "per drive", 0.002, 0.02,
+            "growth of both radii in 20 m or in a minute"),
+    Entry("reference_lever_arm", _lever_arm, "m", 0.01, 0.15,
+            "from the axle's midpoint to the point measured", signed=False),
+    Entry("reference_yaw_offset", lambda s, rng: ReferenceMount(yaw=s), "rad", 0.004, 0.05,
+            "reference's forward axis against the robot's"),
+    Entry("reference_delay", lambda s, rng: ReferenceDelay(delay=s), "s", 0.01, 0.1,
+            "reference's stamps late"),
+    Entry("reference_heading_delay", lambda s, rng: ReferenceDelay(heading_delay=s), "s", 0.01,
+            0.15, "reference's yaw later than its position", signed=False),
+    Entry("encoder_skew", lambda s, rng: EncoderSkew(s), "s", 0.002, 0.02,
+            "right counter read later than the left one"),
+    _mistake("wheels_swapped", lambda rng: WheelsSwapped(), "left and right exchanged"),
+    _mistake("left_wheel_reversed", lambda rng: WheelReversed("left"),
+             "left counter with the wrong sign"),
+    _mistake("right_wheel_reversed", lambda rng: WheelReversed("right"),
+             "right counter with the wrong sign"),
+    _mistake("reference_mirrored", lambda rng: ReferenceMirrored(exchanged=_either(rng)),
+             "reference's frame left-handed"),
+    Entry("radius_follows_temperature", lambda s, rng: RadiusFollowsTemperature(s), "1/K", 3e-4,
+            2e-3, "growth of both radii per kelvin, measured", kind="outside"),
+    Entry("radius_follows_payload", lambda s, rng: RadiusFollowsPayload(s), "1/kg", 5e-4, 4e-3,
+            "loss of both radii per kilogram, measured", signed=False, kind="outside"),
+    Entry("radius_grows_with_speed", lambda s, rng: RadiusGrowsWithSpeed(s), "1", 0.01, 0.06,
+            "growth of each radius at 1 m/s", signed=False, kind="outside"),
+    Entry("slippery_spot", _slippery_spot, "1", 0.03, 0.3,
+            "share of the travel lost on a spot of the floor", signed=False, kind="outside"),
+    Entry("cable_pull", lambda s, rng: CablePull(s, _anywhere(rng)), "rad/m", 0.005, 0.05,
+            "turning towards one direction of the room", signed=False, kind="outside"),
+    Entry("oval_wheel", lambda s, rng: OvalWheel("left" if _either(rng) else "right", s), "1",
+            0.005, 0.02, "out-of-roundness of one wheel", signed=False, kind="outside"),
 )
+# fmt: on
 
 
 def find(name: str) -> Entry:

@@ -1,0 +1,141 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Tyres that creep under the forces they carry, and bases that depend on the turning.
+
+In an engine with clean contacts no force makes such creep, so the body is moved after the step.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ..engine import Shift, Shifter, Stride
+from ..robot import TrueRobot
+from .peculiarity import Peculiarity
+
+
+@dataclass(frozen=True)
+class LongitudinalSlip(Peculiarity):
+    """A driving wheel rolls more than it travels, a braking one less: slip in proportion to force.
+
+    Parameters
+    ----------
+    coefficient : float
+        Share of the travel that is lost per acceleration of that wheel [s^2/m]. A tyre of
+        stiffness C under a mass m has m / C.
+    """
+
+    coefficient: float
+
+    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+        """Each wheel falls back by coefficient * acceleration * path."""
+        before = np.zeros(2)
+
+        def shift(stride: Stride) -> Shift:
+            nonlocal before
+            travel = np.array((stride.left, stride.right))
+            acceleration = (travel - before) / stride.period**2
+            before = travel
+            left, right = -self.coefficient * acceleration * np.abs(travel)
+            return Shift((left + right) / 2, 0.0, (right - left) / robot.wheel_separation)
+
+        return shift
+
+
+@dataclass(frozen=True)
+class LateralSlip(Peculiarity):
+    """In a curve the tyres creep outwards.
+
+    Parameters
+    ----------
+    creep : float
+        Outward speed per centripetal acceleration (speed times yaw rate) [s].
+    """
+
+    creep: float
+
+    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+        """Sideways by -creep * speed * turn."""
+
+        def shift(stride: Stride) -> Shift:
+            speed = (stride.left + stride.right) / 2 / stride.period
+            turn = (stride.right - stride.left) / robot.wheel_separation
+            return Shift(0.0, -self.creep * speed * turn, 0.0)
+
+        return shift
+
+
+@dataclass(frozen=True)
+class TurnDependentTrack(Peculiarity):
+    """The base that counts for turning depends on how the robot turns.
+
+    Parameters
+    ----------
+    coefficient : float
+        Relative growth of the base: at full sharpness, or in left turns (and as much less in right
+        ones).
+    on : "sharpness" or "sense"
+        Sharpness is |R - L| / (|R| + |L|): 0 on a line, 1 when pivoting and spinning.
+    """
+
+    coefficient: float
+    on: Literal["sharpness", "sense"]
+
+    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+        """Take back the turning that the wider base does not make."""
+
+        def shift(stride: Stride) -> Shift:
+            difference = stride.right - stride.left
+            total = abs(stride.right) + abs(stride.left)
+            if total < 1e-9:
+                return Shift(0.0, 0.0, 0.0)
+            how = abs(difference) / total if self.on == "sharpness" else np.sign(difference)
+            grown = 1 + self.coefficient * float(how)
+            return Shift(0.0, 0.0, difference / robot.wheel_separation * (1 / grown - 1))
+
+        return shift
+
+
+@dataclass(frozen=True)
+class CastorKick(Peculiarity):
+    """After each reversal the castor swings round and kicks the heading while it does.
+
+    Parameters
+    ----------
+    angle : float
+        Heading gained by the swing [rad].
+    alternating : bool
+        True: +angle when it begins to drive forwards, -angle backwards; False: always +angle.
+    trail : float
+        Way over which the swing dies out by a factor e [m].
+    lead : float
+        Way back before the swing begins [m]; a motor's settling at a stop is no reversal.
+    """
+
+    angle: float
+    alternating: bool
+    trail: float = 0.04
+    lead: float = 2e-3
+
+    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+        """Release the kick along the way after a reversal."""
+        direction = 0.0
+        against = 0.0
+        backlog = 0.0
+
+        def shift(stride: Stride) -> Shift:
+            nonlocal direction, against, backlog
+            along = (stride.left + stride.right) / 2
+            against = max(against - along * direction, 0.0) if direction else against + abs(along)
+            if against > self.lead:
+                if direction:
+                    backlog = self.angle * (-direction if self.alternating else 1.0)
+                direction, against = float(np.sign(along)), 0.0
+            kick = backlog * (1 - np.exp(-abs(along) / self.trail))
+            backlog -= kick
+            return Shift(0.0, 0.0, float(kick))
+
+        return shift
