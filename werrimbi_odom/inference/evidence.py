@@ -15,15 +15,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.fit import MULTIPLIERS, CalibrationFit
-from werrimbi_odom.inference.likelihood import ReferenceKind, Variances, innovations
+from werrimbi_odom.inference.fit import ModelFit, stacked, unexpected
+from werrimbi_odom.inference.knobs import Knob
+from werrimbi_odom.inference.likelihood import ReferenceKind
 from werrimbi_odom.inference.matching import MatchedRun
-from werrimbi_odom.inference.prediction import (
-    Prediction,
-    calibration_changes,
-    predict,
-    sensitivity,
-)
+from werrimbi_odom.inference.prediction import Prediction, predict
 from werrimbi_odom.model.pose import Floats
 
 CHANNELS = ("along", "sideways", "heading")
@@ -44,46 +40,35 @@ class Dependence:
 
 
 def dependences(
-    runs: Sequence[MatchedRun], fit: CalibrationFit, kind: ReferenceKind
+    runs: Sequence[MatchedRun], fit: ModelFit, kind: ReferenceKind, knobs: Sequence[Knob]
 ) -> tuple[Dependence, ...]:
-    """All cells of the map for a fitted calibration, the most certain first."""
+    """All cells of the map for a fitted model, the most certain first.
+
+    `knobs` are what the fit could turn: what they can explain is no evidence.
+    """
     from scipy.stats import chi2
 
-    sigma = [fit.noises[name].value for name in fit.noises]
-    variances = Variances(*(np.array([value**2]) for value in sigma))
-    free = [name for name in MULTIPLIERS if fit.multipliers[name].determined]
-    names, values, explained, patterns = [], [], [], []
+    point = fit.point
+    plain = [knob for knob in knobs if knob.per_run or knob in fit.free]
+    white, slopes, _ = stacked(runs, point, kind, plain)
+    basis = slopes.reshape(-1, slopes.shape[-1])
+    names: list[str] = []
+    blocks = []
     for index, run in enumerate(runs):
-        prediction = predict(fit.robot, run)
+        prediction = predict(point.model.of_run(index), run, point.model.start_yaw(index))
         variables = leg_variables(run, prediction)
         names = list(variables)
-        changes = calibration_changes(fit.robot, run)
-        plain = sensitivity(fit.robot, run, [changes[name] for name in free])
         marks = np.zeros((run.legs, 3, 3 * len(variables)))
-        for column, values_of_legs in enumerate(variables.values()):
+        for column, of_legs in enumerate(variables.values()):
             for channel in range(3):
-                marks[:, channel, 3 * column + channel] = values_of_legs
-        white, slopes = innovations(
-            fit.robot,
-            run,
-            prediction,
-            variances,
-            kind,
-            change=np.concatenate([plain, marks], axis=-1),
-            excluded=fit.excluded[index],
-            start_yaw=fit.start_yaw[index],
-        ).whitened()
-        flat = slopes.reshape(-1, slopes.shape[-1])
-        own_start = flat[:, plain.shape[-1] + marks.shape[-1] :]
-        flat = _less(flat[:, : plain.shape[-1] + marks.shape[-1]], own_start)
-        values.append(_less(white.reshape(-1, 1), own_start)[:, 0])
-        explained.append(flat[:, : plain.shape[-1]])
-        patterns.append(flat[:, plain.shape[-1] :])
-    basis = np.concatenate(explained)
-    unexplained = _less(np.concatenate(values)[:, None], basis)[:, 0]
-    marks = _less(np.concatenate(patterns), basis)
+                marks[:, channel, 3 * column + channel] = of_legs
+        pattern = unexpected(run, index, point, kind, marks).whitened()[1]
+        blocks.append(pattern[..., : marks.shape[-1]].reshape(-1, marks.shape[-1]))
+    patterns = np.concatenate(blocks)
+    unexplained = _less(white.reshape(-1, 1), basis)[:, 0]
+    marks = _less(patterns, basis)
     strength = np.sum(marks**2, axis=0)
-    usable = strength > 1e-9 * np.sum(np.concatenate(patterns) ** 2, axis=0)
+    usable = strength > 1e-9 * np.sum(patterns**2, axis=0)
     score = marks.T @ unexplained
     cells = []
     for column in np.flatnonzero(usable):

@@ -4,19 +4,21 @@
 
 A reference pose falls between two tick messages. The steps are split there, in counts, in
 proportion to time: splitting a step of constant twist changes neither its motion nor its noise.
-Everything that is fitted later (radii, separation, noise) acts on these counts, so this is done
-once for a run.
+Everything that is fitted later (radii, separation, effects, noise) acts on these counts, so this is
+done once for a run, and again only where the reference's clock is shifted.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.encoder import EncoderLimits, wheel_steps
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -49,10 +51,36 @@ class Measured:
 
 
 @dataclass(frozen=True, slots=True)
+class Counters:
+    """What the encoders counted up to each accepted message; arrays of shape (k,)."""
+
+    time: Floats
+    """[s]"""
+    left: Floats
+    """Counts since the first message."""
+    right: Floats
+    first_left: float
+    """The counter itself at the first message."""
+    first_right: float
+    channels: Mapping[str, Floats] = field(default_factory=dict)
+    """Extra measured channels at each message."""
+
+
+@dataclass(frozen=True, slots=True)
 class MatchedRun:
     """One run on common nodes: n steps, m legs."""
 
     name: str
+    counters: Counters
+    measured: Measured
+    intervals: Floats
+    """Reference intervals in each leg, shape (m,): an incremental reference errs at each."""
+    sigma_xy: float | None
+    """Noise of the reference's position as the record states it [m]."""
+    sigma_yaw: float | None
+    """Noise of the reference's heading as the record states it [rad]."""
+    delay: float
+    """What the reference stamps t is taken to have been seen at t - delay [s]."""
     time: Floats
     """Stamps of the nodes, shape (n + 1,), [s]."""
     left: Floats
@@ -61,13 +89,8 @@ class MatchedRun:
     """Counts of the right wheel in each step, shape (n,)."""
     ends: NDArray[np.intp]
     """Nodes at which legs begin and end, shape (m + 1,)."""
-    measured: Measured
-    intervals: Floats
-    """Reference intervals in each leg, shape (m,): an incremental reference errs at each."""
-    sigma_xy: float | None
-    """Noise of the reference's position as the record states it [m]."""
-    sigma_yaw: float | None
-    """Noise of the reference's heading as the record states it [rad]."""
+    channels: Mapping[str, Span[Floats]]
+    """Extra measured channels, at the start and end of each step."""
 
     @property
     def legs(self) -> int:
@@ -82,6 +105,8 @@ def match(
 
     Parameters
     ----------
+    robot : Robot
+        Its travel decides where legs end; they stay there whatever is fitted later.
     leg : float
         Length of a leg [m]; a quarter turn on the spot counts as much. A leg is at least one
         interval of the reference.
@@ -94,39 +119,85 @@ def match(
     reference = run.reference
     if reference is None:
         raise InputError(
-            f"{run.path}: there is no reference.csv (t_s,x_m,y_m,yaw_rad) to compare with"
+            f"{run.path}: there is no reference (reference.csv: t_s,x_m,y_m,yaw_rad) to compare with"
         )
-    steps = wheel_steps(robot, run.ticks.time, run.ticks.left, run.ticks.right, limits)
-    if steps.first_row < 0 or steps.time.size == 0:
-        raise InputError(f"{run.path}: fewer than two usable rows of ticks")
-    node = np.concatenate([run.ticks.time[[steps.first_row]], steps.time])
-    if not (np.diff(node) > 0.0).all():
-        raise InputError(
-            f"{run.path}: the ticks' clock was set back in mid-run; cut the run there into two"
-        )
-    usable = _usable(reference, node[0], node[-1])
+    counters = _counters(run, robot, limits)
+    usable = _usable(reference, float(counters.time[0]), float(counters.time[-1]))
     if usable.size < 2:
         raise InputError(
             f"{run.path}: fewer than two reference poses between the first tick "
-            f"(t_s {node[0]:g}) and the last ({node[-1]:g}); are both clocks the same?"
+            f"(t_s {counters.time[0]:g}) and the last ({counters.time[-1]:g}); "
+            "are both clocks the same?"
         )
-    time = np.union1d(node, reference.time[usable])
-    left = np.diff(np.interp(time, node, _summed(steps.left / robot.left_tick)))
-    right = np.diff(np.interp(time, node, _summed(steps.right / robot.right_tick)))
-    at = np.searchsorted(time, reference.time[usable])
-    chosen = _leg_ends(robot, left, right, at, leg)
+    chosen = _leg_ends(robot, counters, reference.time[usable], leg)
     rows = usable[chosen]
+    measured = Measured(
+        reference.time[rows], reference.x[rows], reference.y[rows], reference.yaw[rows]
+    )
+    time, left, right, ends, channels = _nodes(counters, measured.time)
     return MatchedRun(
         run.name,
-        time,
-        left,
-        right,
-        at[chosen],
-        Measured(reference.time[rows], reference.x[rows], reference.y[rows], reference.yaw[rows]),
+        counters,
+        measured,
         np.diff(chosen).astype(np.float64),
         _typical(reference.sigma_xy),
         _typical(reference.sigma_yaw),
+        0.0,
+        time,
+        left,
+        right,
+        ends,
+        channels,
     )
+
+
+def delayed(run: MatchedRun, delay: float) -> MatchedRun:
+    """The same legs, when the reference saw at t - `delay` [s] what it stamps t."""
+    if delay == run.delay:
+        return run
+    counters = run.counters
+    seen = np.clip(run.measured.time - delay, counters.time[0], counters.time[-1])
+    time, left, right, ends, channels = _nodes(counters, np.maximum.accumulate(seen))
+    return replace(
+        run, delay=delay, time=time, left=left, right=right, ends=ends, channels=channels
+    )
+
+
+def _counters(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counters:
+    ticks = run.ticks
+    steps = wheel_steps(robot, ticks.time, ticks.left, ticks.right, limits)
+    if steps.first_row < 0 or steps.time.size == 0:
+        raise InputError(f"{run.path}: fewer than two usable rows of ticks")
+    time = np.concatenate([ticks.time[[steps.first_row]], steps.time])
+    if not (np.diff(time) > 0.0).all():
+        raise InputError(
+            f"{run.path}: the ticks' clock was set back in mid-run; cut the run there into two"
+        )
+    rows = np.concatenate([[steps.first_row], steps.row])
+    return Counters(
+        time,
+        _summed(steps.left / robot.left_tick),
+        _summed(steps.right / robot.right_tick),
+        float(ticks.left[steps.first_row]),
+        float(ticks.right[steps.first_row]),
+        {name: np.asarray(values)[rows] for name, values in ticks.channels.items()},
+    )
+
+
+def _nodes(
+    counters: Counters, at: Floats
+) -> tuple[Floats, Floats, Floats, NDArray[np.intp], Mapping[str, Span[Floats]]]:
+    """Nodes at every message and at the times `at`, and the counts between them."""
+    time = np.union1d(counters.time, at)
+    left = np.diff(np.interp(time, counters.time, counters.left))
+    right = np.diff(np.interp(time, counters.time, counters.right))
+    channels = {}
+    for name, values in counters.channels.items():
+        known = np.isfinite(values)
+        if known.any():
+            there = np.interp(time, counters.time[known], values[known])
+            channels[name] = Span(there[:-1], there[1:])
+    return time, left, right, np.searchsorted(time, at), channels
 
 
 def _summed(steps: Floats) -> Floats:
@@ -144,13 +215,15 @@ def _usable(reference: Reference, first: float, last: float) -> NDArray[np.intp]
     return rows[later]
 
 
-def _leg_ends(
-    robot: Robot, left: Floats, right: Floats, at: NDArray[np.intp], leg: float
-) -> NDArray[np.intp]:
+def _leg_ends(robot: Robot, counters: Counters, at: Floats, leg: float) -> NDArray[np.intp]:
     """Indices into `at` at which legs end: every time a leg's worth of travel has gone by."""
-    along = 0.5 * (left * robot.left_tick + right * robot.right_tick) / leg
-    turned = (right * robot.right_tick - left * robot.left_tick) / robot.track / QUARTER_TURN
-    progress = _summed(np.hypot(along, turned))[at]
+    left, right = (
+        np.diff(counters.left) * robot.left_tick,
+        np.diff(counters.right) * robot.right_tick,
+    )
+    along = 0.5 * (left + right) / leg
+    turned = (right - left) / robot.track / QUARTER_TURN
+    progress = np.interp(at, counters.time, _summed(np.hypot(along, turned)))
     progress -= progress[0]
     whole = np.arange(1.0, np.floor(progress[-1] * (1.0 + 1e-12)) + 1.0)
     chosen = np.searchsorted(progress, whole - 1e-12)

@@ -1,40 +1,42 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the model predicts for every leg: relative pose, its noise, and its derivatives."""
+"""What the model predicts for every leg: the relative pose that the reference shows, its noise."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.inference.matching import MatchedRun
+from werrimbi_odom.inference.matching import MatchedRun, delayed
 from werrimbi_odom.model.covariance import (
     PoseCovariance,
     carried,
     noise_of_wheel_variances,
     piece_covariance,
 )
-from werrimbi_odom.model.motion import (
-    BodyMotion,
-    WheelTravel,
-    displacement,
-    sinc,
-    wheels_to_body,
+from werrimbi_odom.model.drive import Drive, Span, drive_of_run
+from werrimbi_odom.model.effect import (
+    View,
+    after_body_effects,
+    after_wheel_effects,
+    view_of,
+    wiring_of,
 )
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
-    """Legs as the model sees them; each in the frame of the robot at its own start.
+    """Legs as the model sees them; each in the frame of the reference at its own start.
 
     Arrays have shape (m, 3) for (x, y, yaw) [m, m, rad] or (m, 3, 3).
     """
 
     relative: Floats
-    """Relative pose of each leg's end."""
+    """Relative pose of each leg's end, of the point and axis that the reference measures."""
     per_left: Floats
     """Covariance of the relative pose for a left wheel noise k_L² of 1 m."""
     per_right: Floats
@@ -58,40 +60,121 @@ class _Path:
     yaw: Floats
 
 
-def _drive(robot: Robot, run: MatchedRun) -> _Path:
-    travel = WheelTravel(run.left * robot.left_tick, run.right * robot.right_tick)
+def raw_drive(robot: Robot, run: MatchedRun) -> tuple[WheelTravel[Floats], Drive[Floats]]:
+    """Travel of the wheels before any effect, and what effects may look at."""
+    wiring = wiring_of(robot.effects)
+    counters = run.counters
+    sides = [(run.left, counters.first_left), (run.right, counters.first_right)]
+    if wiring.swapped:
+        sides.reverse()
+    (left, first_left), (right, first_right) = sides
+    left, first_left = wiring.left_sign * left, wiring.left_sign * first_left
+    right, first_right = wiring.right_sign * right, wiring.right_sign * first_right
+    travel = WheelTravel(left * robot.left_tick, right * robot.right_tick)
     motion = wheels_to_body(travel, robot.track)
+    per_left = 2.0 * np.pi / robot.left_ticks_per_revolution
+    per_right = 2.0 * np.pi / robot.right_ticks_per_revolution
+    drive = drive_of_run(
+        np.diff(run.time),
+        travel.left,
+        travel.right,
+        motion.along,
+        motion.turn,
+        left * per_left,
+        right * per_right,
+        flicker=0.75 * (robot.left_tick + robot.right_tick),
+        first_angles=(first_left * per_left, first_right * per_right),
+        channels=run.channels,
+    )
+    return travel, drive
+
+
+def _driven(robot: Robot, run: MatchedRun, first_heading: float) -> _Path:
+    raw, drive = raw_drive(robot, run)
+    travel, motion = _after_effects(robot, raw, drive)
     yaw = np.concatenate([[0.0], np.cumsum(motion.turn)])
+    if robot.effects:
+        # An effect may look at the heading, and the heading contains the effects: `turn` does not
+        # depend on it, so a second pass with the corrected heading is the answer.
+        heading = first_heading + yaw - yaw[run.ends[0]]
+        corrected = replace(drive, heading=Span(heading[:-1], heading[:-1] + drive.heading.change))
+        travel, motion = _after_effects(robot, raw, corrected)
     dx, dy = displacement(motion, yaw[:-1])
     x, y = np.concatenate([[0.0], np.cumsum(dx)]), np.concatenate([[0.0], np.cumsum(dy)])
     return _Path(motion, travel, x, y, yaw)
 
 
-def predict(robot: Robot, run: MatchedRun) -> Prediction:
-    """Relative pose of every leg and the noise that it has for unit noise of each wheel."""
-    path = _drive(robot, run)
-    begin, end = run.ends[:-1], run.ends[1:]
-    cos, sin = np.cos(path.yaw[begin]), np.sin(path.yaw[begin])
-    dx, dy = path.x[end] - path.x[begin], path.y[end] - path.y[begin]
-    turn = path.yaw[end] - path.yaw[begin]
-    relative = np.stack([cos * dx + sin * dy, cos * dy - sin * dx, turn], axis=-1)
+def _after_effects(
+    robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats]
+) -> tuple[WheelTravel[Floats], BodyMotion[Floats]]:
+    travel = after_wheel_effects(robot.effects, raw, drive)
+    motion = wheels_to_body(travel, robot.track)
+    return travel, after_body_effects(robot.effects, motion, drive)
+
+
+def relative_poses(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Floats:
+    """Relative pose of every leg as the reference shows it, shape (m, 3) [m, m, rad].
+
+    Parameters
+    ----------
+    start_yaw : float, optional
+        Heading at the first reference pose where that was not measured [rad].
+    """
+    view = view_of(robot.effects)
+    run = delayed(run, view.delay)
+    return _shown(_driven(robot, run, _first_heading(run, view, start_yaw)), run, view)
+
+
+def predict(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Prediction:
+    """Relative pose of every leg, and the noise that it has for unit noise of each wheel."""
+    view = view_of(robot.effects)
+    run = delayed(run, view.delay)
+    path = _driven(robot, run, _first_heading(run, view, start_yaw))
     first, last = run.ends[0], run.ends[-1]
-    starts = run.ends[:-1] - first
     along = path.motion.along[first:last]
     return Prediction(
-        relative,
-        _noise_of_legs(path, run, robot.track, left=1.0, right=0.0),
-        _noise_of_legs(path, run, robot.track, left=0.0, right=1.0),
-        np.add.reduceat(np.abs(along), starts),
-        np.add.reduceat(along, starts),
-        turn,
+        _shown(path, run, view),
+        _noise_of_legs(path, run, robot.track, view, left=1.0, right=0.0),
+        _noise_of_legs(path, run, robot.track, view, left=0.0, right=1.0),
+        _per_leg(np.abs(along), run),
+        _per_leg(along, run),
+        np.diff(path.yaw[run.ends]),
     )
 
 
+def seen(run: MatchedRun, view: View) -> MatchedRun:
+    """The run with the reference's frame made right-handed."""
+    if not view.mirrored:
+        return run
+    measured = run.measured
+    return replace(run, measured=replace(measured, y=-measured.y, yaw=-measured.yaw))
+
+
+def _first_heading(run: MatchedRun, view: View, start_yaw: float | None) -> float:
+    """Heading of the robot at the first reference pose, in the reference's frame [rad]."""
+    measured = seen(run, view).measured.yaw[0] if start_yaw is None else start_yaw
+    return float(measured - view.yaw) if np.isfinite(measured) else 0.0
+
+
+def _shown(path: _Path, run: MatchedRun, view: View) -> Floats:
+    """The legs' relative poses, seen at the reference's point, axis and times."""
+    begin, end = run.ends[:-1], run.ends[1:]
+    position = path.x + 1j * path.y
+    turn = path.yaw[end] - path.yaw[begin]
+    moved = np.exp(-1j * path.yaw[begin]) * (position[end] - position[begin])
+    point = complex(view.ahead, view.left)
+    axis = np.full(run.ends.size, view.yaw)
+    if view.heading_delay != 0.0:
+        late = np.interp(run.time[run.ends] - view.heading_delay, run.time, path.yaw)
+        axis = axis + late - path.yaw[run.ends]
+    shown = np.exp(-1j * axis[:-1]) * (moved + (np.exp(1j * turn) - 1.0) * point)
+    return np.stack([shown.real, shown.imag, turn + np.diff(axis)], axis=-1)
+
+
 def _noise_of_legs(
-    path: _Path, run: MatchedRun, track: float, *, left: float, right: float
+    path: _Path, run: MatchedRun, track: float, view: View, *, left: float, right: float
 ) -> Floats:
-    """Sum of the steps' closed forms, each carried to its leg's end, in its leg's own frame."""
+    """Sum of the steps' closed forms, each carried to its leg's end, as the reference sees it."""
     first, last = int(run.ends[0]), int(run.ends[-1])
     leg = np.repeat(np.arange(run.legs), np.diff(run.ends))
     begin, end = run.ends[leg], run.ends[leg + 1]
@@ -100,75 +183,19 @@ def _noise_of_legs(
     noise = noise_of_wheel_variances(
         left * np.abs(path.travel.left[steps]), right * np.abs(path.travel.right[steps]), track
     )
-    facing = path.yaw[begin]
+    facing = path.yaw[begin] + view.yaw
     own = piece_covariance(motion, noise, path.yaw[steps] - facing)
+    point = complex(view.ahead, view.left) * np.exp(1j * path.yaw[run.ends[1:]])
+    marker_x = path.x[run.ends[1:]] + point.real
+    marker_y = path.y[run.ends[1:]] + point.imag
     after = slice(first + 1, last + 1)
-    dx, dy = path.x[end] - path.x[after], path.y[end] - path.y[after]
+    dx, dy = marker_x[leg] - path.x[after], marker_y[leg] - path.y[after]
     cos, sin = np.cos(facing), np.sin(facing)
     moved = carried(own, cos * dx + sin * dy, cos * dy - sin * dx)
-    starts = run.ends[:-1] - first
-    return PoseCovariance(*(np.add.reduceat(entry, starts) for entry in moved)).matrix()
+    return PoseCovariance(*(_per_leg(entry, run) for entry in moved)).matrix()
 
 
-def sensitivity(robot: Robot, run: MatchedRun, changes: list[BodyMotion[Floats]]) -> Floats:
-    """Derivative of every leg's relative pose, when the steps' motion has given derivatives.
-
-    Parameters
-    ----------
-    changes : list of BodyMotion
-        For each of p parameters, the derivative of every step's along, sideways [m] and turn
-        [rad]; arrays of shape (n,).
-
-    Returns
-    -------
-    ndarray, shape (m, 3, p)
-    """
-    path = _drive(robot, run)
-    begin, end = run.ends[:-1], run.ends[1:]
-    half = 0.5 * path.motion.turn
-    facing = np.exp(1j * (path.yaw[:-1] + half))
-    chord = path.motion.along + 1j * path.motion.sideways
-    shrink = sinc(half)
-    position = path.x + 1j * path.y
-    move = np.diff(position)
-    back = np.exp(-1j * path.yaw[begin])
-    result = np.empty((run.legs, 3, len(changes)))
-    for column, change in enumerate(changes):
-        swung = np.concatenate([[0.0], np.cumsum(change.turn)])
-        turned = 0.5 * change.turn
-        # d(sinc h) = -h V dh, with h V = (sinc h - cos h) / h.
-        own = facing * (
-            shrink * (change.along + 1j * change.sideways)
-            + chord * turned * (1j * shrink - _bend(half))
-        )
-        shifted = np.concatenate([[0.0], np.cumsum(own + 1j * swung[:-1] * move)])
-        relative = back * (
-            shifted[end] - shifted[begin] - 1j * swung[begin] * (position[end] - position[begin])
-        )
-        result[:, 0, column], result[:, 1, column] = relative.real, relative.imag
-        result[:, 2, column] = swung[end] - swung[begin]
-    return result
-
-
-def _bend(h: Floats) -> Floats:
-    """(sinc h - cos h) / h: minus the derivative of sinc."""
-    small = np.abs(h) < 1e-2
-    safe = np.where(small, 1.0, h)
-    t = h * h
-    near = h * (1.0 / 3.0 - t * (1.0 / 30.0 - t / 840.0))
-    return np.where(small, near, (np.sin(safe) / safe - np.cos(safe)) / safe)
-
-
-def calibration_changes(robot: Robot, run: MatchedRun) -> dict[str, BodyMotion[Floats]]:
-    """Derivatives of every step's motion in the three multipliers that calibration may change."""
-    path = _drive(robot, run)
-    none = np.zeros_like(path.travel.left)
-    left = path.travel.left / robot.left_wheel_radius_multiplier
-    right = path.travel.right / robot.right_wheel_radius_multiplier
-    return {
-        "wheel_separation_multiplier": BodyMotion(
-            none, none, -path.motion.turn / robot.wheel_separation_multiplier
-        ),
-        "left_wheel_radius_multiplier": BodyMotion(0.5 * left, none, -left / robot.track),
-        "right_wheel_radius_multiplier": BodyMotion(0.5 * right, none, right / robot.track),
-    }
+def _per_leg(values: Floats, run: MatchedRun) -> Floats:
+    """Sums over the steps of each leg, of values for the steps from the first leg to the last."""
+    sums = np.concatenate([[0.0], np.cumsum(values)])
+    return np.diff(sums[run.ends - run.ends[0]])

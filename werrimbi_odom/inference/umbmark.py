@@ -160,6 +160,24 @@ def corrected(robot: Robot, factors: Factors) -> Robot:
     )
 
 
+def recomputed(squares: Squares, robot: Robot, factors: Factors) -> Squares:
+    """The offsets that the same drives have once the odometry is corrected.
+
+    Parameters
+    ----------
+    robot : Robot
+        As the odometry of `squares` believed it to be.
+    """
+    moved = []
+    for sense, offsets in ((-1, squares.cw), (1, squares.ccw)):
+        ends = [
+            run.end(robot.track * factors.base, factors.left, factors.right) - run.end(robot.track)
+            for run in squares.driven(sense, robot.track)
+        ]
+        moved.append(offsets - np.array(ends))
+    return replace(squares, cw=moved[0], ccw=moved[1])
+
+
 def _offsets(squares: Squares, track: float, off: float, imbalance: float) -> Floats:
     """Mean offsets (x, y clockwise, x, y anticlockwise) [m] that wrong factors make."""
     means = []

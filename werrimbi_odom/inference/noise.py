@@ -1,0 +1,119 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The four variances of greatest likelihood: two wheels, the reference's position and heading."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from werrimbi_odom.inference.likelihood import Variances
+from werrimbi_odom.model.pose import Floats
+
+if TYPE_CHECKING:
+    from werrimbi_odom.inference.fit import _Costs
+
+NOISES = ("left_wheel_noise", "right_wheel_noise", "reference_sigma_xy", "reference_sigma_yaw")
+
+_LOWEST, _HIGHEST = np.log(1e-14), np.log(10.0)
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseEstimate:
+    """A standard deviation of noise, with its own; `determined` is False where data were mute."""
+
+    value: float
+    std: float
+    determined: bool
+
+
+def held_variances(
+    variances: Variances, sigma_xy: float | None, sigma_yaw: float | None
+) -> Variances:
+    """The variances with what is known of the reference put in."""
+    if sigma_xy is not None:
+        variances = replace(variances, xy=np.array([sigma_xy**2]))
+    if sigma_yaw is not None:
+        variances = replace(variances, yaw=np.array([sigma_yaw**2]))
+    return variances
+
+
+def likeliest(costs: _Costs, start: Variances, held: tuple[bool, bool]) -> Variances:
+    """Variances of greatest likelihood, the model being given."""
+    from scipy.optimize import minimize
+
+    function = _in_logs(costs, start, held)
+    moving = _moving(held)
+    begin = np.clip(np.log(_row(start)[moving]), _LOWEST, _HIGHEST)
+    found = minimize(
+        lambda logs: _with_gradient(function, logs),
+        begin,
+        jac=True,
+        method="L-BFGS-B",
+        bounds=[(_LOWEST, _HIGHEST)] * begin.size,
+        options={"maxiter": 40, "ftol": 1e-9},
+    )
+    return _variances(start, held, found.x[None, :])
+
+
+def noise_estimates(
+    costs: _Costs, variances: Variances, held: tuple[bool, bool]
+) -> dict[str, NoiseEstimate]:
+    """The four noises [m^0.5, m^0.5, m, rad] with standard deviations from the curvature."""
+    function = _in_logs(costs, variances, held)
+    moving = _moving(held)
+    sigmas = np.sqrt(_row(variances))
+    logs = 2.0 * np.log(sigmas[moving])
+    covariance = 2.0 * np.linalg.pinv(_hessian(function, logs), hermitian=True)
+    share = np.zeros(4)
+    share[moving] = 0.5 * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    return {
+        name: NoiseEstimate(float(sigma), float(sigma * part), bool(part < 0.5))
+        for name, sigma, part in zip(NOISES, sigmas, share, strict=True)
+    }
+
+
+def _moving(held: tuple[bool, bool]) -> Floats:
+    return np.array([True, True, not held[0], not held[1]])
+
+
+def _row(variances: Variances) -> Floats:
+    return np.array([variances.left[0], variances.right[0], variances.xy[0], variances.yaw[0]])
+
+
+def _variances(base: Variances, held: tuple[bool, bool], logs: Floats) -> Variances:
+    """Of rows of logarithms, shape (g, free)."""
+    table = np.tile(_row(base), (logs.shape[0], 1))
+    table[:, _moving(held)] = np.exp(logs)
+    return Variances(*table.T)
+
+
+def _in_logs(costs: _Costs, base: Variances, held: tuple[bool, bool]) -> Callable[[Floats], Floats]:
+    predictions = costs.predictions()
+    return lambda logs: costs(_variances(base, held, logs), predictions)
+
+
+def _with_gradient(function: Callable[[Floats], Floats], logs: Floats) -> tuple[float, Floats]:
+    """Cost and gradient, by central differences taken in one pass."""
+    step = 1e-4
+    moves = step * np.eye(logs.size)
+    values = function(np.concatenate([logs[None], logs + moves, logs - moves]))
+    ahead, behind = values[1 : logs.size + 1], values[logs.size + 1 :]
+    return float(values[0]), (ahead - behind) / (2.0 * step)
+
+
+def _hessian(function: Callable[[Floats], Floats], logs: Floats) -> Floats:
+    """Second derivatives, by differences of gradients."""
+    step = 0.05
+    rows = []
+    for index in range(logs.size):
+        move = np.zeros(logs.size)
+        move[index] = step
+        ahead = _with_gradient(function, logs + move)[1]
+        behind = _with_gradient(function, logs - move)[1]
+        rows.append((ahead - behind) / (2.0 * step))
+    matrix = np.array(rows)
+    return np.asarray(0.5 * (matrix + matrix.T))
