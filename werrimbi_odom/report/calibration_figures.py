@@ -1,0 +1,194 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The paper's figures 3 and 4: offsets of the squares, and scatter of the drives out and back."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.report.path_figure import BLUE, GREY, ORANGE, ellipse
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+Floats = NDArray[np.float64]
+
+_MILLI = 1e3
+
+
+@dataclass(frozen=True, slots=True)
+class OffsetCloud:
+    """Offsets of one set of squares [m], shape (n, 2) and (m, 2), and what to call them."""
+
+    name: str
+    cw: Floats
+    ccw: Floats
+
+
+def umbmark_figure(
+    before: OffsetCloud, after: OffsetCloud | None, *, title: str, subtitle: str = ""
+) -> go.Figure:
+    """Offsets of clockwise and anticlockwise squares with their centres of gravity (figure 3).
+
+    Circles of radius E_max,syst go through the further centre of each set. Equal scales.
+    """
+    import plotly.graph_objects as go
+
+    figure = go.Figure()
+    clouds = [(before, True)] + ([(after, False)] if after else [])
+    for cloud, filled in clouds:
+        _circle(figure, cloud, "dash" if filled else "dot")
+    for cloud, filled in clouds:
+        for sense, offsets, colour, symbol in (
+            ("cw", cloud.cw, BLUE, "square"),
+            ("ccw", cloud.ccw, ORANGE, "circle"),
+        ):
+            _offsets(figure, f"{sense}, {cloud.name}", offsets, colour, symbol, filled)
+    figure.add_scatter(
+        x=[None],
+        y=[None],
+        mode="markers",
+        name="centres of gravity",
+        marker={"symbol": "x", "size": 13, "color": GREY},
+    )
+    _dress(figure, title, subtitle)
+    figure.update_layout(width=980, height=760)
+    figure.update_xaxes(title="x, along the first leg: measured − odometry [mm]")
+    figure.update_yaxes(title="y, to its left [mm]", scaleanchor="x", scaleratio=1)
+    return figure
+
+
+def _offsets(
+    figure: go.Figure, name: str, offsets: Floats, colour: str, symbol: str, filled: bool
+) -> None:
+    x, y = _MILLI * offsets.T
+    figure.add_scatter(
+        x=x,
+        y=y,
+        mode="markers",
+        name=name,
+        legendgroup=name,
+        marker={
+            "symbol": symbol if filled else f"{symbol}-open",
+            "size": 10,
+            "color": colour,
+            "opacity": 0.55 if filled else 1.0,
+            "line": {"width": 0.0 if filled else 1.8, "color": colour},
+        },
+        hovertemplate=f"{name}<br>x %{{x:.1f}} mm<br>y %{{y:.1f}} mm<extra></extra>",
+    )
+    centre_x, centre_y = float(x.mean()), float(y.mean())
+    figure.add_scatter(
+        x=[centre_x],
+        y=[centre_y],
+        mode="markers",
+        name="centre of gravity",
+        legendgroup=name,
+        showlegend=False,
+        marker={"symbol": "x", "size": 14, "color": colour, "line": {"width": 1, "color": "white"}},
+        hovertemplate=(
+            f"{name}: centre of gravity<br>x %{{x:.1f}} mm<br>y %{{y:.1f}} mm<extra></extra>"
+        ),
+    )
+
+
+def _circle(figure: go.Figure, cloud: OffsetCloud, dash: str) -> None:
+    radius = _MILLI * max(
+        float(np.hypot(*offsets.mean(axis=0))) for offsets in (cloud.cw, cloud.ccw)
+    )
+    angle = np.linspace(0.0, 2.0 * np.pi, 145)
+    name = f"E<sub>max,syst</sub> {cloud.name}: {radius:.{1 if radius < 10.0 else 0}f} mm"
+    figure.add_scatter(
+        x=radius * np.cos(angle),
+        y=radius * np.sin(angle),
+        mode="lines",
+        name=name,
+        line={"color": GREY, "width": 1.3, "dash": dash},
+        hoverinfo="skip",
+    )
+
+
+def noise_figure(
+    errors: Floats, data: Floats, model: Floats, *, title: str, subtitle: str = ""
+) -> go.Figure:
+    """Errors of repeated drives with the 95 % ellipses of data and model (figure 4 a to c).
+
+    Parameters
+    ----------
+    errors : ndarray, shape (n, 3)
+        x, y [m], yaw [rad].
+    data, model : ndarray, shape (3, 3)
+        Covariances; both ellipses are drawn about the mean of the runs.
+    """
+    from plotly.subplots import make_subplots
+
+    axes = (("x", "mm"), ("y", "mm"), ("yaw", "mrad"))
+    panels = ((0, 1), (0, 2), (1, 2))
+    figure = make_subplots(rows=1, cols=3, horizontal_spacing=0.075)
+    scaled = _MILLI * errors
+    for column, (across, up) in enumerate(panels, start=1):
+        first = column == 1
+        figure.add_scatter(
+            x=scaled[:, across],
+            y=scaled[:, up],
+            mode="markers",
+            name=f"{len(errors)} runs",
+            legendgroup="runs",
+            showlegend=first,
+            marker={"color": GREY, "size": 6, "opacity": 0.7},
+            row=1,
+            col=column,
+        )
+        for name, covariance, colour, dash in (
+            ("95 % ellipse of the runs", data, BLUE, "dash"),
+            ("95 % ellipse of the model", model, ORANGE, "solid"),
+        ):
+            x, y = ellipse(
+                float(scaled[:, across].mean()),
+                float(scaled[:, up].mean()),
+                _MILLI**2 * covariance[np.ix_((across, up), (across, up))],
+                points=145,
+            )
+            figure.add_scatter(
+                x=x,
+                y=y,
+                mode="lines",
+                name=name,
+                legendgroup=name,
+                showlegend=first,
+                line={"color": colour, "width": 2.2, "dash": dash},
+                hoverinfo="skip",
+                row=1,
+                col=column,
+            )
+        (name_x, unit_x), (name_y, unit_y) = axes[across], axes[up]
+        figure.update_xaxes(title=f"e<sub>{name_x}</sub> [{unit_x}]", row=1, col=column)
+        figure.update_yaxes(
+            title=f"e<sub>{name_y}</sub> [{unit_y}]", title_standoff=4, row=1, col=column
+        )
+    _dress(figure, title, subtitle)
+    figure.update_layout(
+        width=1320,
+        height=560,
+        legend={"orientation": "h", "x": 0.0, "y": -0.17, "yanchor": "top"},
+    )
+    return figure
+
+
+def _dress(figure: go.Figure, title: str, subtitle: str) -> None:
+    heading = f"<b>{title}</b>"
+    if subtitle:
+        heading += f"<br><span style='font-size:14px'>{subtitle}</span>"
+    figure.update_layout(
+        title={"text": heading, "x": 0.02, "xanchor": "left", "y": 0.96, "yanchor": "top"},
+        template="plotly_white",
+        font={"size": 15},
+        margin={"l": 75, "r": 25, "t": 85, "b": 65},
+        legend={"bordercolor": "#cccccc", "borderwidth": 1},
+    )
+    figure.update_xaxes(zeroline=True, zerolinecolor="#bbbbbb")
+    figure.update_yaxes(zeroline=True, zerolinecolor="#bbbbbb")
