@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the model fails, before any name is given to it: what do the errors depend on?
+"""Where the model fails, before any name is given to it: what the errors depend on.
 
 Under a complete model the whitened innovations depend on nothing. Each cell of the evidence map
 asks whether the error of one channel (along, sideways, heading) goes with one measured variable of
@@ -71,7 +71,7 @@ def dependences(
     usable = strength > 1e-9 * np.sum(patterns**2, axis=0)
     score = marks.T @ unexplained
     cells = []
-    for column in np.flatnonzero(usable):
+    for column in np.flatnonzero(usable).tolist():
         statistic = score[column] ** 2 / strength[column]
         cells.append(
             Dependence(

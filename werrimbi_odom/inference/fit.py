@@ -126,14 +126,12 @@ def fit_model(
     held = (sigma_xy is not None, sigma_yaw is not None)
     free, covariance = _shared(knobs), np.zeros((0, 0))
     for _ in range(rounds):
-        point = replace(
-            point, variances=likeliest(_Costs(runs, point, kind), point.variances, held)
-        )
+        point = replace(point, variances=likeliest(Costs(runs, point, kind), point.variances, held))
         free, covariance = _determined(runs, point, kind, knobs)
         mute = {knob.name: given.value(knob) for knob in _shared(knobs) if knob not in free}
         point = replace(point, model=point.model.turned(mute, [{}] * len(runs)))
         point = _gauss_newton(runs, point, kind, [*free, *_own(knobs)])
-    costs = _Costs(runs, point, kind)
+    costs = Costs(runs, point, kind)
     return ModelFit(
         point,
         tuple(free),
@@ -206,7 +204,7 @@ def _small(columns: Sequence[tuple[Knob, int]], step: Floats) -> bool:
 
 
 @dataclass(frozen=True, slots=True)
-class _Costs:
+class Costs:
     """Minus two log-likelihood of sets of variances, the model being given."""
 
     runs: Sequence[MatchedRun]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a fit may turn: calibration multipliers, parameters of effects, and nuisances of each run."""
+"""What a fit may turn: multipliers, parameters of effects, and nuisances of each run."""
 
 from __future__ import annotations
 
@@ -118,4 +118,4 @@ def changed(robot: Robot, changes: Mapping[str, float]) -> Robot:
             )
     if not plain and effects is robot.effects:
         return robot
-    return replace(robot, effects=effects, **plain)
+    return replace(robot, effects=effects, **plain)  # type: ignore[arg-type]

@@ -119,7 +119,8 @@ def match(
     reference = run.reference
     if reference is None:
         raise InputError(
-            f"{run.path}: there is no reference (reference.csv: t_s,x_m,y_m,yaw_rad) to compare with"
+            f"{run.path}: there is no reference to compare with "
+            "(reference.csv: t_s,x_m,y_m,yaw_rad)"
         )
     counters = _counters(run, robot, limits)
     usable = _usable(reference, float(counters.time[0]), float(counters.time[-1]))
@@ -212,7 +213,7 @@ def _usable(reference: Reference, first: float, last: float) -> NDArray[np.intp]
         return rows
     latest = np.maximum.accumulate(reference.time[rows])
     later = np.concatenate([[True], reference.time[rows][1:] > latest[:-1]])
-    return rows[later]
+    return np.asarray(rows[later])
 
 
 def _leg_ends(robot: Robot, counters: Counters, at: Floats, leg: float) -> NDArray[np.intp]:

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -12,9 +12,10 @@ import numpy as np
 
 from werrimbi_odom.inference.likelihood import Variances
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
 
 if TYPE_CHECKING:
-    from werrimbi_odom.inference.fit import _Costs
+    from werrimbi_odom.inference.fit import Costs
 
 NOISES = ("left_wheel_noise", "right_wheel_noise", "reference_sigma_xy", "reference_sigma_yaw")
 
@@ -30,6 +31,13 @@ class NoiseEstimate:
     determined: bool
 
 
+def with_noise(robot: Robot, noises: Mapping[str, NoiseEstimate]) -> Robot:
+    """The robot with the wheels' noise put in, where it was determined."""
+    wheels = ("left_wheel_noise", "right_wheel_noise")
+    found = {name: noises[name].value for name in wheels if noises[name].determined}
+    return replace(robot, **found)  # type: ignore[arg-type]
+
+
 def held_variances(
     variances: Variances, sigma_xy: float | None, sigma_yaw: float | None
 ) -> Variances:
@@ -41,7 +49,7 @@ def held_variances(
     return variances
 
 
-def likeliest(costs: _Costs, start: Variances, held: tuple[bool, bool]) -> Variances:
+def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Variances:
     """Variances of greatest likelihood, the model being given."""
     from scipy.optimize import minimize
 
@@ -60,7 +68,7 @@ def likeliest(costs: _Costs, start: Variances, held: tuple[bool, bool]) -> Varia
 
 
 def noise_estimates(
-    costs: _Costs, variances: Variances, held: tuple[bool, bool]
+    costs: Costs, variances: Variances, held: tuple[bool, bool]
 ) -> dict[str, NoiseEstimate]:
     """The four noises [m^0.5, m^0.5, m, rad] with standard deviations from the curvature."""
     function = _in_logs(costs, variances, held)
@@ -91,7 +99,7 @@ def _variances(base: Variances, held: tuple[bool, bool], logs: Floats) -> Varian
     return Variances(*table.T)
 
 
-def _in_logs(costs: _Costs, base: Variances, held: tuple[bool, bool]) -> Callable[[Floats], Floats]:
+def _in_logs(costs: Costs, base: Variances, held: tuple[bool, bool]) -> Callable[[Floats], Floats]:
     predictions = costs.predictions()
     return lambda logs: costs(_variances(base, held, logs), predictions)
 

@@ -177,7 +177,7 @@ def _noise_of_legs(
     """Sum of the steps' closed forms, each carried to its leg's end, as the reference sees it."""
     first, last = int(run.ends[0]), int(run.ends[-1])
     leg = np.repeat(np.arange(run.legs), np.diff(run.ends))
-    begin, end = run.ends[leg], run.ends[leg + 1]
+    begin = run.ends[leg]
     steps = slice(first, last)
     motion = BodyMotion(*(part[steps] for part in path.motion))
     noise = noise_of_wheel_variances(
