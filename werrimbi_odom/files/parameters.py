@@ -129,7 +129,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         None,
         "ticks",
         "Counts of the left encoder for one turn of its wheel, gear and edges included. "
-        "May be left out by the node when positions come in radians: then there is no quantisation.",
+        "The node does without it when positions come in radians: then there is no quantisation.",
         above=0.0,
     ),
     Parameter(

@@ -1,0 +1,196 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Robot files: ROS 2 parameter files that the node and the command line both read."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from types import MappingProxyType
+
+from ruamel.yaml.comments import CommentedMap
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.parameters import (
+    PARAMETERS,
+    Parameter,
+    Value,
+    defaults,
+    find,
+    limits_of,
+    robot_of,
+    tolerance_of,
+)
+from werrimbi_odom.files.replacing import replacing
+from werrimbi_odom.files.yaml_edit import edited
+from werrimbi_odom.files.yaml_text import line_of, load, plain, read_text
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pieces import PieceTolerance
+from werrimbi_odom.model.robot import Robot
+
+NODE = "odom_node"
+PARAMETER_KEY = "ros__parameters"
+ROS_OWN = ("use_sim_time", "start_type_description_service", "qos_overrides")
+"""What every ROS node understands; allowed in the file, and no business of ours."""
+
+_YES = ("y", "Y", "yes", "Yes", "YES", "on", "On", "ON")
+_NO = ("n", "N", "no", "No", "NO", "off", "Off", "OFF")
+
+
+@dataclass(frozen=True)
+class RobotFile:
+    """A robot file as it was read."""
+
+    path: Path
+    node: str
+    """The top key: a node's name, or `/**` for any."""
+    values: Mapping[str, Value]
+    """Every parameter, those that the file leaves out at their defaults."""
+    given: tuple[str, ...]
+    """Names of the parameters that the file gives, in its order."""
+    text: str = field(repr=False)
+    """The file's text, so that it can be written anew with its comments."""
+
+    @property
+    def robot(self) -> Robot:
+        """Geometry, encoders and noise."""
+        return robot_of(self.values)
+
+    @property
+    def tolerance(self) -> PieceTolerance:
+        """When pieces end."""
+        return tolerance_of(self.values)
+
+    @property
+    def limits(self) -> EncoderLimits:
+        """When counters are doubted."""
+        return limits_of(self.values)
+
+
+def read_robot_file(path: str | Path) -> RobotFile:
+    """Read a robot file.
+
+    Parameters
+    ----------
+    path : path
+        Of a YAML file in UTF-8, of at most a megabyte.
+
+    Raises
+    ------
+    InputError
+        When it cannot be used; the message names file, line, parameter, and the mend.
+    """
+    path = Path(path)
+    return _understood(read_text(path), path)
+
+
+def write_robot_file(
+    source: RobotFile, changes: Mapping[str, Value], out: str | Path, *, force: bool = False
+) -> RobotFile:
+    """Write a robot file again with some values changed; its comments and order stay.
+
+    Parameters
+    ----------
+    source : RobotFile
+        Need not be on disk any more: its text was kept.
+    changes : mapping
+        New values by parameter name; parameters that the source does not give are added.
+    out : path
+        May be the source's own path, with `force`.
+    force : bool
+        Whether an existing `out` may be overwritten.
+
+    Returns
+    -------
+    RobotFile
+        What was written.
+
+    Raises
+    ------
+    InputError
+        When a change is not a value of its parameter, or `out` exists or cannot be written; then
+        nothing has been written.
+    """
+    out = Path(out)
+    if out.is_dir():
+        raise InputError(f"{out} is a folder; give a file name in it")
+    if out.exists() and not force:
+        raise InputError(f"{out} exists; --force overwrites it")
+    wanted = {name: find(name).checked(value) for name, value in changes.items()}
+    for name in source.given:
+        if find(name).kind == "float":  # the node's parameters are typed: 2000 is no double
+            wanted.setdefault(name, source.values[name])
+    order = tuple(item.name for item in PARAMETERS)
+    text = edited(source.text, (source.node, PARAMETER_KEY), wanted, order)
+    written = _understood(text, out)
+    if any(written.values[name] != value for name, value in {**source.values, **wanted}.items()):
+        raise InputError(f"{source.path}: its layout cannot be kept; write it in block style")
+    with replacing(out) as file:
+        file.write(text)
+    return written
+
+
+def _understood(text: str, path: Path) -> RobotFile:
+    node, block = _parameter_block(load(text, path), path)
+    given: dict[str, Value] = {}
+    for name, raw in block.items():
+        if isinstance(name, str) and name.split(".")[0] in ROS_OWN:
+            continue
+        try:
+            if name == "effects":
+                _refuse_effects(plain(raw))
+                continue
+            parameter = find(str(name))
+            given[parameter.name] = parameter.checked(_as_ros_reads(parameter, raw))
+        except InputError as error:
+            raise InputError(f"{path}, line {line_of(block, name)}: {error}") from None
+    missing = [item for item in PARAMETERS if item.default is None and item.name not in given]
+    if missing:
+        names = ", ".join(f"{item.name} ({item.unit})" for item in missing)
+        raise InputError(f"{path}: {node} must also give {names}")
+    values = MappingProxyType({**defaults(), **given})
+    return RobotFile(path, node, values, tuple(given), text)
+
+
+def _parameter_block(content: CommentedMap, path: Path) -> tuple[str, CommentedMap]:
+    """The node's name and the parameters below it."""
+    node = next(iter(content), None)
+    if len(content) != 1:
+        named = [name for name in content if isinstance(name, str) and name.strip("/") == NODE]
+        if len(named) != 1 or "/**" in content:
+            names = ", ".join(str(name) for name in content) or "none"
+            raise InputError(
+                f"{path}: a robot file tells of one node ({NODE} or /**); here are: {names}"
+            )
+        node = named[0]
+    if not isinstance(node, str) or not node:
+        raise InputError(f"{path}, line 1: the top key must be a node's name, not {node!r}")
+    line = line_of(content, node)
+    below = content[node]
+    if not isinstance(below, CommentedMap) or PARAMETER_KEY not in below:
+        raise InputError(
+            f"{path}, line {line}: below {node} comes {PARAMETER_KEY}: and then the parameters"
+        )
+    block = below[PARAMETER_KEY]
+    if block is None:
+        block = CommentedMap()
+    if not isinstance(block, CommentedMap):
+        line = line_of(below, PARAMETER_KEY)
+        raise InputError(f"{path}, line {line}: {PARAMETER_KEY} must hold lines of name: value")
+    return node, block
+
+
+def _as_ros_reads(parameter: Parameter, raw: object) -> object:
+    """The value; for a truth value also in the words that ROS takes from YAML 1.1 (yes, off)."""
+    if parameter.kind == "boolean" and type(raw) is str:  # quoted texts are of another type
+        return True if raw in _YES else False if raw in _NO else raw
+    return plain(raw)
+
+
+def _refuse_effects(names: object) -> None:
+    """Physical effects that the model holds: none in this version."""
+    if not isinstance(names, list):
+        raise InputError(f"effects must be a list of names, [] for none, not {names!r}")
+    if names:
+        raise InputError(f"unknown effect {names[0]}: this version knows no effects yet")

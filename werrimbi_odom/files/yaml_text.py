@@ -1,0 +1,147 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""YAML text to plain values with line numbers; hostile text costs little and runs nothing."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
+from ruamel.yaml.error import MarkedYAMLError, YAMLError
+from ruamel.yaml.events import (
+    AliasEvent,
+    DocumentStartEvent,
+    MappingEndEvent,
+    MappingStartEvent,
+    ScalarEvent,
+    SequenceEndEvent,
+    SequenceStartEvent,
+)
+from ruamel.yaml.scalarbool import ScalarBoolean
+
+from werrimbi_odom.errors import InputError
+
+MAX_BYTES = 1_000_000
+MAX_DEPTH = 8
+_ERRORS_OF_SCALARS = (ValueError, ArithmeticError, LookupError, TypeError, AttributeError)
+_TAGS = ("!", *("tag:yaml.org,2002:" + kind for kind in ("str", "int", "float", "bool", "null")))
+
+
+def read_text(path: Path) -> str:
+    """The text of a small UTF-8 file, its line ends made LF.
+
+    Raises
+    ------
+    InputError
+        When it cannot be opened, is larger than `MAX_BYTES`, or is not UTF-8 (with the line).
+    """
+    try:
+        with path.open("rb") as file:
+            raw = file.read(MAX_BYTES + 1)
+    except IsADirectoryError:
+        raise InputError(f"{path} is a folder; give the YAML file in it") from None
+    except FileNotFoundError:
+        raise InputError(f"{path}: there is no such file") from None
+    except (OSError, ValueError) as error:  # ValueError: a NUL byte in the name
+        why = getattr(error, "strerror", None) or str(error)
+        raise InputError(f"{path} cannot be read: {why}") from error
+    if len(raw) > MAX_BYTES:
+        raise InputError(f"{path} is larger than {MAX_BYTES:,} bytes; it is not a robot file")
+    try:
+        text = raw.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        line = raw.count(b"\n", 0, error.start) + 1
+        raise InputError(
+            f"{path}, line {line}: byte 0x{raw[error.start]:02x} is not UTF-8; "
+            "save the file as UTF-8 text"
+        ) from None
+    return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def round_trip() -> YAML:
+    """A reader and writer that keeps comments, order, quotes and the look of numbers."""
+    yaml = YAML(typ="rt", pure=True)
+    yaml.preserve_quotes = True
+    yaml.width = 4096
+    return yaml
+
+
+def load(text: str, path: Path) -> CommentedMap:
+    """The one mapping that a text holds; its keys know their lines (see `line_of`).
+
+    Raises
+    ------
+    InputError
+        When the text is empty, not YAML, not a mapping, or uses what parameter files have no use
+        for and attackers do: aliases, tags, deep nesting, several documents.
+    """
+    yaml = round_trip()
+    try:
+        _refuse_the_unusual(yaml, text, path)
+        content = yaml.load(text)
+    except InputError:
+        raise
+    except MarkedYAMLError as error:
+        mark = error.problem_mark or error.context_mark
+        where = f", line {mark.line + 1}" if mark is not None else ""
+        problem = " ".join(str(error.problem or error.context).split())
+        raise InputError(f"{path}{where}: this is not YAML: {problem}") from None
+    except (
+        YAMLError,
+        ValueError,
+        ArithmeticError,
+        LookupError,
+        TypeError,
+        AttributeError,
+    ) as error:
+        # ruamel lets some errors of its scalars out as they are (a date in month 13)
+        problem = " ".join(str(error).split())
+        raise InputError(f"{path}: this is not YAML: {problem}") from None
+    if content is None:
+        raise InputError(f"{path} is empty; config/robot.yaml is an example to start from")
+    if not isinstance(content, CommentedMap):
+        raise InputError(f"{path}: a robot file begins with the node's name and a colon")
+    return content
+
+
+def _refuse_the_unusual(yaml: YAML, text: str, path: Path) -> None:
+    depth = documents = 0
+    for event in yaml.parse(text):
+        line = event.start_mark.line + 1
+        if isinstance(event, AliasEvent):
+            raise InputError(f"{path}, line {line}: write the value out instead of an alias (*)")
+        if isinstance(event, (MappingStartEvent, SequenceStartEvent)):
+            depth += 1
+            if depth > MAX_DEPTH:
+                raise InputError(f"{path}, line {line}: nested more than {MAX_DEPTH} deep")
+        elif isinstance(event, (MappingEndEvent, SequenceEndEvent)):
+            depth -= 1
+        elif isinstance(event, DocumentStartEvent):
+            documents += 1
+            if documents > 1:
+                raise InputError(f"{path}, line {line}: a second document begins; keep one")
+        if isinstance(event, (MappingStartEvent, SequenceStartEvent, ScalarEvent)):
+            tag = event.tag
+            if tag is not None and str(tag) not in _TAGS:
+                raise InputError(f"{path}, line {line}: the tag {tag} is not allowed; leave it out")
+
+
+def line_of(block: CommentedMap, key: object) -> int:
+    """Line, from 1, on which a key stands."""
+    return int(block.lc.key(key)[0]) + 1
+
+
+def plain(value: Any) -> object:
+    """A value without what the round trip keeps beside it (the look of a number, comments)."""
+    if isinstance(value, CommentedSeq):
+        return [plain(item) for item in value]
+    if isinstance(value, ScalarBoolean):
+        return bool(value)
+    if isinstance(value, bool):
+        return value
+    for kind in (int, float, str):
+        if isinstance(value, kind):
+            return kind(value)
+    return value
