@@ -45,7 +45,10 @@ class Drive(Generic[Number]):
     time: Span[Number]
     """Since the first message [s]."""
     speed: Span[Number]
-    """Forward speed [m/s]: mean of the last step, mean of this one."""
+    """Forward speed [m/s]: mean of the last step, mean of this one.
+
+    In the first step both are its own mean: a record may begin in full motion, and nothing is known
+    of what was before."""
     yaw_rate: Span[Number]
     """[rad/s], likewise."""
     left_speed: Span[Number]
@@ -72,6 +75,10 @@ class Drive(Generic[Number]):
     """The same for the axle's midpoint."""
     reversals: Number
     """How often the axle's midpoint has reversed so far."""
+    left_reversals: Number
+    """The same for the left wheel."""
+    right_reversals: Number
+    """The same for the right wheel."""
     heading: Span[Number]
     """Of the robot in the odometry frame [rad]."""
     channels: Mapping[str, Span[Number]] = field(default_factory=dict)
@@ -98,6 +105,15 @@ class RawStep(NamedTuple):
     """Change of the left wheel's angle [rad]."""
     right_angle: float
     """Change of the right wheel's angle [rad]."""
+
+
+class _Means(NamedTuple):
+    """Speeds over a step [m/s, rad/s, m/s, m/s]."""
+
+    speed: float
+    yaw_rate: float
+    left: float
+    right: float
 
 
 @dataclass(slots=True)
@@ -152,10 +168,7 @@ class DriveMemory:
     right_angle: float = 0.0
     _time: float = 0.0
     _distance: float = 0.0
-    _speed: float = 0.0
-    _yaw_rate: float = 0.0
-    _left_speed: float = 0.0
-    _right_speed: float = 0.0
+    _means: _Means | None = None
     _left: _Shuttle = field(init=False)
     _right: _Shuttle = field(init=False)
     _middle: _Shuttle = field(init=False)
@@ -173,17 +186,19 @@ class DriveMemory:
         """Take one step and tell an effect all that it may know of it."""
         time = Span(self._time, self._time + raw.duration)
         distance = Span(self._distance, self._distance + abs(raw.along))
-        speed = Span(self._speed, raw.along / raw.duration)
-        yaw_rate = Span(self._yaw_rate, raw.turn / raw.duration)
-        left_speed = Span(self._left_speed, raw.left / raw.duration)
-        right_speed = Span(self._right_speed, raw.right / raw.duration)
+        means = _Means(
+            raw.along / raw.duration,
+            raw.turn / raw.duration,
+            raw.left / raw.duration,
+            raw.right / raw.duration,
+        )
+        speed, yaw_rate, left_speed, right_speed = map(Span, self._means or means, means)
         left_angle = Span(self.left_angle, self.left_angle + raw.left_angle)
         right_angle = Span(self.right_angle, self.right_angle + raw.right_angle)
         left, right = self._left.step(raw.left), self._right.step(raw.right)
         middle = self._middle.step(raw.along)
         self._time, self._distance = time.end, distance.end
-        self._speed, self._yaw_rate = speed.end, yaw_rate.end
-        self._left_speed, self._right_speed = left_speed.end, right_speed.end
+        self._means = means
         self.left_angle, self.right_angle = left_angle.end, right_angle.end
         return Drive(
             raw.duration,
@@ -202,6 +217,8 @@ class DriveMemory:
             self._right.direction,
             self._middle.direction,
             float(self._middle.reversals),
+            float(self._left.reversals),
+            float(self._right.reversals),
             Span(heading, heading + raw.turn),
             channels or {},
         )
@@ -243,6 +260,8 @@ def drive_of_run(
         right_side.direction,
         middle.direction,
         middle.reversals,
+        left_side.reversals,
+        right_side.reversals,
         _grown(0.0, turn),
         channels or {},
     )
@@ -261,8 +280,8 @@ def _grown(first: float, steps: Floats) -> Span[Floats]:
 
 
 def _lagged(means: Floats) -> Span[Floats]:
-    """Mean of the step before, and of the step."""
-    return Span(np.concatenate([[0.0], means[:-1]]), means)
+    """Mean of the step before, and of the step; the first step has none before it."""
+    return Span(np.concatenate([means[:1], means[:-1]]), means)
 
 
 def _shuttled(travel: Floats, flicker: float) -> _Shuttled:

@@ -16,14 +16,18 @@ on the heading.
 from __future__ import annotations
 
 import inspect
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, TypeVar
 
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
+from werrimbi_odom.model.pose import Floats
 
 Stage = Literal["wiring", "wheels", "body", "reference"]
+
+Counted = TypeVar("Counted", float, Floats)
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,6 +48,9 @@ class Parameter:
         What the number is, in plain words.
     per_run : bool
         A nuisance that each run has anew (a phase where counters start anywhere).
+    tries : tuple of float
+        Given for a shape (a threshold, a length): it does nothing while the effect's other
+        parameters are null, so no derivative there finds it. A fit begins at each of these values.
     """
 
     unit: str
@@ -52,6 +59,12 @@ class Parameter:
     bounds: tuple[float, float]
     says: str
     per_run: bool = False
+    tries: tuple[float, ...] = ()
+
+    @property
+    def scale(self) -> float:
+        """Distance from null that real robots show; of a shape, its typical size."""
+        return abs(self.typical) if self.tries else abs(self.typical - self.null)
 
 
 class View(NamedTuple):
@@ -75,8 +88,17 @@ class Wiring(NamedTuple):
     """Which counter belongs to which wheel, and which way it counts."""
 
     swapped: bool = False
+    """What is recorded as left is the right wheel."""
     left_sign: float = 1.0
+    """With which the left wheel's counter is read, after the exchange."""
     right_sign: float = 1.0
+    """The same for the right wheel."""
+
+    def wheels(self, left: Counted, right: Counted) -> tuple[Counted, Counted]:
+        """Counts of the true left and right wheel from what is recorded as left and right."""
+        if self.swapped:
+            left, right = right, left
+        return self.left_sign * left, self.right_sign * right
 
 
 Apply = Callable[..., Any]
@@ -84,13 +106,37 @@ Apply = Callable[..., Any]
 
 @dataclass(frozen=True)
 class Effect:
-    """A physical effect of the library, or of a user's package."""
+    """A physical effect of the library, or of a user's package.
+
+    Parameters
+    ----------
+    name : str
+    stage : "wiring", "wheels", "body" or "reference"
+        Where it acts.
+    parameters : mapping of str to Parameter
+        None: a set-up mistake, which is made or not.
+    apply : callable
+        The law.
+    doc : str
+        Its page: what it is, then Formula, Signature, Ruler, Twins.
+    twins : tuple of str
+        Effects that no drive can tell from it, by algebra.
+    quadrature : (str, str), optional
+        Names of an amplitude and a phase [rad]. The amplitude alone has no derivative at null (it
+        depends on the phase); amplitude * cos(phase) and amplitude * sin(phase) have. See
+        `to_fit`.
+    channels : tuple of str
+        Extra measured channels that it looks at; without them it cannot be applied.
+    """
 
     name: str
     stage: Stage
     parameters: Mapping[str, Parameter]
     apply: Apply
     doc: str
+    twins: tuple[str, ...] = ()
+    quadrature: tuple[str, str] | None = None
+    channels: tuple[str, ...] = ()
 
     @property
     def summary(self) -> str:
@@ -102,8 +148,44 @@ class Effect:
         """The values at which it is absent."""
         return {name: item.null for name, item in self.parameters.items()}
 
+    @property
+    def is_mistake(self) -> bool:
+        """Whether it is a set-up mistake: made or not, nothing in between."""
+        return not self.parameters
+
+    def to_fit(self, values: Mapping[str, float]) -> dict[str, float]:
+        """Values in coordinates that have a derivative at null, for a fit to move.
+
+        They are the parameters themselves, but for a `quadrature`: its amplitude and phase become
+        ``AMPLITUDE_cos`` and ``AMPLITUDE_sin``.
+        """
+        if self.quadrature is None:
+            return dict(values)
+        amplitude, phase = self.quadrature
+        size, angle = values[amplitude], values[phase]
+        parts = {
+            f"{amplitude}_cos": size * math.cos(angle),
+            f"{amplitude}_sin": size * math.sin(angle),
+        }
+        return parts | {
+            name: value for name, value in values.items() if name not in (amplitude, phase)
+        }
+
+    def from_fit(self, coordinates: Mapping[str, float]) -> dict[str, float]:
+        """What `to_fit` undoes: parameters from coordinates; the amplitude is not negative."""
+        if self.quadrature is None:
+            return dict(coordinates)
+        amplitude, phase = self.quadrature
+        found = dict(coordinates)
+        cos, sin = found.pop(f"{amplitude}_cos"), found.pop(f"{amplitude}_sin")
+        found[amplitude], found[phase] = math.hypot(cos, sin), math.atan2(sin, cos)
+        return {name: found[name] for name in self.parameters}
+
     def using(self, **values: float) -> AppliedEffect:
         """The effect with values; those not given are null.
+
+        A parameter that each run has anew and that is not given stays `unknown` until somebody
+        (a fit, the node) has learnt it.
 
         Raises
         ------
@@ -120,7 +202,10 @@ class Effect:
                     f"{self.name}.{name} must lie between {low:g} and {high:g} "
                     f"{self.parameters[name].unit}, it is {value:g}"
                 )
-        return AppliedEffect(self, {**self.nulls, **values})
+        unknown = tuple(
+            name for name, item in self.parameters.items() if item.per_run and name not in values
+        )
+        return AppliedEffect(self, {**self.nulls, **values}, unknown)
 
 
 @dataclass(frozen=True)
@@ -129,6 +214,8 @@ class AppliedEffect:
 
     effect: Effect
     values: Mapping[str, float] = field(default_factory=dict)
+    unknown: tuple[str, ...] = ()
+    """Parameters that this run has anew and nobody has learnt yet; their values are the null's."""
 
     @property
     def name(self) -> str:
@@ -136,33 +223,65 @@ class AppliedEffect:
         return self.effect.name
 
 
-def wheel_effect(**parameters: Parameter) -> Callable[[Apply], Effect]:
+def wheel_effect(
+    *,
+    twins: tuple[str, ...] = (),
+    quadrature: tuple[str, str] | None = None,
+    channels: tuple[str, ...] = (),
+    **parameters: Parameter,
+) -> Callable[[Apply], Effect]:
     """Declare ``f(travel, drive, **parameters) -> WheelTravel`` as an effect on the wheels."""
-    return _declared("wheels", parameters)
+    return _declared("wheels", parameters, 2, twins, quadrature, channels)
 
 
-def body_effect(**parameters: Parameter) -> Callable[[Apply], Effect]:
+def body_effect(
+    *,
+    twins: tuple[str, ...] = (),
+    quadrature: tuple[str, str] | None = None,
+    channels: tuple[str, ...] = (),
+    **parameters: Parameter,
+) -> Callable[[Apply], Effect]:
     """Declare ``f(motion, drive, **parameters) -> BodyMotion`` as an effect on the body."""
-    return _declared("body", parameters)
+    return _declared("body", parameters, 2, twins, quadrature, channels)
 
 
-def reference_effect(**parameters: Parameter) -> Callable[[Apply], Effect]:
+def reference_effect(
+    *, twins: tuple[str, ...] = (), **parameters: Parameter
+) -> Callable[[Apply], Effect]:
     """Declare ``f(view, **parameters) -> View`` as an effect of the measurement."""
-    return _declared("reference", parameters)
+    return _declared("reference", parameters, 1, twins)
 
 
-def wiring_mistake(apply: Apply) -> Effect:
+def wiring_mistake(*, twins: tuple[str, ...] = ()) -> Callable[[Apply], Effect]:
     """Declare ``f(wiring) -> Wiring`` as a set-up mistake: it is made, or it is not."""
-    return _declared("wiring", {})(apply)
+    return _declared("wiring", {}, 1, twins)
 
 
-def _declared(stage: Stage, parameters: Mapping[str, Parameter]) -> Callable[[Apply], Effect]:
+def _declared(
+    stage: Stage,
+    parameters: Mapping[str, Parameter],
+    looked_at: int,
+    twins: tuple[str, ...],
+    quadrature: tuple[str, str] | None = None,
+    channels: tuple[str, ...] = (),
+) -> Callable[[Apply], Effect]:
     def declare(apply: Apply) -> Effect:
         name = apply.__name__
         doc = inspect.getdoc(apply)
         if not doc:
             raise TypeError(f"effect {name} needs a docstring: people will read it")
-        return Effect(name, stage, dict(parameters), apply, doc)
+        taken = list(inspect.signature(apply).parameters)
+        if taken[looked_at:] != list(parameters) or len(taken) < looked_at:
+            raise TypeError(
+                f"effect {name} declares the parameters ({', '.join(parameters)}), but its "
+                f"function takes ({', '.join(taken[looked_at:])}) after the first {looked_at}; "
+                "both must be the same, in the same order"
+            )
+        if quadrature is not None and not set(quadrature) <= set(parameters):
+            raise TypeError(
+                f"effect {name}: its quadrature names {quadrature}, no parameters of it"
+            )
+        return Effect(name, stage, dict(parameters), apply, doc, twins, quadrature, channels)
 
     return declare
 
