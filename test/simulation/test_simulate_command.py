@@ -104,7 +104,9 @@ def test_a_file_is_left_alone(tmp_path: Path) -> None:
     [
         ("trackwidth", "did you mean track_width"),
         ("track_width=wide", "not a number"),
-        ("track_width=nan", "finite"),
+        ("track_width=nan", "cannot be nan"),
+        ("track_width=0", "cannot be 0"),
+        ("eccentric_left_wheel=inf", "cannot be inf"),
         ("", "nothing called ''"),
     ],
 )
@@ -113,6 +115,15 @@ def test_a_wish_that_cannot_be_met(tmp_path: Path, wish: str, answer: str) -> No
         call("--out", str(tmp_path / "day"), "--hide", wish)
     assert "\n" not in str(refusal.value)
     assert not (tmp_path / "day").exists()
+
+
+@pytest.mark.usefixtures("short_day")
+@pytest.mark.parametrize("wish", ["eccentric_left_wheel=5", "unequal_wheel_radii=1e-9"])
+def test_a_robot_that_cannot_be_built(tmp_path: Path, wish: str) -> None:
+    with pytest.raises(InputError, match="no such robot can be built") as refusal:
+        call("--out", str(tmp_path / "day"), "--hide", wish)
+    assert "\n" not in str(refusal.value)
+    assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.usefixtures("short_day")

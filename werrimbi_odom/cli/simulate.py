@@ -49,6 +49,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="the same seed, the same drives (default 1)",
     )
     parser.add_argument(
+        "--counters-keep-zero",
+        action="store_true",
+        help="a counter's zero always belongs to the same angle of its wheel (absolute encoders); "
+        "by default counters start anywhere, as after switching on",
+    )
+    parser.add_argument(
         "--list", action="store_true", help="list what can be hidden, with units, and stop"
     )
 
@@ -77,7 +83,11 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.seed < 0:
         raise InputError("simulate: --seed must not be negative")
     hidden = _chosen(arguments.hide, arguments.seed)
-    robot = simulation.TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
+    robot = simulation.TrueRobot(
+        left_wheel_noise=4.0e-4,
+        right_wheel_noise=5.8e-4,
+        counters_keep_zero=arguments.counters_keep_zero,
+    )
     odd = [each.peculiarity for each in hidden]
     with _new_folder(arguments.out) as folder:
         written = robot
@@ -85,8 +95,11 @@ def run(arguments: argparse.Namespace) -> int:
             written = each.written(written)
         simulation.write_robot_file(written, folder / "robot.yaml")
         runs = simulation.session(robot, arguments.seed, hidden=odd)
-        for name, recording in _with_progress(runs, len(simulation.drives(arguments.seed))):
-            simulation.write_run(recording, folder / name)
+        try:
+            for name, recording in _with_progress(runs, len(simulation.drives(arguments.seed))):
+                simulation.write_run(recording, folder / name)
+        except (simulation.UnstableError, ValueError) as error:
+            raise InputError(f"no such robot can be built: {str(error).splitlines()[0]}") from error
         truth = _truth(hidden, arguments.seed, robot)
         (folder / "truth.json").write_text(json.dumps(truth, indent=2) + "\n", encoding="utf-8")
     out = arguments.out
@@ -97,7 +110,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _chosen(wishes: Sequence[str], seed: int) -> list[Hidden]:
     """What was asked for with --hide, its strengths drawn where they were not given."""
-    from werrimbi_odom.simulation import UnknownEffectError, hide
+    from werrimbi_odom.simulation import StrengthError, UnknownEffectError, hide
 
     hidden = []
     for number_of_wish, wish in enumerate(wishes):
@@ -106,12 +119,12 @@ def _chosen(wishes: Sequence[str], seed: int) -> list[Hidden]:
             strength = float(number) if number else None
         except ValueError:
             raise InputError(f"--hide {wish}: the strength {number!r} is not a number") from None
-        if strength is not None and not abs(strength) < float("inf"):
-            raise InputError(f"--hide {wish}: the strength must be finite")
         try:
             hidden.append(hide(name, strength, seed=seed, number=number_of_wish))
         except UnknownEffectError as error:
             raise InputError(f"--hide {wish}: {error} (all: werrimbi simulate --list)") from error
+        except StrengthError as error:
+            raise InputError(f"--hide {wish}: {error}") from error
     return hidden
 
 

@@ -15,8 +15,8 @@ happens), `wheel_noise`, `sensors` (what is seen of it), `recorder` (one drive),
 `sessions` (a day of drives), `hidden` (effects for others to find).
 """
 
-from .engine import Pose, TruePath
-from .hidden import CATALOGUE, Hidden, Peculiarity, UnknownEffectError, hide
+from .engine import Pose, TruePath, UnstableError
+from .hidden import CATALOGUE, Hidden, Peculiarity, StrengthError, UnknownEffectError, hide
 from .manoeuvre import Manoeuvre, Pace, moves
 from .manoeuvres import (
     arcs,
@@ -48,9 +48,11 @@ __all__ = [
     "Pose",
     "Recording",
     "ReferenceSensor",
+    "StrengthError",
     "TruePath",
     "TrueRobot",
     "UnknownEffectError",
+    "UnstableError",
     "arcs",
     "chain",
     "drives",

@@ -6,7 +6,25 @@
 realistic strengths; each other file holds one family of them.
 """
 
-from .catalogue import CATALOGUE, Entry, Hidden, UnknownEffectError, find, hide
+from .catalogue import CATALOGUE, Entry, Hidden, StrengthError, UnknownEffectError, find, hide
 from .peculiarity import Peculiarity
 
-__all__ = ["CATALOGUE", "Entry", "Hidden", "Peculiarity", "UnknownEffectError", "find", "hide"]
+    "CATALOGUE",
+    "Entry",
+    "Hidden",
+    "Peculiarity",
+    "StrengthError",
+    "UnknownEffectError",
+    "find",
+    "hide",
+]
+__all__ = [
+    "CATALOGUE",
+    "Entry",
+    "Hidden",
+    "Peculiarity",
+    "StrengthError",
+    "UnknownEffectError",
+    "find",
+    "hide",
+]

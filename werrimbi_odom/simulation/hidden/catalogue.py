@@ -30,6 +30,10 @@ class UnknownEffectError(ValueError):
     """There is no such effect to hide."""
 
 
+class StrengthError(ValueError):
+    """An effect cannot be that strong."""
+
+
 @dataclass(frozen=True)
 class Entry:
     """One thing that can be hidden.
@@ -72,9 +76,12 @@ class Entry:
     @property
     def range_in_words(self) -> str:
         """The realistic strengths, for people."""
+        if self.kind == "mistake":
+            return "yes or no"
         null = f"{self.null:g} " if self.null else ""
         sign = "+/- " if self.signed else ""
-        return f"{null}{sign}{self.low:g} to {self.high:g} {self.unit}"
+        unit = f" {self.unit}" if self.unit != "1" else ""
+        return f"{null}{sign}{self.low:g} to {self.high:g}{unit}"
 
 
 @dataclass(frozen=True)
@@ -191,7 +198,7 @@ CATALOGUE: tuple[Entry, ...] = (
     Entry("cable_pull", lambda s, rng: CablePull(s, _anywhere(rng)), "rad/m", 0.005, 0.05,
             "turning towards one direction of the room", signed=False, kind="outside"),
     Entry("oval_wheel", lambda s, rng: OvalWheel("left" if _either(rng) else "right", s), "1",
-            0.005, 0.02, "out-of-roundness of one wheel", signed=False, kind="outside"),
+            0.01, 0.05, "out-of-roundness of one wheel", signed=False, kind="outside"),
 )
 # fmt: on
 
@@ -224,4 +231,6 @@ def hide(name: str, strength: float | None = None, *, seed: int, number: int = 0
     entry = find(name)
     drawn = entry.draw(rng)
     strength = drawn if strength is None else strength
+    if not math.isfinite(strength) or (entry.null > 0 and strength <= 0):
+        raise StrengthError(f"the strength of {entry.name} cannot be {strength:g}")
     return Hidden(entry, strength, entry.make(strength, rng))
