@@ -9,15 +9,6 @@ realistic strengths; each other file holds one family of them.
 from .catalogue import CATALOGUE, Entry, Hidden, StrengthError, UnknownEffectError, find, hide
 from .peculiarity import Peculiarity
 
-    "CATALOGUE",
-    "Entry",
-    "Hidden",
-    "Peculiarity",
-    "StrengthError",
-    "UnknownEffectError",
-    "find",
-    "hide",
-]
 __all__ = [
     "CATALOGUE",
     "Entry",
