@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 import time as clock
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -47,9 +48,9 @@ class Answers:
 
 
 class Player(Node):  # type: ignore[misc]
-    """Publishes JointState on `joint_states` and listens to `odom` and `odom_node/pieces`."""
+    """Publishes JointState on `joint_states`; listens to `odom` and the node's `~/pieces`."""
 
-    def __init__(self) -> None:
+    def __init__(self, node_name: str = "odom_node") -> None:
         super().__init__("werrimbi_player")
         deep = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE)
         self.answers = Answers()
@@ -57,12 +58,12 @@ class Player(Node):  # type: ignore[misc]
         self._ticks = self.create_publisher(JointState, "joint_states", deep)
         self._pose = self.create_publisher(PoseWithCovarianceStamped, "set_pose", 10)
         self.create_subscription(Odometry, "odom", self._on_odometry, deep)
-        self.create_subscription(MarkerArray, "odom_node/pieces", self._on_pieces, 10)
+        self.create_subscription(MarkerArray, f"{node_name}/pieces", self._on_pieces, deep)
 
-    def wait_for_node(self, seconds: float) -> bool:
+    def wait_for_node(self, seconds: float, alive: Callable[[], bool]) -> bool:
         """Wait until the node listens to ticks and poses; False when it does not come up."""
         until = clock.monotonic() + seconds
-        while clock.monotonic() < until:
+        while clock.monotonic() < until and alive():
             if self._ticks.get_subscription_count() and self._pose.get_subscription_count():
                 return True
             rclpy.spin_once(self, timeout_sec=0.05)
@@ -74,7 +75,8 @@ class Player(Node):  # type: ignore[misc]
         left: Floats,
         right: Floats,
         *,
-        names: tuple[str, str],
+        left_names: Sequence[str],
+        right_names: Sequence[str],
         start: tuple[float, float, float],
         frame: str,
     ) -> Answers:
@@ -84,8 +86,8 @@ class Player(Node):  # type: ignore[misc]
         ----------
         time, left, right : ndarray, shape (n,)
             Stamps [s] and cumulative counts, as recorded.
-        names : pair of str
-            Joint names of the two wheels.
+        left_names, right_names : sequence of str
+            Joint names of the wheels; all of a side show the same count.
         start : (x, y, yaw)
             [m, m, rad], in `frame`.
         """
@@ -99,8 +101,8 @@ class Player(Node):  # type: ignore[misc]
         ):
             message = JointState()
             message.header.stamp = stamp_of(stamp + self.offset)
-            message.name = list(names)
-            message.position = [float(left_count), float(right_count)]
+            message.name = [*left_names, *right_names]
+            message.position = [left_count] * len(left_names) + [right_count] * len(right_names)
             self._ticks.publish(message)
             rclpy.spin_once(self, timeout_sec=0.0)
             while row - base - len(self.answers.time) > IN_FLIGHT:

@@ -1,0 +1,199 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi calibrate fit`: base, radii and noise from any driving with a reference."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from werrimbi_odom.cli.calibration_files import add_file_arguments, write_all
+
+if TYPE_CHECKING:
+    from werrimbi_odom.files.robot_file import RobotFile
+    from werrimbi_odom.inference.calibration import Calibration
+    from werrimbi_odom.inference.matching import MatchedRun
+
+_PARTS_OF_A_LEG = 4  # the fit uses shorter legs than are judged: they tell noise from drift
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options."""
+    parser.description = (
+        "Maximum likelihood of wheel separation, both radii and the noise of both wheels, from "
+        "recorded drives with a reference, several at once. What the driving does not determine is "
+        "left alone; when calibration is not what is missing, that is said."
+    )
+    parser.add_argument("runs", metavar="RUN", nargs="+", type=Path, help="folders or bags")
+    parser.add_argument(
+        "--holdout", metavar="RUN", nargs="+", type=Path, help="runs to judge on, not to fit"
+    )
+    parser.add_argument(
+        "--leg", metavar="M", type=float, default=1.0, help="length of a leg to judge by [m]"
+    )
+    parser.add_argument(
+        "--reference-kind",
+        choices=("absolute", "incremental"),
+        default="absolute",
+        help="each pose has noise of its own (motion capture), or noise adds up (scan matcher)",
+    )
+    parser.add_argument("--reference-sigma-xy", metavar="M", type=float, help="if known [m]")
+    parser.add_argument("--reference-sigma-yaw", metavar="RAD", type=float, help="if known [rad]")
+    parser.add_argument("--ticks-topic", metavar="T", help="of a bag, where it has several")
+    parser.add_argument("--reference-topic", metavar="T", help="of a bag, where it has several")
+    add_file_arguments(parser)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Calibrate; 0 on success."""
+    from werrimbi_odom.files.robot_file import read_robot_file
+    from werrimbi_odom.inference.calibration import calibrate
+
+    source = read_robot_file(arguments.robot)
+    short = arguments.leg / _PARTS_OF_A_LEG
+    runs = _matched(arguments.runs, source, short, arguments)
+    result = calibrate(
+        runs,
+        source.robot,
+        arguments.reference_kind,
+        sigma_xy=arguments.reference_sigma_xy or _stated(runs, "sigma_xy"),
+        sigma_yaw=arguments.reference_sigma_yaw or _stated(runs, "sigma_yaw"),
+    )
+    _say(result)
+    figures = _json(result)
+    if arguments.holdout:
+        held_out = _matched(arguments.holdout, source, arguments.leg, arguments)
+        figures["holdout"] = _judged(held_out, source, result)
+    changes = {name: item.value for name, item in result.multipliers.items() if item.determined}
+    for name in ("left_wheel_noise", "right_wheel_noise"):
+        if result.noises[name].determined:
+            changes[name] = result.noises[name].value
+    write_all(arguments, source, changes, figures, None)
+    return 0
+
+
+def _matched(
+    paths: Sequence[Path], source: RobotFile, leg: float, arguments: argparse.Namespace
+) -> list[MatchedRun]:
+    from werrimbi_odom.cli.progress import with_progress
+    from werrimbi_odom.files.run import read_run
+    from werrimbi_odom.inference.matching import match
+
+    return [
+        match(
+            read_run(
+                path,
+                source,
+                ticks_topic=arguments.ticks_topic,
+                reference_topic=arguments.reference_topic,
+            ),
+            source.robot,
+            leg,
+            source.limits,
+        )
+        for path in with_progress(paths, "reading runs")
+    ]
+
+
+def _stated(runs: Sequence[MatchedRun], name: str) -> float | None:
+    """The reference's noise as the records state it, if all of them do."""
+    stated = [getattr(run, name) for run in runs]
+    return None if any(value is None for value in stated) else max(stated)
+
+
+def _say(result: Calibration) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console()
+    table = Table(title="Calibration by maximum likelihood")
+    for heading in ("parameter", "before", "after", "± 1σ", ""):
+        table.add_column(heading, justify="left" if heading in ("parameter", "") else "right")
+    for name, item in result.multipliers.items():
+        std = "?" if item.std is None else f"{item.std:.6f}"
+        remark = "" if item.determined else "not determined by this driving; left alone"
+        table.add_row(name, f"{item.before:.6f}", f"{item.value:.6f}", std, remark)
+    for name, noise in result.noises.items():
+        before = getattr(result.fit.robot, name, None)
+        if not noise.determined:
+            remark = f"not determined by this driving (at most about {2.0 * noise.std:.1e})"
+        else:
+            remark = "m^0.5" if name.endswith("noise") else "m" if name.endswith("xy") else "rad"
+        table.add_row(
+            name,
+            "" if before is None else f"{before:.2e}",
+            f"{noise.value:.2e}" if noise.determined else "",
+            f"{noise.std:.1e}" if noise.determined else "",
+            remark,
+        )
+    console.print(table)
+    left_out = sum(int(legs.sum()) for legs in result.excluded)
+    if left_out:
+        console.print(f"{left_out} legs on which the reference jumped were left out.")
+    if result.trusted:
+        console.print("The model explains these drives to their noise.")
+        return
+    console.print("[bold red]Something else is missing: calibration does not explain these drives.")
+    for words in result.strange:
+        console.print(f"  - {words}", markup=False)
+    for item in result.misfit[:5]:
+        console.print(
+            f"  - the {item.channel} error still goes with {item.variable} (p = {item.p_value:.0e})",
+            markup=False,
+        )
+    console.print(
+        "The values above are the best of a model that does not fit, so they have no error bars. "
+        "Look first at how the reference is mounted and named: its point on the robot, its forward "
+        "axis, its frame (y to the left, yaw anticlockwise), its clock."
+    )
+
+
+def _judged(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) -> dict[str, Any]:
+    """Errors over legs of runs that took no part, before and after; prints them."""
+    import numpy as np
+
+    from werrimbi_odom.inference.calibration import leg_distances
+
+    headings: list[float | None] = [None] * len(runs)
+    figures: dict[str, Any] = {}
+    for word, robot in (("before", source.robot), ("after", result.robot)):
+        errors = leg_distances(robot, runs, headings)
+        errors = errors[np.isfinite(errors)]
+        if errors.size == 0:
+            print("held-out runs have no headings; legs cannot be judged one by one")
+            return figures
+        figures[word] = float(np.sqrt(np.mean(errors**2)))
+        figures[f"median_{word}"] = float(np.median(errors))
+    print(
+        f"held-out legs: rms {1e3 * figures['before']:.2f} mm before, "
+        f"{1e3 * figures['after']:.2f} mm after; median "
+        f"{1e3 * figures['median_before']:.2f} mm before, {1e3 * figures['median_after']:.2f} mm after"
+    )
+    return figures
+
+
+def _json(result: Calibration) -> dict[str, Any]:
+    parameters: dict[str, Any] = {}
+    for name, item in result.multipliers.items():
+        parameters[name] = {"value": item.value, "std": item.std, "determined": item.determined}
+    for name, noise in result.noises.items():
+        parameters[name] = {
+            "value": noise.value,
+            "std": noise.std if noise.determined and result.trusted else None,
+            "determined": noise.determined,
+        }
+    return {
+        "parameters": parameters,
+        "correlation": {
+            "names": [knob.name for knob in result.fit.free],
+            "matrix": result.correlation.tolist(),
+        },
+        "trusted": result.trusted,
+        "something_else_is_missing": [
+            *result.strange,
+            *(f"{item.channel} error goes with {item.variable}" for item in result.misfit),
+        ],
+        "outliers": sum(int(legs.sum()) for legs in result.excluded),
+    }

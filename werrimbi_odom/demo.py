@@ -1,0 +1,289 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`make demo`: recorded ticks through the real `odom_node` over DDS, and how far off it ends.
+
+The node runs as a process of its own, just as on a robot; the ticks are sent as JointState messages
+faster than real time; everything printed comes from the messages that the node publishes.
+"""
+
+from __future__ import annotations
+
+import argparse
+import math
+import os
+import random
+import signal
+import subprocess
+import sys
+import tempfile
+import time as clock
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.run import Reference, Run, read_run
+from werrimbi_odom.files.start_pose import start_pose
+from werrimbi_odom.model.pose import Pose, wrap
+from werrimbi_odom.model.trajectory import trajectory
+from werrimbi_odom.report.path_figure import PathDrawing, path_figure
+from werrimbi_odom.report.save import save_page, save_png
+
+if TYPE_CHECKING:
+    from werrimbi_odom.ros.player import Answers
+
+RECORDING = Path(__file__).parent / "recordings" / "square"
+
+
+@dataclass(frozen=True, slots=True)
+class Ending:
+    """Where the drive ended: as the node says, and as was measured (if it was)."""
+
+    pose: Pose
+    covariance: np.ndarray
+    """Of (x, y, yaw), odometry frame, shape (3, 3)."""
+    measured: Pose | None
+    """NaN where a coordinate was not measured."""
+
+    @property
+    def sigmas(self) -> np.ndarray:
+        """1σ along the robot's heading, across it [m], and in heading [rad]."""
+        turned = self._to_robot() @ self.covariance @ self._to_robot().T
+        return np.sqrt(np.maximum(np.diag(turned), 0.0))
+
+    @property
+    def error(self) -> np.ndarray | None:
+        """Measured minus odometry: along, across [m] and heading [rad]."""
+        if self.measured is None:
+            return None
+        difference = np.array(self.measured) - np.array(self.pose)
+        difference[2] = wrap(float(difference[2]))
+        turn = self._to_robot()
+        position = turn[:2, :2] @ difference[:2]
+        return np.array([*position, difference[2]])
+
+    @property
+    def deviation(self) -> float | None:
+        """Mahalanobis distance of the error over what was measured, in σ."""
+        if self.measured is None:
+            return None
+        difference = np.array(self.measured) - np.array(self.pose)
+        difference[2] = wrap(float(difference[2]))
+        known = np.flatnonzero(np.isfinite(difference))
+        if known.size == 0:
+            return None
+        part = difference[known]
+        block = self.covariance[np.ix_(known, known)]
+        return float(np.sqrt(part @ np.linalg.pinv(block, hermitian=True) @ part))
+
+    def _to_robot(self) -> np.ndarray:
+        cos, sin = math.cos(self.pose.yaw), math.sin(self.pose.yaw)
+        return np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+
+
+def main(argv: list[str] | None = None) -> int:
+    """Run the demo; 0 on success, 2 for input that cannot be used."""
+    parser = argparse.ArgumentParser(prog="make demo", description=__doc__)
+    parser.add_argument("--robot", type=Path, default=RECORDING / "robot.yaml")
+    parser.add_argument("--run", type=Path, default=RECORDING, help="folder or bag")
+    parser.add_argument("--out", type=Path, default=Path("demo"), help="folder for the picture")
+    arguments = parser.parse_args(argv)
+    try:
+        return demonstrate(arguments.robot, arguments.run, arguments.out)
+    except InputError as error:
+        print(f"demo: {error}", file=sys.stderr)
+        return 2
+
+
+def demonstrate(robot_path: Path, run_path: Path, out: Path) -> int:
+    """Play a run to a node of its own, print what came back, draw it."""
+    robot_file = read_robot_file(robot_path)
+    run = read_run(run_path, robot_file)
+    start = start_pose(run, robot_file)
+    began = clock.monotonic()
+    answers = _through_the_node(robot_file, run, start)
+    seconds = clock.monotonic() - began
+    if not answers.time:
+        raise InputError("the node answered nothing; its own words are above")
+    ending = Ending(
+        Pose(answers.x[-1], answers.y[-1], answers.yaw[-1]),
+        answers.covariance[-1],
+        measured_at(run.reference, answers.time[-1]) if run.reference else None,
+    )
+    _print(robot_file, run, start, answers, ending, seconds)
+    _draw(run, start, answers, ending, out)
+    return 0
+
+
+def measured_at(reference: Reference, time: float) -> Pose:
+    """The reference's pose at a time, between its rows; its last one after its end."""
+
+    def at(values: np.ndarray) -> float:
+        known = np.isfinite(values)
+        if not known.any():
+            return math.nan
+        return float(np.interp(time, reference.time[known], values[known]))
+
+    known = np.isfinite(reference.yaw)
+    unwrapped = np.full_like(reference.yaw, np.nan)
+    unwrapped[known] = np.unwrap(reference.yaw[known])
+    return Pose(at(reference.x), at(reference.y), at(unwrapped))
+
+
+@contextmanager
+def _node(robot_file: RobotFile, logs: str) -> Iterator[subprocess.Popen[bytes]]:
+    command = [
+        *(sys.executable, "-m", "werrimbi_odom.ros.odom_node", "--ros-args"),
+        *("--params-file", str(robot_file.path)),
+        *("-p", "input_type:=joint_state", "-p", "position_unit:=ticks"),
+    ]
+    if "*" not in robot_file.node:
+        command += ["-r", f"__node:={robot_file.node.strip('/').rpartition('/')[2]}"]
+    node = subprocess.Popen(command, env={**os.environ, "ROS_LOG_DIR": logs})
+    try:
+        yield node
+    finally:
+        node.send_signal(signal.SIGINT)
+        try:
+            node.wait(timeout=10.0)
+        except subprocess.TimeoutExpired:
+            node.kill()
+
+
+def _through_the_node(robot_file: RobotFile, run: Run, start: Pose) -> Answers:
+    # A domain of our own: a robot on the same network must not hear these ticks.
+    os.environ["ROS_DOMAIN_ID"] = str(random.randint(1, 100))
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
+    import rclpy
+
+    from werrimbi_odom.ros.player import Player
+
+    values = robot_file.values
+    with tempfile.TemporaryDirectory() as logs:
+        os.environ["ROS_LOG_DIR"] = logs
+        with _node(robot_file, logs) as node:
+            rclpy.init()
+            name = "odom_node" if "*" in robot_file.node else robot_file.node.rpartition("/")[2]
+            player = Player(name)
+            try:
+                if not player.wait_for_node(20.0, lambda: node.poll() is None):
+                    raise InputError("odom_node did not start; its own words are above")
+                return player.play(
+                    run.ticks.time,
+                    np.asarray(run.ticks.left, dtype=np.float64),
+                    np.asarray(run.ticks.right, dtype=np.float64),
+                    left_names=values["left_wheel_names"],  # type: ignore[arg-type]
+                    right_names=values["right_wheel_names"],  # type: ignore[arg-type]
+                    start=start,
+                    frame=str(values["odom_frame_id"]),
+                )
+            finally:
+                player.destroy_node()
+                rclpy.try_shutdown()
+
+
+def _print(
+    robot_file: RobotFile, run: Run, start: Pose, answers: Answers, ending: Ending, seconds: float
+) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    offline = trajectory(
+        robot_file.robot,
+        run.ticks.time,
+        run.ticks.left,
+        run.ticks.right,
+        start=start,
+        tolerance=robot_file.tolerance,
+        limits=robot_file.limits,
+    )
+    lasted = float(run.ticks.time[-1] - run.ticks.time[0])
+    distance = float(np.sum(np.hypot(np.diff(answers.x), np.diff(answers.y))))
+    apart = math.hypot(offline.x[-1] - ending.pose.x, offline.y[-1] - ending.pose.y)
+    kinds = ", ".join(f"{count} {kind}s" for kind, count in answers.counts_by_kind().items())
+    table = Table(title=f"{run.name} through odom_node over DDS", show_header=False)
+    table.add_column()
+    table.add_column(justify="left")
+    table.add_row("ticks played", f"{run.ticks.rows} messages, {lasted:.0f} s of driving in {seconds:.1f} s")
+    table.add_row("odometry received", f"{len(answers.time)} messages")
+    table.add_row("pieces", kinds)
+    table.add_row("distance", f"{distance:.3f} m")
+    table.add_row("every tick accounted for", f"ends {1e6 * apart:.3f} µm from the same ticks worked out offline")
+    table.add_section()
+    table.add_row("final pose", _pose(ending.pose))
+    if ending.measured is not None:
+        table.add_row("true pose", _pose(ending.measured))
+    for index, name in enumerate(("along", "across", "heading")):
+        table.add_row(f"1σ {name}" + _error_of(name), _sigma(ending, index))
+    console = Console()
+    console.print(table)
+    console.print(_in_words(ending), markup=False)
+
+
+def _error_of(name: str) -> str:
+    return f", error {name}"
+
+
+def _pose(pose: Pose) -> str:
+    def part(value: float, unit: str) -> str:
+        return "not measured" if math.isnan(value) else f"{value:8.3f} {unit}"
+
+    yaw = math.degrees(wrap(pose.yaw)) if math.isfinite(pose.yaw) else math.nan
+    return f"x {part(pose.x, 'm')}   y {part(pose.y, 'm')}   heading {part(yaw, 'deg')}"
+
+
+def _sigma(ending: Ending, index: int) -> str:
+    scale, unit = (180.0 / math.pi, "deg") if index == 2 else (1e3, "mm")
+    sigma = float(ending.sigmas[index])
+    words = f"{scale * sigma:8.2f} {unit}"
+    error = ending.error
+    if error is None or not math.isfinite(error[index]):
+        return words
+    off = float(error[index])
+    return f"{words}, {scale * off:+9.2f} {unit} = {off / sigma:+6.1f} σ" if sigma else words
+
+
+def _in_words(ending: Ending) -> str:
+    deviation = ending.deviation
+    if deviation is None:
+        return "Nothing was measured, so nothing can be said about the error."
+    if deviation < 3.4:  # 99 % of chi with 3 degrees of freedom
+        return (
+            f"The end lies {deviation:.1f} σ from the truth, all directions together: "
+            "the covariance promised just that."
+        )
+    return (
+        f"The end lies {deviation:.1f} σ from the truth, all directions together: far more than noise "
+        "explains. The robot file is not calibrated, or a physical effect is missing. "
+        "Next: werrimbi calibrate fit."
+    )
+
+
+def _draw(run: Run, start: Pose, answers: Answers, ending: Ending, out: Path) -> None:
+    reference = run.reference
+    deviation = ending.deviation
+    drawing = PathDrawing(
+        np.array([start.x, *answers.x]),
+        np.array([start.y, *answers.y]),
+        np.array([np.zeros((2, 2)), *(block[:2, :2] for block in answers.covariance)]),
+        None if reference is None else reference.x,
+        None if reference is None else reference.y,
+        title=f"{run.name}: odometry of odom_node with its 95 % ellipses",
+        subtitle="" if deviation is None else f"end {deviation:.1f} σ from what was measured",
+    )
+    figure = path_figure(drawing)
+    save_page(figure, out / "path.html")
+    print(f"\npicture: {out / 'path.html'} (interactive)")
+    if save_png(figure, out / "path.png"):
+        print(f"         {out / 'path.png'}")
+    else:
+        print("         (no PNG: it needs Chrome or Chromium, e.g. apt install chromium)")
+
+
+if __name__ == "__main__":
+    sys.exit(main())
