@@ -1,0 +1,149 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What becomes of the input, for /diagnostics: rates, refusals with their cause, silent wheels."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Mapping
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+
+from werrimbi_odom.model.encoder import EncoderTally
+
+OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
+ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
+
+_WORTH_A_WARNING = ("resets", "jumps", "implausible", "clock_jumps", "out_of_order", "gaps")
+
+
+class Health:
+    """Counts since the node was started, and what they mean for the last second.
+
+    Parameters
+    ----------
+    logger : rclpy logger
+        Told of the first refusal of each cause; the rest is only counted.
+    topics : tuple of str
+        Resolved names of the topics that must keep talking.
+    silent_after : float
+        Time without a message [s] after which a topic counts as silent.
+    """
+
+    def __init__(self, logger: Any, topics: tuple[str, ...], silent_after: float) -> None:
+        self.silent_after = silent_after
+        self.published = 0
+        self.unstamped = 0
+        self._logger = logger
+        self._topics = topics
+        self._heard = [0] * len(topics)
+        self._heard_at = [-float("inf")] * len(topics)
+        self._refused: Counter[str] = Counter()
+        self._refused_poses: Counter[str] = Counter()
+        self._lost = 0
+        self._before: dict[str, int] = {}
+        self._reported_at = time.monotonic()
+
+    def hear(self, topic: int) -> None:
+        """Note that a message has arrived."""
+        self._heard[topic] += 1
+        self._heard_at[topic] = time.monotonic()
+
+    def refuse(self, cause: str, detail: str) -> None:
+        """Note that an input message could not be used."""
+        self._note(self._refused, f"input refused: {cause}", cause, detail)
+
+    def refuse_pose(self, cause: str, detail: str) -> None:
+        """Note that a message on set_pose could not be used."""
+        self._note(self._refused_poses, f"set_pose refused: {cause}", cause, detail)
+
+    def lose(self, event: Any) -> None:
+        """Note that DDS has lost input messages."""
+        self._lost = event.total_count
+
+    def report(self, name: str, tally: EncoderTally, inputs: Mapping[str, int]) -> DiagnosticStatus:
+        """How things stand, and at which rate they went since the last report.
+
+        Parameters
+        ----------
+        name : str
+            Of the status.
+        tally : EncoderTally
+            What the model's encoder made of the readings.
+        inputs : mapping
+            Further counts of the input.
+        """
+        now = time.monotonic()
+        counts = self._counts(tally, inputs)
+        new = Counter(counts)
+        new.subtract(self._before)
+        elapsed = max(now - self._reported_at, 1e-9)
+        self._before, self._reported_at = counts, now
+        rates = {
+            "input rate": f"{new['messages'] / elapsed:.1f} Hz",
+            "output rate": f"{new['published'] / elapsed:.1f} Hz",
+        }
+        level, words = self._verdict(now, new)
+        values = [KeyValue(key=key, value=str(value)) for key, value in (rates | counts).items()]
+        return DiagnosticStatus(
+            level=level,
+            name=name,
+            message=words or f"{rates['input rate']} in, {rates['output rate']} out",
+            hardware_id="wheel encoders",
+            values=values,
+        )
+
+    def _counts(self, tally: EncoderTally, inputs: Mapping[str, int]) -> dict[str, int]:
+        heard = {
+            f"messages on {topic}": n for topic, n in zip(self._topics, self._heard, strict=True)
+        }
+        return {
+            "messages": sum(self._heard),
+            **(heard if len(heard) > 1 else {}),
+            "lost by DDS": self._lost,
+            "without stamp": self.unstamped,
+            **inputs,
+            "published": self.published,
+            **{key: n for key, n in tally.as_dict().items() if key not in ("messages", "accepted")},
+            "refused": self._refused.total(),
+            **{f"refused: {cause}": n for cause, n in self._refused.items()},
+            "refused set_pose": self._refused_poses.total(),
+            **{f"refused set_pose: {cause}": n for cause, n in self._refused_poses.items()},
+        }
+
+    def _verdict(self, now: float, new: Mapping[str, int]) -> tuple[bytes, str]:
+        """Level and words; no words when all is well."""
+        silences = [now - at for at in self._heard_at]
+        silent = [
+            f"{topic} {_for(silence)}"
+            for topic, silence in zip(self._topics, silences, strict=True)
+            if silence > self.silent_after
+        ]
+        if len(silent) == len(silences):
+            return STALE, f"no input: {', '.join(silent)}"
+        if silent:
+            return ERROR, f"no odometry without both wheels: {silent[0]}"
+        causes = [
+            f"{cause.removeprefix('refused: ')} ({n})"
+            for cause, n in new.items()
+            if n > 0 and cause.startswith(("refused: ", "refused set_pose: "))
+        ]
+        events = [
+            f"{key.replace('_', ' ')} ({new[key]})" for key in _WORTH_A_WARNING if new[key] > 0
+        ]
+        if causes and not new["published"]:
+            return ERROR, f"no odometry, all input is refused: {', '.join(causes + events)}"
+        if causes or events:
+            return WARN, f"in the last second: {', '.join(causes + events)}"
+        return OK, ""
+
+    def _note(self, tally: Counter[str], words: str, cause: str, detail: str) -> None:
+        if cause not in tally:
+            self._logger.warning(f"{words}: {detail} (from now on only counted on /diagnostics)")
+        tally[cause] += 1
+
+
+def _for(silence: float) -> str:
+    return "never heard" if silence == float("inf") else f"silent for {silence:.1f} s"

@@ -1,0 +1,283 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""From whatever the driver publishes to a stamp and two counters.
+
+Each kind of input is a class; `subscribed` picks the one of the robot file. What cannot be read is
+refused with its cause and forgotten: counters are cumulative, so the next good message holds all.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import Any, cast
+
+import rclpy
+from builtin_interfaces.msg import Time as Stamp
+from rclpy.clock import Clock
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.exceptions import ParameterException
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from rclpy.qos_overriding_options import InvalidQosOverridesError, QoSOverridingOptions
+from rclpy.time import Time
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Int32, Int64, Int64MultiArray
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.parameters import Value, robot_of
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.ros.health import Health
+from werrimbi_odom.ros.wheel_side import WheelSide
+
+Take = Callable[[Stamp, float, float], None]
+"""What is done with a reading: stamp, left and right counts."""
+Info = Mapping[str, Any]
+"""What DDS says about a message: stamps of sending and arrival [ns]."""
+
+
+def sensor_qos() -> QoSProfile:
+    """Best effort and volatile match every publisher; the depth is 0.1 s of 1 kHz."""
+    return QoSProfile(
+        depth=100,
+        reliability=ReliabilityPolicy.BEST_EFFORT,
+        durability=DurabilityPolicy.VOLATILE,
+    )
+
+
+@dataclass(frozen=True)
+class Wiring:
+    """What every kind of input needs."""
+
+    node: Node
+    values: Mapping[str, Value]
+    take: Take
+    health: Health
+
+
+def robot_at_counters(values: Mapping[str, Value]) -> Robot:
+    """The robot behind the counters that the inputs hand on.
+
+    Counters of several wheels are unwrapped before they are averaged. A counter that comes as an
+    Int32 cannot but wrap at 32 bits.
+    """
+    robot = robot_of(values)
+    if _averages(values):
+        return replace(robot, encoder_bits=0)
+    if values["input_type"] == "int32_pair" and not robot.encoder_bits:
+        return replace(robot, encoder_bits=32)
+    return robot
+
+
+def topics_of(values: Mapping[str, Value]) -> tuple[str, ...]:
+    """Topics that a kind of input reads, before remapping."""
+    return {
+        "joint_state": ("joint_states",),
+        "int32_pair": ("left_ticks", "right_ticks"),
+        "int64_pair": ("left_ticks", "right_ticks"),
+        "int64_multi_array": ("ticks",),
+    }[str(values["input_type"])]
+
+
+def subscribed(wiring: Wiring) -> JointStates | Pair | Ticks:
+    """Subscribe to the input that the robot file names.
+
+    Raises
+    ------
+    InputError
+        When a QoS override cannot be used.
+    """
+    kind = wiring.values["input_type"]
+    if kind == "joint_state":
+        return JointStates(wiring)
+    if kind == "int64_multi_array":
+        return Ticks(wiring)
+    return Pair(wiring, Int32 if kind == "int32_pair" else Int64)
+
+
+class JointStates:
+    """Wheel angles, or counts, among any other joints and in any order (sensor_msgs/JointState)."""
+
+    def __init__(self, wiring: Wiring) -> None:
+        values = wiring.values
+        bits = robot_of(values).encoder_bits if _averages(values) else 0
+        self._sides = tuple(_side(values, side, bits) for side in ("left", "right"))
+        self._wanted = tuple(_names(values, side) for side in ("left", "right"))
+        self._take, self._health = wiring.take, wiring.health
+        self._clock = wiring.node.get_clock()
+        self._names: list[str] | None = None
+        self._places: tuple[list[int], list[int]] = ([], [])
+        self._absent = ""
+        _subscribe(wiring, JointState, "joint_states", self._arrived)
+
+    def tally(self) -> dict[str, int]:
+        """What happened to single wheels of a side."""
+        return {
+            "wraps of single wheels": sum(side.wraps for side in self._sides),
+            "resets of single wheels": sum(side.resets for side in self._sides),
+        }
+
+    def _arrived(self, message: Any) -> None:
+        self._health.hear(0)
+        if message.name != self._names:
+            self._find(message.name)
+        if self._absent:
+            self._health.refuse(f"joint {self._absent} missing", f"it has {self._names}")
+            return
+        positions = message.position
+        if len(positions) != len(message.name):
+            self._health.refuse(
+                "wrong array length" if positions else "empty position",
+                f"{len(message.name)} names and {len(positions)} positions",
+            )
+            return
+        left, right = (
+            side.count([positions[place] for place in places])
+            for side, places in zip(self._sides, self._places, strict=True)
+        )
+        if not (math.isfinite(left) and math.isfinite(right)):
+            self._health.refuse("position not finite", f"left {left}, right {right}")
+            return
+        stamp = message.header.stamp
+        if stamp.sec == 0 and stamp.nanosec == 0:
+            self._health.unstamped += 1
+            stamp = self._clock.now().to_msg()
+        self._take(stamp, left, right)
+
+    def _find(self, names: list[str]) -> None:
+        """Where our wheels stand in a message; looked up anew only when its names change."""
+        self._names = list(names)
+        wanted = [name for side in self._wanted for name in side]
+        self._absent = next((name for name in wanted if name not in names), "")
+        if not self._absent:
+            left, right = ([names.index(name) for name in side] for side in self._wanted)
+            self._places = left, right
+
+
+class Pair:
+    """Two topics, one for each wheel, paired by arrival (std_msgs/Int32 or Int64).
+
+    Each wheel's newest count waits for the other's; a count that is overtaken by the next of its
+    own wheel is dropped, and its motion is in the next one.
+    """
+
+    def __init__(self, wiring: Wiring, message_type: type) -> None:
+        self._take, self._health = wiring.take, wiring.health
+        self._stamps = ArrivalStamps(wiring.node)
+        self._window = int(1e9 * float(wiring.values["pairing_window"]))  # type: ignore[arg-type]
+        self._waiting: list[tuple[int, int] | None] = [None, None]
+        self._unpaired = 0
+        for side, topic in enumerate(topics_of(wiring.values)):
+            _subscribe(wiring, message_type, topic, self._listener(side))
+
+    def tally(self) -> dict[str, int]:
+        """Counts that found no partner."""
+        return {"unpaired": self._unpaired}
+
+    def _listener(self, side: int) -> Callable[[Any, Info], None]:
+        def arrived(message: Any, info: Info) -> None:
+            self._arrived(side, message.data, info)
+
+        return arrived
+
+    def _arrived(self, side: int, count: int, info: Info) -> None:
+        self._health.hear(side)
+        arrival = arrival_of(info)
+        other = self._waiting[1 - side]
+        if other is not None and abs(arrival - other[0]) <= self._window:
+            self._waiting = [None, None]
+            left, right = (count, other[1]) if side == 0 else (other[1], count)
+            self._take(self._stamps.of(info), left, right)
+            return
+        self._unpaired += self._waiting[side] is not None
+        self._waiting[side] = (arrival, count)
+
+
+class Ticks:
+    """Both counters in one message, left first (std_msgs/Int64MultiArray)."""
+
+    def __init__(self, wiring: Wiring) -> None:
+        self._take, self._health = wiring.take, wiring.health
+        self._stamps = ArrivalStamps(wiring.node)
+        _subscribe(wiring, Int64MultiArray, "ticks", self._arrived)
+
+    def tally(self) -> dict[str, int]:
+        """Nothing happens to them here."""
+        return {}
+
+    def _arrived(self, message: Any, info: Info) -> None:
+        self._health.hear(0)
+        counts = message.data
+        if len(counts) != 2:
+            self._health.refuse("wrong array length", f"{len(counts)} values, not [left, right]")
+            return
+        self._take(self._stamps.of(info), counts[0], counts[1])
+
+
+class ArrivalStamps:
+    """Stamps for messages that carry none: when they arrived, by the node's clock."""
+
+    def __init__(self, node: Node) -> None:
+        self._clock: Clock = node.get_clock()
+
+    def of(self, info: Info) -> Stamp:
+        """When a message arrived."""
+        if self._clock.ros_time_is_active:
+            return self._clock.now().to_msg()
+        return Time(nanoseconds=arrival_of(info)).to_msg()
+
+
+def arrival_of(info: Info) -> int:
+    """When a message arrived, by the system's clock [ns].
+
+    What DDS noted comes before now, which is after the message has waited for its turn.
+    """
+    return info["received_timestamp"] or time.time_ns()
+
+
+def _averages(values: Mapping[str, Value]) -> bool:
+    most = max(len(_names(values, side)) for side in ("left", "right"))
+    return values["input_type"] == "joint_state" and most > 1
+
+
+def _names(values: Mapping[str, Value], side: str) -> tuple[str, ...]:
+    return cast("tuple[str, ...]", values[f"{side}_wheel_names"])
+
+
+def _side(values: Mapping[str, Value], side: str, bits: int) -> WheelSide:
+    per_revolution = float(values[f"{side}_ticks_per_revolution"])  # type: ignore[arg-type]
+    in_radians = values["position_unit"] == "radians"
+    per_unit = per_revolution / (2.0 * math.pi) if in_radians else 1.0
+    return WheelSide(per_unit, per_revolution, bits)
+
+
+def _subscribe(
+    wiring: Wiring, message_type: type, topic: str, arrived: Callable[..., None]
+) -> None:
+    with qos_errors_of(topic):
+        wiring.node.create_subscription(
+            message_type,
+            topic,
+            arrived,
+            sensor_qos(),
+            # Every default callback for a QoS event costs the executor some 10 µs at each message,
+            # and best effort and volatile there is no QoS to be incompatible with.
+            event_callbacks=SubscriptionEventCallbacks(
+                message_lost=wiring.health.lose, use_default_callbacks=False
+            ),
+            qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+        )
+
+
+@contextmanager
+def qos_errors_of(topic: str) -> Iterator[None]:
+    """Turn what rclpy raises for a wrong QoS override into an error that names the topic."""
+    try:
+        yield
+    except (ParameterException, InvalidQosOverridesError, RuntimeError) as error:
+        if not rclpy.ok():  # told to stop while starting
+            raise
+        raise InputError(f"QoS override of {topic}: {error}") from error

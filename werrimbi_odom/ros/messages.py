@@ -1,0 +1,135 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Estimates as nav_msgs/Odometry, and poses out of geometry_msgs.
+
+docs/node.md argues each entry of the covariances.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from builtin_interfaces.msg import Time as Stamp
+from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
+from nav_msgs.msg import Odometry
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.model.covariance import PoseCovariance
+from werrimbi_odom.model.odometer import Estimate
+from werrimbi_odom.model.pose import Pose
+
+PLANAR_VARIANCE = 1e-6
+"""Of z, roll and pitch and of their rates, zero on a flat floor: (1 mm)², (1 mrad)², a second."""
+
+_ROUNDING = 1.0 + 1e-12
+"""On every variance, so that rounding cannot turn a semi-definite matrix into an indefinite one."""
+
+# Places in a 6 x 6 matrix, row by row, over (x, y, z, roll, pitch, yaw).
+_XX, _XY, _XYAW = 0, 1, 5
+_YX, _YY, _YYAW = 6, 7, 11
+_YAWX, _YAWY, _YAWYAW = 30, 31, 35
+_OUT_OF_PLANE = (14, 21, 28)
+_PLANE = (0, 1, 5)
+
+
+class OdometryMessage:
+    """The one message that is filled again for each estimate; publishing copies it.
+
+    Parameters
+    ----------
+    odom_frame, base_frame : str
+        Frames of the pose and of the twist (REP-105).
+    """
+
+    def __init__(self, odom_frame: str, base_frame: str) -> None:
+        self._message = Odometry()
+        self._message.header.frame_id = odom_frame
+        self._message.child_frame_id = base_frame
+        self._pose = self._message.pose.covariance
+        self._twist = self._message.twist.covariance
+        for place in _OUT_OF_PLANE:
+            self._pose[place] = self._twist[place] = PLANAR_VARIANCE
+
+    def filled(self, stamp: Stamp, estimate: Estimate) -> Odometry:
+        """The message for an estimate, valid until the next call."""
+        message = self._message
+        message.header.stamp = stamp
+        pose = message.pose.pose
+        pose.position.x, pose.position.y = estimate.pose.x, estimate.pose.y
+        pose.orientation.z = math.sin(0.5 * estimate.pose.yaw)
+        pose.orientation.w = math.cos(0.5 * estimate.pose.yaw)
+        twist = message.twist.twist
+        twist.linear.x, twist.linear.y, twist.angular.z = estimate.twist
+        self._fill_covariances(estimate)
+        return message
+
+    def _fill_covariances(self, estimate: Estimate) -> None:
+        xx, xy, xyaw, yy, yyaw, yawyaw = estimate.covariance
+        pose, twist = self._pose, self._twist
+        pose[_XX] = xx * _ROUNDING
+        pose[_YY] = yy * _ROUNDING
+        pose[_YAWYAW] = yawyaw * _ROUNDING
+        pose[_XY] = pose[_YX] = xy
+        pose[_XYAW] = pose[_YAWX] = xyaw
+        pose[_YYAW] = pose[_YAWY] = yyaw
+        speed, cross, yaw_rate = estimate.twist_covariance
+        twist[_XX] = speed * _ROUNDING
+        # The wheels do not slide sideways, as surely as they do not slip along: the same patch of
+        # tyre holds both ways.
+        twist[_YY] = speed * _ROUNDING
+        twist[_YAWYAW] = yaw_rate * _ROUNDING
+        twist[_XYAW] = twist[_YAWX] = cross
+
+
+def transform_of(odometry: Odometry) -> TransformStamped:
+    """The transform from the odometry frame to the robot's, for /tf."""
+    transform = TransformStamped(header=odometry.header, child_frame_id=odometry.child_frame_id)
+    position = odometry.pose.pose.position
+    transform.transform.translation.x = position.x
+    transform.transform.translation.y = position.y
+    transform.transform.rotation = odometry.pose.pose.orientation
+    return transform
+
+
+def pose_from(
+    message: PoseWithCovarianceStamped, odom_frame: str
+) -> tuple[Pose, PoseCovariance[float]]:
+    """The planar pose in a message.
+
+    Raises
+    ------
+    InputError
+        When the frame is not the odometry frame, a number is not finite, the orientation is no
+        rotation about the vertical, or the covariance is none. The first argument is the cause, the
+        second the detail.
+    """
+    frame = message.header.frame_id
+    if frame != odom_frame:
+        raise InputError("wrong frame", f"frame_id is {frame!r}, not {odom_frame!r}")
+    pose = message.pose.pose
+    covariance = np.asarray(message.pose.covariance, dtype=np.float64).reshape(6, 6)
+    yaw = _yaw_of(pose.orientation)
+    if not all(map(math.isfinite, (pose.position.x, pose.position.y, yaw))):
+        raise InputError("pose not finite", "NaN or infinite")
+    block = covariance[np.ix_(_PLANE, _PLANE)]
+    if not np.isfinite(block).all():
+        raise InputError("covariance not finite", "NaN or infinite")
+    size = np.sqrt(np.outer(np.abs(block.diagonal()), np.abs(block.diagonal())))
+    if not (np.abs(block - block.T) <= 1e-6 * size).all():
+        raise InputError("covariance not symmetric", "of x, y and yaw")
+    if np.linalg.eigvalsh(block)[0] < -1e-9 * np.abs(block).max():
+        raise InputError("covariance not positive semi-definite", "of x, y and yaw")
+    symmetric = (0.5 * (block + block.T))[np.triu_indices(3)]
+    return Pose(pose.position.x, pose.position.y, yaw), PoseCovariance(*symmetric.tolist())
+
+
+def _yaw_of(orientation: Any) -> float:
+    x, y, z, w = orientation.x, orientation.y, orientation.z, orientation.w
+    norm = x * x + y * y + z * z + w * w
+    if math.isfinite(norm) and abs(norm - 1.0) > 1e-3:
+        raise InputError("orientation not a rotation", f"the quaternion's norm is {norm:g}, not 1")
+    if math.isfinite(norm) and x * x + y * y > 1e-3:
+        raise InputError("orientation not planar", "it rolls or pitches")
+    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))

@@ -1,0 +1,270 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The node: counters in, odometry with its covariance out.
+
+    odom_node --ros-args --params-file robot.yaml
+
+`OdomNode._take` is the whole way of a message; everything else is set-up and reports.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from typing import Any
+
+import rclpy
+from builtin_interfaces.msg import Time as Stamp
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
+from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
+from nav_msgs.msg import Odometry
+from rclpy.clock import Clock, ClockType
+from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.exceptions import ParameterException
+from rclpy.executors import ExternalShutdownException
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
+from rclpy.qos_overriding_options import QoSOverridingOptions
+from std_srvs.srv import Trigger
+from visualization_msgs.msg import MarkerArray
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.parameters import limits_of, tolerance_of
+from werrimbi_odom.ros import inputs, parameters
+from werrimbi_odom.ros.health import Health
+from werrimbi_odom.ros.markers import PieceTrail
+from werrimbi_odom.ros.messages import OdometryMessage, pose_from, transform_of
+from werrimbi_odom.ros.status import status_of
+from werrimbi_odom.ros.tracker import Finished, Tracker
+
+STATUS_PERIOD = 0.2
+"""Seconds from one ~/status to the next."""
+DIAGNOSTICS_EVERY = 5
+"""Times that ~/status comes for one /diagnostics."""
+
+SendTransform = Callable[[TransformStamped], None]
+
+
+class OdomNode(Node):  # type: ignore[misc]
+    """Wheel odometry as a ROS 2 node.
+
+    Raises
+    ------
+    InputError
+        When a parameter is missing, unknown or wrong; the message names all of them.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("odom_node")
+        self._values = values = parameters.declared(self)
+        self._frame = str(values["odom_frame_id"])
+        robot = inputs.robot_at_counters(values)
+        limits = limits_of(values)
+        self._topics = tuple(self.resolve_topic_name(name) for name in inputs.topics_of(values))
+        self._tracker = Tracker(robot, tolerance_of(values), limits)
+        self._message = OdometryMessage(self._frame, str(values["base_frame_id"]))
+        self._trail = PieceTrail(self._frame, robot.track)
+        self._health = Health(self.get_logger(), self._topics, limits.gap_duration)
+        self._viewers = 0
+        self._rounds = 0
+        self._level = DiagnosticStatus.OK
+        self._odometry = self._publisher(Odometry, "odom", 100, overridable=True)
+        self._pieces = self._publisher(MarkerArray, "~/pieces", 100)
+        self._status = self._publisher(DiagnosticStatus, "~/status", 10)
+        self._diagnostics = self._publisher(DiagnosticArray, "/diagnostics", 10)
+        self._send_transform = _transform_sender(self) if values["enable_odom_tf"] else None
+        self._input = inputs.subscribed(inputs.Wiring(self, values, self._take, self._health))
+        self.create_subscription(PoseWithCovarianceStamped, "set_pose", self._on_set_pose, 10)
+        self.create_service(Trigger, "~/reset", self._on_reset)
+        self.add_pre_set_parameters_callback(parameters.with_floats)
+        self.add_on_set_parameters_callback(parameters.judged)
+        self.add_post_set_parameters_callback(self._on_parameters_set)
+        # The steady clock: /diagnostics must go on when simulated time stands still.
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.create_timer(STATUS_PERIOD, self._report, clock=steady)
+        self._say_hello()
+
+    # ------------------------------------------------------------------------- a reading
+
+    def _take(self, stamp: Stamp, left: float, right: float) -> None:
+        """The whole way of a message, from two counters to odometry."""
+        estimate = self._tracker.take(stamp, left, right)
+        if estimate is None:
+            return
+        odometry = self._message.filled(stamp, estimate)
+        self._odometry.publish(odometry)
+        self._health.published += 1
+        if self._send_transform is not None:
+            self._send_transform(transform_of(odometry))
+        self._keep(self._tracker.finished_by(estimate))
+
+    def _keep(self, finished: Finished | None) -> None:
+        """Add a piece to those that RViz shows; without a viewer nothing is drawn."""
+        if finished is None:
+            return
+        shown = self._trail.add(self._tracker.stamp, *finished, shown=self._viewers > 0)
+        if shown is not None:
+            self._pieces.publish(shown)
+
+    # ------------------------------------------------------------------------- requests
+
+    def _on_set_pose(self, message: PoseWithCovarianceStamped) -> None:
+        try:
+            pose, covariance = pose_from(message, self._frame)
+        except InputError as error:
+            self._health.refuse_pose(*error.args)
+            return
+        self._keep(self._tracker.set_pose(pose, covariance))
+
+    def _on_reset(self, _: Any, response: Any) -> Any:
+        self._tracker.reset()
+        self._trail.clear()
+        self._show_all_pieces()
+        response.success = True
+        response.message = "pose and distance set to zero, pieces cleared"
+        return response
+
+    def _on_parameters_set(self, changed: list[Any]) -> None:
+        changes = parameters.changes_of(changed)
+        if not changes:
+            return
+        self._values.update(changes)
+        limits = limits_of(self._values)
+        robot = inputs.robot_at_counters(self._values)
+        self._health.silent_after = limits.gap_duration
+        self._keep(self._tracker.retune(robot, tolerance_of(self._values), limits))
+        self.get_logger().info(
+            "from here on: " + ", ".join(f"{name} {value}" for name, value in changes.items())
+        )
+
+    # ------------------------------------------------------------------------- reports
+
+    def _report(self) -> None:
+        self._rounds += 1
+        due = self._rounds % DIAGNOSTICS_EVERY == 0
+        self._greet_viewers()
+        if self._tracker.started:
+            if self._status.get_subscription_count():
+                self._publish_status()
+            if self._viewers and due:
+                self._show_open_piece()
+        if due:
+            self._publish_diagnostics()
+
+    def _greet_viewers(self) -> None:
+        """Show all pieces to whoever has begun to look, whatever its QoS."""
+        viewers = self._pieces.get_subscription_count()
+        if viewers > self._viewers:
+            self._show_all_pieces()
+        self._viewers = viewers
+
+    def _show_all_pieces(self) -> None:
+        self._pieces.publish(self._trail.everything(self._tracker.stamp))
+
+    def _show_open_piece(self) -> None:
+        tracker = self._tracker
+        self._pieces.publish(
+            self._trail.unfinished(tracker.stamp, tracker.piece, tracker.covariance)
+        )
+
+    def _publish_status(self) -> None:
+        tracker, name = self._tracker, f"{self.get_name()}: estimate"
+        self._status.publish(
+            status_of(name, tracker.pose, tracker.covariance, tracker.piece, tracker.distance)
+        )
+
+    def _publish_diagnostics(self) -> None:
+        name = f"{self.get_name()}: wheel encoders"
+        status = self._health.report(name, self._tracker.tally, self._input.tally())
+        if status.level != self._level:
+            self._level = status.level
+            log = self.get_logger()
+            (log.info if status.level == DiagnosticStatus.OK else log.warning)(status.message)
+        array = DiagnosticArray(status=[status])
+        array.header.stamp = self.get_clock().now().to_msg()
+        self._diagnostics.publish(array)
+
+    # ------------------------------------------------------------------------- set-up
+
+    def _publisher(
+        self, message_type: type, topic: str, depth: int, *, overridable: bool = False
+    ) -> Publisher:
+        overrides = QoSOverridingOptions.with_default_policies() if overridable else None
+        with inputs.qos_errors_of(topic):
+            return self.create_publisher(
+                message_type,
+                topic,
+                QoSProfile(depth=depth),
+                # Every default callback for a QoS event costs the executor some 10 µs at each
+                # message. An incompatible subscriber warns of it on its own side.
+                event_callbacks=PublisherEventCallbacks(use_default_callbacks=False),
+                qos_overriding_options=overrides,
+            )
+
+    def _say_hello(self) -> None:
+        log = self.get_logger()
+        for name in parameters.leftover_qos_overrides(self):
+            log.warning(f"{name} is not used: there is no such topic or policy")
+        if parameters.has_virtual_ticks(self._values):
+            log.info(
+                "no ticks_per_revolution: wheel angles are taken as exact to a microradian. Give "
+                "left_ and right_ticks_per_revolution where you know them: then quantisation "
+                "belongs to the covariance, and a count that flickers is no motion"
+            )
+        log.info(
+            f"{self._values['input_type']} on {' and '.join(self._topics)}, odometry on "
+            f"{self._odometry.topic_name} from {self._frame} to {self._values['base_frame_id']}"
+        )
+
+
+def _transform_sender(node: Node) -> SendTransform:
+    try:
+        from tf2_ros import TransformBroadcaster
+    except ImportError as error:
+        raise InputError(
+            "enable_odom_tf needs tf2_ros, which is not installed here: install the package "
+            "ros-jazzy-tf2-ros-py, or set enable_odom_tf: false and let an EKF broadcast"
+        ) from error
+    sender: SendTransform = TransformBroadcaster(node).sendTransform
+    return sender
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is told to stop.
+
+    Returns
+    -------
+    int
+        0 after SIGINT and SIGTERM, 2 when something that was given cannot be used.
+    """
+    try:
+        rclpy.init(args=args)
+    except KeyboardInterrupt:
+        return 0
+    except RuntimeError as error:
+        print(f"odom_node: {error}", file=sys.stderr)
+        return 2
+    node = None
+    try:
+        node = OdomNode()
+        rclpy.spin(node)
+    except (KeyboardInterrupt, ExternalShutdownException):
+        pass
+    except (InputError, ParameterException) as error:
+        rclpy.logging.get_logger("odom_node").fatal(str(error))
+        return 2
+    except RuntimeError:
+        # SIGTERM shuts the context down at once, also in the midst of a callback: what that still
+        # wanted to publish fails, and that is no fault.
+        if rclpy.ok():
+            raise
+    finally:
+        if node is not None:
+            node.destroy_node()
+        rclpy.try_shutdown()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

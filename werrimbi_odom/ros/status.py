@@ -1,0 +1,80 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where the robot is and how surely, in words and plain units for `ros2 topic echo`."""
+
+from __future__ import annotations
+
+import math
+
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+
+from werrimbi_odom.model.covariance import PoseCovariance
+from werrimbi_odom.model.pieces import Piece
+from werrimbi_odom.model.pose import Pose, wrap
+
+
+def status_of(
+    name: str, pose: Pose, covariance: PoseCovariance[float], piece: Piece, distance: float
+) -> DiagnosticStatus:
+    """The estimate in words.
+
+    Parameters
+    ----------
+    name : str
+        Of the status.
+    pose, covariance
+        Present pose in the odometry frame.
+    piece : Piece
+        The piece being driven.
+    distance : float
+        Travel since the start [m].
+    """
+    along, across = sigmas_of_robot(covariance, pose.yaw)
+    heading = math.degrees(math.sqrt(covariance.yawyaw))
+    values = {
+        "piece": piece.kind,
+        "piece length": f"{piece.length:.3f} m",
+        "piece turn": f"{math.degrees(piece.turn):.1f} deg",
+        "piece radius": "straight" if math.isinf(piece.radius) else f"{piece.radius:.3f} m",
+        "distance": f"{distance:.3f} m",
+        "x": f"{pose.x:.3f} m",
+        "y": f"{pose.y:.3f} m",
+        "heading": f"{math.degrees(wrap(pose.yaw)):.1f} deg",
+        "1 sigma along": length_in_words(along),
+        "1 sigma across": length_in_words(across),
+        "1 sigma heading": f"{heading:.2f} deg",
+    }
+    return DiagnosticStatus(
+        level=DiagnosticStatus.OK,
+        name=name,
+        message=f"{piece_in_words(piece)}; {distance:.2f} m driven; 1 sigma "
+        f"{values['1 sigma along']} along, {values['1 sigma across']} across, "
+        f"{values['1 sigma heading']}",
+        hardware_id="wheel encoders",
+        values=[KeyValue(key=key, value=value) for key, value in values.items()],
+    )
+
+
+def sigmas_of_robot(covariance: PoseCovariance[float], yaw: float) -> tuple[float, float]:
+    """Standard deviations of the position along the robot's heading and across it [m]."""
+    cos, sin = math.cos(yaw), math.sin(yaw)
+    xx, xy, yy = covariance.xx, covariance.xy, covariance.yy
+    along = cos * cos * xx + 2.0 * cos * sin * xy + sin * sin * yy
+    across = sin * sin * xx - 2.0 * cos * sin * xy + cos * cos * yy
+    return math.sqrt(max(along, 0.0)), math.sqrt(max(across, 0.0))
+
+
+def length_in_words(length: float) -> str:
+    """A standard deviation in the unit in which it is easiest to read."""
+    return f"{length:.3f} m" if length >= 1.0 else f"{1e3 * length:.1f} mm"
+
+
+def piece_in_words(piece: Piece) -> str:
+    """Such as "arc 1.57 m, 90.0 deg to the left"."""
+    side = "left" if piece.turn >= 0.0 else "right"
+    turn = f"{abs(math.degrees(piece.turn)):.1f} deg to the {side}"
+    if piece.kind == "spin":
+        return f"spin {turn}"
+    way = "" if piece.length >= 0.0 else " backwards"
+    path = f"{piece.kind} {abs(piece.length):.2f} m{way}"
+    return path if piece.kind == "line" else f"{path}, {turn}"

@@ -1,0 +1,117 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The model's odometer as a node needs it: ROS stamps, and values that change while it runs."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from builtin_interfaces.msg import Time as Stamp
+
+from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
+from werrimbi_odom.model.encoder import EncoderLimits, EncoderTally
+from werrimbi_odom.model.odometer import Estimate, Odometer
+from werrimbi_odom.model.pieces import Piece, PieceTolerance
+from werrimbi_odom.model.pose import Pose
+from werrimbi_odom.model.robot import Robot
+
+
+class Finished(NamedTuple):
+    """A piece that has come to its end, and the covariance of the pose there."""
+
+    piece: Piece
+    covariance: PoseCovariance[float]
+
+
+class Tracker:
+    """Where the robot is, reading by reading.
+
+    Parameters
+    ----------
+    robot, tolerance, limits
+        As for `Odometer`.
+    """
+
+    def __init__(self, robot: Robot, tolerance: PieceTolerance, limits: EncoderLimits) -> None:
+        self.pose = Pose()
+        self.stamp = Stamp()
+        """Of the last reading that was taken."""
+        self._odometer = Odometer(robot, tolerance, limits)
+        self._origin: int | None = None
+        self._reading: tuple[float, float, float] | None = None
+
+    @property
+    def started(self) -> bool:
+        """Whether any reading has been taken."""
+        return self._reading is not None
+
+    @property
+    def tally(self) -> EncoderTally:
+        """What became of the readings."""
+        return self._odometer.tally
+
+    @property
+    def distance(self) -> float:
+        """Travel since the start or the last reset [m]."""
+        return self._odometer.distance
+
+    @property
+    def piece(self) -> Piece:
+        """The piece being driven."""
+        return self._odometer.piece
+
+    @property
+    def covariance(self) -> PoseCovariance[float]:
+        """Of the present pose."""
+        return self._odometer.covariance()
+
+    def take(self, stamp: Stamp, left: float, right: float) -> Estimate | None:
+        """The estimate after a reading; None for the first and for one that is refused."""
+        # Seconds since the first stamp: as seconds since 1970 a float resolves but 0.2 µs.
+        if self._origin is None:
+            self._origin = stamp.sec
+        time = (stamp.sec - self._origin) + 1e-9 * stamp.nanosec
+        accepted = self.tally.accepted
+        estimate = self._odometer.update(time, left, right)
+        if self.tally.accepted > accepted:
+            self._reading, self.stamp = (time, left, right), stamp
+        if estimate is not None:
+            self.pose = estimate.pose
+        return estimate
+
+    def finished_by(self, estimate: Estimate) -> Finished | None:
+        """The piece that an estimate, the last one, brought to its end."""
+        if estimate.closed is None:
+            return None
+        return Finished(estimate.closed, self._odometer.piece.covariance_start)
+
+    def set_pose(self, pose: Pose, covariance: PoseCovariance[float] = CERTAIN) -> Finished | None:
+        """Go on from another pose; returns the piece that this ends, if it had any length."""
+        end = self.covariance
+        piece = self._odometer.set_pose(pose, covariance)
+        self.pose = pose
+        return Finished(piece, end) if any(piece.travel) else None
+
+    def reset(self) -> None:
+        """Go on from the origin, with no distance driven."""
+        self.set_pose(Pose())
+        self._odometer.distance = 0.0
+
+    def retune(
+        self, robot: Robot, tolerance: PieceTolerance, limits: EncoderLimits
+    ) -> Finished | None:
+        """Take other values for what follows; pose, covariance and counts stay as they are.
+
+        The new odometer is given the last reading to count on from, so no motion is lost. Counts
+        must mean the same to both robots: the resolution of the encoders cannot be changed.
+        """
+        old, covariance = self._odometer, self.covariance
+        piece = old.piece
+        self._odometer = Odometer(robot, tolerance, limits)
+        if self._reading is not None:
+            self._odometer.update(*self._reading)
+        self._odometer.set_pose(self.pose, covariance)
+        self._odometer.distance = old.distance
+        for name, count in old.tally.as_dict().items():
+            setattr(self._odometer.tally, name, count)
+        return Finished(piece, covariance) if any(piece.travel) else None
