@@ -1,0 +1,107 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A ROS 2 bag (a rosbag2 folder, a single .mcap or .db3) opened for reading, without ROS."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+from werrimbi_odom.errors import InputError
+
+SUFFIXES = (".mcap", ".db3")
+
+
+class Topic(NamedTuple):
+    """A topic of a bag that has messages."""
+
+    name: str
+    kind: str
+    """Message type, as in `sensor_msgs/msg/JointState`."""
+    messages: int
+
+
+class Message(NamedTuple):
+    """A message of a bag."""
+
+    topic: str
+    received: int
+    """When the recorder got it [ns]."""
+    content: Any
+
+
+@dataclass(frozen=True)
+class Bag:
+    """An open bag."""
+
+    path: Path
+    topics: tuple[Topic, ...]
+    _reader: Any
+    _types: Any
+
+    def messages(self, topics: Sequence[str]) -> Iterator[Message]:
+        """Messages of some topics, in the order in which they were received.
+
+        Raises
+        ------
+        InputError
+            When a message cannot be read.
+        """
+        chosen = [each for each in self._reader.connections if each.topic in topics]
+        try:
+            for connection, received, data in self._reader.messages(connections=chosen):
+                content = self._types.deserialize_cdr(data, connection.msgtype)
+                yield Message(connection.topic, received, content)
+        except Exception as error:  # a damaged bag raises anything, from struct to zstd
+            raise _unreadable(self.path, error) from error
+
+
+@contextmanager
+def opened_bag(path: Path) -> Iterator[Bag]:
+    """Open a bag, and close it at the end.
+
+    Message types are the standard ones of ROS 2 Jazzy; those that odometry needs have been the same
+    in every distribution, so definitions in the bag, which may be broken, are not looked at.
+
+    Raises
+    ------
+    InputError
+        When rosbags is not installed, or the bag cannot be opened.
+    """
+    try:
+        from rosbags.rosbag2 import Reader
+        from rosbags.typesys import Stores, get_typestore
+    except ModuleNotFoundError as missing:
+        raise InputError(
+            f"{path}: bags are read by the Python package {missing.name}: "
+            'pip install "werrimbi_odom[tools]"'
+        ) from missing
+    reader = None
+    try:
+        reader = Reader(path)
+        reader.open()
+        found = reader.topics.items()
+        topics = tuple(
+            Topic(name, info.msgtype, info.msgcount)
+            for name, info in found
+            if info.msgtype is not None and info.msgcount > 0
+        )
+    except Exception as error:  # as above
+        raise _unreadable(path, error) from error
+    try:
+        yield Bag(path, topics, reader, get_typestore(Stores.ROS2_JAZZY))
+    finally:
+        reader.close()
+
+
+def _unreadable(path: Path, error: Exception) -> InputError:
+    if isinstance(error, InputError):
+        return error
+    problem = " ".join(str(error).split())[:300] or type(error).__name__
+    return InputError(
+        f"{path} cannot be read as a bag: {problem} (a recording cut off in mid-file: "
+        "`mcap recover`, or `ros2 bag reindex`)"
+    )

@@ -1,0 +1,74 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A run from wherever it is: a folder with ticks.csv, a rosbag2 folder, a single bag file."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.bag import SUFFIXES
+from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run_bag import Progress, read_run_bag
+from werrimbi_odom.files.run_folder import TICKS, read_run_folder
+
+
+def read_run(
+    path: str | Path,
+    robot_file: RobotFile,
+    *,
+    ticks_topic: str | None = None,
+    reference_topic: str | None = None,
+    progress: Progress | None = None,
+) -> Run:
+    """Read a run; see `read_run_folder` and `read_run_bag`. Topics matter to bags alone.
+
+    Raises
+    ------
+    InputError
+        When there is no run at `path`, or it cannot be used; the message says what is wrong where.
+    """
+    path = Path(path)
+    try:
+        if path.is_dir():
+            if (path / TICKS).exists():
+                return read_run_folder(path)
+            bag = _bag_in(path)
+        elif path.exists():
+            bag = _bag_file(path)
+        else:
+            raise InputError(f"{path}: there is no such run")
+    except (OSError, ValueError) as error:  # ValueError: a NUL byte in the name
+        if isinstance(error, InputError):
+            raise
+        raise InputError(f"{path} cannot be read: {error}") from error
+    return read_run_bag(
+        bag,
+        robot_file,
+        ticks_topic=ticks_topic,
+        reference_topic=reference_topic,
+        progress=progress,
+    )
+
+
+def _bag_in(folder: Path) -> Path:
+    if (folder / "metadata.yaml").exists():
+        return folder
+    files = sorted(each for each in folder.iterdir() if each.suffix in SUFFIXES)
+    if len(files) == 1:  # its recorder was killed before it wrote the metadata
+        return files[0]
+    hint = ""
+    for below in (*sorted(folder.glob(f"*/{TICKS}")), *sorted(folder.glob("*/metadata.yaml"))):
+        hint = f"; did you mean {below.parent}?"
+        break
+    raise InputError(f"{folder} holds neither {TICKS} nor a bag (metadata.yaml){hint}")
+
+
+def _bag_file(path: Path) -> Path:
+    if path.suffix in SUFFIXES:
+        return path
+    if path.name == TICKS:
+        raise InputError(f"{path}: give the folder that holds it, {path.parent}")
+    hint = " (a ROS 1 bag: convert it with rosbags-convert)" if path.suffix == ".bag" else ""
+    raise InputError(f"{path} is neither a run folder nor a ROS 2 bag{hint}")

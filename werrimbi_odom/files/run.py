@@ -1,0 +1,86 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A run: one recorded drive, wherever it was recorded."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.model.encoder import Counts
+from werrimbi_odom.model.pose import Floats
+
+EXACT = 2.0**53
+"""Whole numbers below this are told apart by a float64."""
+
+
+@dataclass(frozen=True, eq=False)
+class Ticks:
+    """What the encoders counted; arrays of shape (n,)."""
+
+    time: Floats
+    """Stamps, finite; they may go back where the record does [s]."""
+    left: Counts
+    """Cumulative signed counts; int64 where all are whole, else float64 with NaN where missing."""
+    right: Counts
+    """The same for the right wheel."""
+    channels: Mapping[str, Floats] = field(default_factory=dict)
+    """Other measured columns by name; NaN where not measured."""
+
+    @property
+    def rows(self) -> int:
+        """Number of readings."""
+        return int(self.time.size)
+
+
+@dataclass(frozen=True, eq=False)
+class Reference:
+    """What was measured from outside; arrays of shape (m,), NaN where not measured."""
+
+    time: Floats
+    """Stamps in the ticks' clock, finite [s]."""
+    x: Floats
+    """[m]"""
+    y: Floats
+    """[m]"""
+    yaw: Floats
+    """Wrapped or not, as it was recorded [rad]."""
+    sigma_xy: Floats | None = None
+    """Standard deviation of x, and of y, where it is stated [m]."""
+    sigma_yaw: Floats | None = None
+    """Standard deviation of yaw, where it is stated [rad]."""
+
+    @property
+    def has_position(self) -> NDArray[np.bool_]:
+        """Where x and y were measured."""
+        return np.isfinite(self.x) & np.isfinite(self.y)
+
+    @property
+    def has_yaw(self) -> NDArray[np.bool_]:
+        """Where yaw was measured."""
+        return np.isfinite(self.yaw)
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """One recorded drive."""
+
+    name: str
+    """Last part of the path."""
+    path: Path
+    ticks: Ticks
+    reference: Reference | None = None
+    notes: tuple[str, ...] = ()
+    """What the reader chose or left out, in words for the user."""
+
+
+def counts_of(values: Floats) -> Counts:
+    """Counts as int64 where all of them are whole numbers that a float64 tells apart."""
+    exact = np.abs(values) < EXACT
+    if exact.all() and (values == np.rint(values)).all():
+        return values.astype(np.int64)
+    return values

@@ -1,0 +1,103 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Runs recorded as a folder with ticks.csv and, where something was measured, reference.csv."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
+from werrimbi_odom.files.table import Table, read_table
+from werrimbi_odom.model.encoder import Counts
+from werrimbi_odom.model.pose import Floats
+
+TICKS = "ticks.csv"
+TICKS_COLUMNS = ("t_s", "left_ticks", "right_ticks")
+REFERENCE = "reference.csv"
+REFERENCE_COLUMNS = ("t_s", "x_m", "y_m", "yaw_rad")
+SIGMA_COLUMNS = ("sigma_xy_m", "sigma_yaw_rad")
+
+
+def read_run_folder(path: str | Path) -> Run:
+    """Read a run folder.
+
+    Raises
+    ------
+    InputError
+        When a file cannot be used; the message names file, line and column.
+    """
+    path = Path(path)
+    ticks = _ticks(path / TICKS)
+    file = path / REFERENCE
+    reference = _reference(file) if file.exists() or file.is_symlink() else None
+    return Run(path.resolve().name, path, ticks, reference)
+
+
+def _ticks(path: Path) -> Ticks:
+    table = read_table(path, TICKS_COLUMNS)
+    channels = {name: table.column(name) for name in table.names if name not in TICKS_COLUMNS}
+    return Ticks(
+        _times(table), _counts(table, "left_ticks"), _counts(table, "right_ticks"), channels
+    )
+
+
+def _times(table: Table) -> Floats:
+    """Stamps; a row without one cannot be placed, so that is an error."""
+    times = table.column("t_s")
+    if not np.isfinite(times).all():
+        table.refuse_where("t_s", _not_a_time)
+    return times
+
+
+def _not_a_time(text: str) -> str:
+    if not text:
+        return "it is empty; every row needs its time"
+    return "" if math.isfinite(float(text)) else f"{text!r} is not a time"
+
+
+def _counts(table: Table, name: str) -> Counts:
+    """Counters; `nan` and `inf` stand for a reading that failed, and the model counts them."""
+    values = table.column(name)
+    if np.isnan(values).any():
+        table.refuse_where(name, _not_a_count)
+    counts = counts_of(values)
+    if np.isfinite(values).all() and np.abs(values).max() >= EXACT:
+        exact = table.integers(name)
+        return counts if exact is None else exact
+    return counts
+
+
+def _not_a_count(text: str) -> str:
+    return "" if text else "it is empty; write nan where a reading is missing, or leave the row out"
+
+
+def _reference(path: Path) -> Reference:
+    table = read_table(path, REFERENCE_COLUMNS)
+    for name in table.names:
+        if name.startswith("sigma") and name not in SIGMA_COLUMNS:
+            known = " and ".join(SIGMA_COLUMNS)
+            raise InputError(f"{path}, line 1: unknown column {name}; there are {known}")
+    x, y, yaw = (_measured(table, name) for name in REFERENCE_COLUMNS[1:])
+    sigmas = [
+        _measured(table, name, minimum=0.0) if name in table.names else None
+        for name in SIGMA_COLUMNS
+    ]
+    return Reference(_times(table), x, y, yaw, *sigmas)
+
+
+def _measured(table: Table, name: str, minimum: float = -math.inf) -> Floats:
+    values = table.column(name)
+    if np.isinf(values).any() or (values < minimum).any():
+        table.refuse_where(name, lambda text: _not_measured(text, minimum))
+    return values
+
+
+def _not_measured(text: str, minimum: float) -> str:
+    value = float(text or "nan")
+    if math.isinf(value):
+        return f"{text!r} cannot be measured; leave the cell empty where nothing was"
+    return f"{text!r} must not be less than {minimum:g}" if value < minimum else ""
