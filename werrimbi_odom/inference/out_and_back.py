@@ -20,7 +20,7 @@ systematic in them, is estimated too, so the runs' scatter counts with one degre
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy import optimize, stats
@@ -35,6 +35,9 @@ LEAST_RUNS, ADVISED_RUNS = 5, 30
 
 UNKNOWN_SPLIT = 0.5
 """The split (k_R² - k_L²) / (k_R² + k_L²) lies within ±1: with a std of this it is unknown."""
+
+MISFIT_P = 0.01
+"""Scatter that the model explains no better than this has something else in it."""
 
 NORMAL_95 = 1.959963984540054
 
@@ -97,6 +100,8 @@ class NoiseFit:
     """Covariance that the model has with k_L and k_R, the reference's noise included."""
     misfit_p: float
     """Probability of so bad a match under the model (likelihood ratio against any covariance)."""
+    missing_reference: tuple[float, float] | None
+    """Where the model does not match: noise of the reference (xy [m], yaw [rad]) that would."""
 
 
 def fit_noise(errors: Floats, design: Design) -> NoiseFit:
@@ -132,6 +137,7 @@ def fit_noise(errors: Floats, design: Design) -> NoiseFit:
     mean = errors.mean(axis=0)
     squared = float(mean @ np.linalg.solve(data / runs, mean))
     written = (left.value**2, right.value**2)
+    misfit_p = likelihood.misfit_p(*written, 2 if split_known else 1)
     return NoiseFit(
         runs=runs,
         left=left,
@@ -145,8 +151,35 @@ def fit_noise(errors: Floats, design: Design) -> NoiseFit:
         mean_p=float(stats.f.sf(squared * (runs - 3) / (3 * (runs - 1)), 3, runs - 3)),
         data=data,
         model=design.covariance(*written),
-        misfit_p=likelihood.misfit_p(*written, 2 if split_known else 1),
+        misfit_p=misfit_p,
+        missing_reference=_missing_reference(likelihood, same) if misfit_p < MISFIT_P else None,
     )
+
+
+def _missing_reference(likelihood: Likelihood, same: float) -> tuple[float, float] | None:
+    """Noise of the reference with which the runs do fit; None where no such noise explains them."""
+    unit = np.sqrt(np.diag(likelihood.data) / 2.0)
+
+    def with_noise(logs: Floats) -> tuple[Likelihood, float, float]:
+        left, right, xy, yaw = np.exp(logs)
+        sigma_xy, sigma_yaw = unit[0] * xy, unit[2] * yaw
+        given = 2.0 * np.diag([sigma_xy**2, sigma_xy**2, sigma_yaw**2])
+        design = replace(likelihood.design, given=given)
+        return replace(likelihood, design=design), left * same, right * same
+
+    def cost(logs: Floats) -> float:
+        assumed, left, right = with_noise(logs)
+        return assumed.cost(left, right)
+
+    start = np.log([0.5, 0.5, 0.5, 0.5])
+    bounds = [(-12.0, 3.0)] * 4
+    found = optimize.minimize(
+        cost, start, method="Nelder-Mead", bounds=bounds, options={"maxfev": 4000}
+    ).x
+    assumed, left, right = with_noise(found)
+    if assumed.misfit_p(left, right, 4) < MISFIT_P:
+        return None
+    return float(unit[0] * math.exp(found[2])), float(unit[2] * math.exp(found[3]))
 
 
 def _split_std(covariance: Floats, same: float) -> float:

@@ -1,0 +1,34 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi calibrate`: a robot file with better numbers in it, from drives and measurements."""
+
+from __future__ import annotations
+
+import argparse
+from importlib import import_module
+from importlib.util import find_spec
+
+HELP = "better numbers for the robot file, with error bars"
+
+KINDS = {
+    "umbmark": "wheel base and radii from squares in both senses (the paper's section 3)",
+    "noise": "noise of the wheels from drives out and back (the paper's section 5.2)",
+    "fit": "all of them from any driving with a reference",
+}
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the three ways of calibrating and their options."""
+    kinds = parser.add_subparsers(dest="kind", metavar="KIND", required=True)
+    for kind, says in KINDS.items():
+        if find_spec(_module(kind)) is not None:
+            import_module(_module(kind)).add_arguments(kinds.add_parser(kind, help=says))
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Calibrate; 0 on success."""
+    return int(import_module(_module(arguments.kind)).run(arguments))
+
+
+def _module(kind: str) -> str:
+    return f"werrimbi_odom.cli.calibrate_{kind}"

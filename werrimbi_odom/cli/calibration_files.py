@@ -1,0 +1,71 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the calibrations have in common on the command line: options, and the files they write."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from werrimbi_odom.errors import InputError
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+    from werrimbi_odom.files.robot_file import RobotFile
+
+
+def add_file_arguments(parser: argparse.ArgumentParser) -> None:
+    """--robot, --out, --json, --report and --force."""
+    parser.add_argument(
+        "--robot", metavar="R", type=Path, required=True, help="robot file to start from"
+    )
+    parser.add_argument(
+        "--out", metavar="NEW", type=Path, required=True, help="robot file to write"
+    )
+    parser.add_argument("--json", metavar="F", type=Path, help="write the figures to this file")
+    parser.add_argument("--report", metavar="F", type=Path, help="write a page with the plots")
+    parser.add_argument("--force", action="store_true", help="overwrite --out if it exists")
+
+
+def write_all(
+    arguments: argparse.Namespace,
+    source: RobotFile,
+    changes: Mapping[str, float],
+    figures: Mapping[str, Any],
+    figure: go.Figure | None,
+) -> None:
+    """The new robot file, then the JSON and the page that were asked for; says what it wrote."""
+    from werrimbi_odom.files.replacing import replacing
+    from werrimbi_odom.files.robot_file import write_robot_file
+    from werrimbi_odom.report.save import save_page
+
+    write_robot_file(source, changes, arguments.out, force=arguments.force)
+    written = [arguments.out]
+    if arguments.json is not None:
+        with replacing(arguments.json) as file:
+            json.dump(plain(figures), file, indent=2, allow_nan=False)
+            file.write("\n")
+        written.append(arguments.json)
+    if arguments.report is not None and figure is not None:
+        try:
+            save_page(figure, arguments.report)
+        except OSError as error:
+            raise InputError(f"{arguments.report} cannot be written: {error.strerror}") from error
+        written.append(arguments.report)
+    print(f"\nwritten: {', '.join(str(path) for path in written)}")
+
+
+def plain(value: Any) -> Any:
+    """Values that JSON has; null for what is not finite."""
+    if isinstance(value, Mapping):
+        return {key: plain(part) for key, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(part) for part in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
