@@ -26,8 +26,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
-from werrimbi_odom.files.run import Reference, Run, read_run
+from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.files.start_pose import start_pose
 from werrimbi_odom.model.pose import Pose, wrap
 from werrimbi_odom.model.trajectory import trajectory
@@ -35,6 +36,8 @@ from werrimbi_odom.report.path_figure import PathDrawing, path_figure
 from werrimbi_odom.report.save import save_page, save_png
 
 if TYPE_CHECKING:
+    from rich.table import Table
+
     from werrimbi_odom.ros.player import Answers
 
 RECORDING = Path(__file__).parent / "recordings" / "square"
@@ -52,38 +55,28 @@ class Ending:
 
     @property
     def sigmas(self) -> np.ndarray:
-        """1σ along the robot's heading, across it [m], and in heading [rad]."""
-        turned = self._to_robot() @ self.covariance @ self._to_robot().T
-        return np.sqrt(np.maximum(np.diag(turned), 0.0))
+        """1σ of x, y [m] and heading [rad]."""
+        return np.sqrt(np.maximum(np.diag(self.covariance), 0.0))
 
     @property
-    def error(self) -> np.ndarray | None:
-        """Measured minus odometry: along, across [m] and heading [rad]."""
+    def error(self) -> np.ndarray:
+        """Odometry minus measured: x, y [m] and heading [rad]; NaN where not measured."""
         if self.measured is None:
-            return None
-        difference = np.array(self.measured) - np.array(self.pose)
+            return np.full(3, np.nan)
+        difference = np.array(self.pose) - np.array(self.measured)
         difference[2] = wrap(float(difference[2]))
-        turn = self._to_robot()
-        position = turn[:2, :2] @ difference[:2]
-        return np.array([*position, difference[2]])
+        return difference
 
     @property
     def deviation(self) -> float | None:
         """Mahalanobis distance of the error over what was measured, in σ."""
-        if self.measured is None:
-            return None
-        difference = np.array(self.measured) - np.array(self.pose)
-        difference[2] = wrap(float(difference[2]))
+        difference = self.error
         known = np.flatnonzero(np.isfinite(difference))
         if known.size == 0:
             return None
         part = difference[known]
         block = self.covariance[np.ix_(known, known)]
         return float(np.sqrt(part @ np.linalg.pinv(block, hermitian=True) @ part))
-
-    def _to_robot(self) -> np.ndarray:
-        cos, sin = math.cos(self.pose.yaw), math.sin(self.pose.yaw)
-        return np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
 
 
 def main(argv: list[str] | None = None) -> int:
@@ -207,45 +200,41 @@ def _print(
     apart = math.hypot(offline.x[-1] - ending.pose.x, offline.y[-1] - ending.pose.y)
     kinds = ", ".join(f"{count} {kind}s" for kind, count in answers.counts_by_kind().items())
     table = Table(title=f"{run.name} through odom_node over DDS", show_header=False)
-    table.add_column()
-    table.add_column(justify="left")
-    table.add_row("ticks played", f"{run.ticks.rows} messages, {lasted:.0f} s of driving in {seconds:.1f} s")
+    table.add_row("ticks played", f"{run.ticks.rows} messages: {lasted:.0f} s in {seconds:.1f} s")
     table.add_row("odometry received", f"{len(answers.time)} messages")
+    table.add_row("path", f"{distance:.2f} m")
     table.add_row("pieces", kinds)
-    table.add_row("distance", f"{distance:.3f} m")
-    table.add_row("every tick accounted for", f"ends {1e6 * apart:.3f} µm from the same ticks worked out offline")
-    table.add_section()
-    table.add_row("final pose", _pose(ending.pose))
-    if ending.measured is not None:
-        table.add_row("true pose", _pose(ending.measured))
-    for index, name in enumerate(("along", "across", "heading")):
-        table.add_row(f"1σ {name}" + _error_of(name), _sigma(ending, index))
+    table.add_row(
+        "ticks accounted for",
+        f"all: {1e6 * apart:.3f} µm from offline"
+        if apart < 1e-8
+        else f"NOT all: {1e3 * apart:.3f} mm from offline",
+    )
     console = Console()
     console.print(table)
+    console.print(_final_pose(ending))
     console.print(_in_words(ending), markup=False)
 
 
-def _error_of(name: str) -> str:
-    return f", error {name}"
+def _final_pose(ending: Ending) -> Table:
+    from rich.table import Table
 
-
-def _pose(pose: Pose) -> str:
-    def part(value: float, unit: str) -> str:
-        return "not measured" if math.isnan(value) else f"{value:8.3f} {unit}"
-
-    yaw = math.degrees(wrap(pose.yaw)) if math.isfinite(pose.yaw) else math.nan
-    return f"x {part(pose.x, 'm')}   y {part(pose.y, 'm')}   heading {part(yaw, 'deg')}"
-
-
-def _sigma(ending: Ending, index: int) -> str:
-    scale, unit = (180.0 / math.pi, "deg") if index == 2 else (1e3, "mm")
-    sigma = float(ending.sigmas[index])
-    words = f"{scale * sigma:8.2f} {unit}"
-    error = ending.error
-    if error is None or not math.isfinite(error[index]):
-        return words
-    off = float(error[index])
-    return f"{words}, {scale * off:+9.2f} {unit} = {off / sigma:+6.1f} σ" if sigma else words
+    table = Table(title="final pose")
+    for heading in ("", "odometry", "true", "error", "1σ", "error in σ"):
+        table.add_column(heading, justify="right" if heading else "left")
+    measured = ending.measured or Pose(math.nan, math.nan, math.nan)
+    degrees = 180.0 / math.pi
+    rows = (("x (m)", 1.0, 3), ("y (m)", 1.0, 3), ("heading (deg)", degrees, 2))
+    for index, (name, scale, digits) in enumerate(rows):
+        error, sigma = float(ending.error[index]), float(ending.sigmas[index])
+        values = [ending.pose[index], measured[index]]
+        if index == 2:
+            values = [wrap(value) for value in values]
+        numbers = [*values, error, sigma]
+        cells = ["not measured" if math.isnan(n) else f"{scale * n:.{digits}f}" for n in numbers]
+        ratio = f"{error / sigma:+.1f}" if sigma > 0.0 and math.isfinite(error) else ""
+        table.add_row(name, *cells, ratio)
+    return table
 
 
 def _in_words(ending: Ending) -> str:
@@ -258,8 +247,8 @@ def _in_words(ending: Ending) -> str:
             "the covariance promised just that."
         )
     return (
-        f"The end lies {deviation:.1f} σ from the truth, all directions together: far more than noise "
-        "explains. The robot file is not calibrated, or a physical effect is missing. "
+        f"The end lies {deviation:.1f} σ from the truth, all directions together: far more than "
+        "noise explains. The robot file is not calibrated, or a physical effect is missing. "
         "Next: werrimbi calibrate fit."
     )
 

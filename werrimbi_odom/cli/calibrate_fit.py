@@ -78,7 +78,7 @@ def _matched(
     paths: Sequence[Path], source: RobotFile, leg: float, arguments: argparse.Namespace
 ) -> list[MatchedRun]:
     from werrimbi_odom.cli.progress import with_progress
-    from werrimbi_odom.files.run import read_run
+    from werrimbi_odom.files.reading import read_run
     from werrimbi_odom.inference.matching import match
 
     return [

@@ -40,7 +40,7 @@ def between(a: Pose, b: Pose) -> Pose:
 
 def wrap(angle: float) -> float:
     """The same direction in [-pi, pi]."""
-    return math.remainder(angle, 2.0 * math.pi)
+    return math.remainder(angle, 2.0 * math.pi) if math.isfinite(angle) else math.nan
 
 
 def wrap_all(angles: Floats) -> Floats:
