@@ -1,0 +1,13 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The library of physical effects.
+
+Each file holds one effect, or a pair like left and right: a law of a few lines with its parameters
+and a page in words. `library` lists them, `collection` finds them and those of other packages,
+`contract` holds every effect, a user's own too, to the laws that the rest relies on.
+"""
+
+from werrimbi_odom.effects.collection import Collection, all_effects, find, load_file
+from werrimbi_odom.effects.library import LIBRARY
+
+__all__ = ["LIBRARY", "Collection", "all_effects", "find", "load_file"]

@@ -1,0 +1,169 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Effects found by name: the library's, those of installed packages, those of a file.
+
+A robot file names effects; it never names code. So what it can name is what is installed, or what
+the user put on the command line with his own hands.
+"""
+
+from __future__ import annotations
+
+import difflib
+import importlib.util
+import sys
+from collections.abc import Iterable, Sequence
+from importlib.metadata import entry_points
+from pathlib import Path
+from types import ModuleType
+from typing import NamedTuple
+
+from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.model.effect import Effect
+
+GROUP = "werrimbi_odom.effects"
+"""Entry point group in which a package offers its effects."""
+
+
+class Collection(NamedTuple):
+    """Effects that can be used now, and what could not be."""
+
+    effects: tuple[Effect, ...]
+    warnings: tuple[str, ...] = ()
+    """A line for each installed effect that is left out, saying why."""
+
+    def find(self, name: str) -> Effect:
+        """The effect of a name.
+
+        Raises
+        ------
+        InputError
+            For an unknown name; the message offers the nearest known one.
+        """
+        for effect in self.effects:
+            if effect.name == name:
+                return effect
+        names = [effect.name for effect in self.effects]
+        near = difflib.get_close_matches(name, names, n=1, cutoff=0.0)
+        raise InputError(
+            f"unknown effect {name}; the nearest known one is {near[0]} (all: werrimbi explain)"
+        )
+
+
+def all_effects(files: Sequence[Path] = ()) -> Collection:
+    """The library, the effects of installed packages, and those of the user's own files.
+
+    A broken package is reported among the warnings and left out: it must not stop the tool. A
+    broken file is an error: the user named it.
+
+    Raises
+    ------
+    InputError
+        When a file cannot be used, or holds an effect whose name is taken.
+    """
+    effects = {effect.name: effect for effect in LIBRARY}
+    warnings = []
+    for point in sorted(entry_points(group=GROUP), key=lambda point: point.name):
+        place = f"effect {point.name} of {_package(point)} ({point.value})"
+        try:
+            found = point.load()
+        except Exception as error:
+            warnings.append(f"{place} is left out: {type(error).__name__}: {error}")
+            continue
+        if not isinstance(found, Effect):
+            warnings.append(
+                f"{place} is left out: it is no effect but a {type(found).__name__}; "
+                "is its decorator missing?"
+            )
+        elif found.name in effects:
+            warnings.append(f"{place} is left out: the name {found.name} is taken")
+        else:
+            effects[found.name] = found
+    for file in files:
+        for found in load_file(file):
+            if found.name in effects:
+                raise InputError(f"{file}: the name {found.name} is taken; give it another")
+            effects[found.name] = found
+    return Collection(tuple(effects.values()), tuple(warnings))
+
+
+def find(name: str) -> Effect:
+    """The effect of a name, from the library or an installed package.
+
+    Raises
+    ------
+    InputError
+        For an unknown name; the message offers the nearest known one.
+    """
+    for effect in LIBRARY:
+        if effect.name == name:
+            return effect
+    return all_effects().find(name)
+
+
+def load_file(path: Path) -> tuple[Effect, ...]:
+    """Effects that a user's Python file defines. It is executed: the user named it.
+
+    Raises
+    ------
+    InputError
+        When the file cannot be read or run, or defines no effect; the message names the line.
+    """
+    if not path.is_file():
+        raise InputError(f"{path}: there is no such file")
+    before = {id(effect) for effect in LIBRARY}
+    found: dict[str, Effect] = {}
+    for value in _effects_in(vars(_executed(path))):
+        if id(value) in before:
+            continue  # imported from the library, to be compared with or built upon
+        if found.setdefault(value.name, value) is not value:
+            raise InputError(f"{path}: two effects are called {value.name}")
+    if not found:
+        raise InputError(
+            f"{path}: it defines no effect; write one under @wheel_effect(...), @body_effect(...) "
+            "or @reference_effect(...), as docs/effects.md shows"
+        )
+    return tuple(found.values())
+
+
+def _effects_in(names: dict[str, object]) -> Iterable[Effect]:
+    return (value for value in names.values() if isinstance(value, Effect))
+
+
+def _executed(path: Path) -> ModuleType:
+    name = f"werrimbi_odom_effects_of_{path.stem}"
+    spec = importlib.util.spec_from_loader(name, loader=None, origin=str(path))
+    assert spec is not None
+    module = importlib.util.module_from_spec(spec)
+    module.__file__ = str(path)
+    known = sys.modules.get(name)
+    sys.modules[name] = module  # dataclasses and typing look their module up there
+    try:
+        exec(compile(path.read_bytes(), str(path), "exec"), vars(module))
+    except Exception as error:
+        if known is None:
+            del sys.modules[name]
+        raise InputError(f"{path}{_line(error, path)}: {_words(error)}") from error
+    return module
+
+
+def _line(error: BaseException, path: Path) -> str:
+    """Where in the file it went wrong, as ":12"."""
+    if isinstance(error, SyntaxError):
+        return f":{error.lineno}" if error.lineno else ""
+    line, trace = 0, error.__traceback__
+    while trace is not None:
+        if trace.tb_frame.f_code.co_filename == str(path):
+            line = trace.tb_lineno
+        trace = trace.tb_next
+    return f":{line}" if line else ""
+
+
+def _words(error: BaseException) -> str:
+    message = error.msg if isinstance(error, SyntaxError) else str(error)
+    return f"{type(error).__name__}: {message}"
+
+
+def _package(point: object) -> str:
+    distribution = getattr(point, "dist", None)
+    return distribution.name if distribution is not None else "an unknown package"

@@ -1,0 +1,57 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""All effects that come with this package, one file each (or one for a pair like left and right)."""
+
+from __future__ import annotations
+
+from werrimbi_odom.effects.backlash import left_backlash, right_backlash
+from werrimbi_odom.effects.castor_kick import castor_kick
+from werrimbi_odom.effects.eccentric_wheel import eccentric_left_wheel, eccentric_right_wheel
+from werrimbi_odom.effects.encoder_skew import encoder_skew
+from werrimbi_odom.effects.floor_slope import floor_slope
+from werrimbi_odom.effects.lateral_slip import lateral_slip
+from werrimbi_odom.effects.longitudinal_slip import longitudinal_slip
+from werrimbi_odom.effects.missed_ticks import left_missed_ticks, right_missed_ticks
+from werrimbi_odom.effects.radius_drift import radius_drift
+from werrimbi_odom.effects.reference_clock import reference_delay, reference_heading_delay
+from werrimbi_odom.effects.reference_mirrored import reference_mirrored
+from werrimbi_odom.effects.reference_mount import reference_lever_arm, reference_yaw_offset
+from werrimbi_odom.effects.sideways_drift import sideways_drift
+from werrimbi_odom.effects.track_width import track_width
+from werrimbi_odom.effects.turn_dependent_track import turn_dependent_track
+from werrimbi_odom.effects.unequal_wheel_radii import unequal_wheel_radii
+from werrimbi_odom.effects.wheel_radius_scale import wheel_radius_scale
+from werrimbi_odom.effects.wiring import (
+    left_wheel_reversed,
+    right_wheel_reversed,
+    wheels_swapped,
+)
+from werrimbi_odom.model.effect import Effect
+
+LIBRARY: tuple[Effect, ...] = (
+    track_width,
+    unequal_wheel_radii,
+    wheel_radius_scale,
+    eccentric_left_wheel,
+    eccentric_right_wheel,
+    longitudinal_slip,
+    lateral_slip,
+    turn_dependent_track,
+    sideways_drift,
+    floor_slope,
+    castor_kick,
+    left_backlash,
+    right_backlash,
+    left_missed_ticks,
+    right_missed_ticks,
+    radius_drift,
+    reference_lever_arm,
+    reference_yaw_offset,
+    reference_delay,
+    reference_heading_delay,
+    encoder_skew,
+    wheels_swapped,
+    left_wheel_reversed,
+    right_wheel_reversed,
+    reference_mirrored,
+)

@@ -1,0 +1,70 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""An encoder that loses counts above a speed."""
+
+from __future__ import annotations
+
+from werrimbi_odom.effects.functions import limited
+from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.motion import Number, WheelTravel
+
+RAMP = 0.1
+"""Share of the threshold over which the loss sets in: a fit needs a slope to find a threshold."""
+
+FRACTION = Parameter(
+    "", null=0.0, typical=0.02, bounds=(0.0, 0.5), says="share of the counts that are lost"
+)
+ABOVE = Parameter(
+    "m/s",
+    null=0.3,
+    typical=0.3,
+    bounds=(0.01, 20.0),
+    says="speed of the rim, as counted, beyond which they are lost",
+    tries=(0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 4.0, 8.0),
+)
+
+
+@wheel_effect(fraction=FRACTION, above=ABOVE)
+def left_missed_ticks(
+    travel: WheelTravel[Number], drive: Drive[Number], fraction: float, above: float
+) -> WheelTravel[Number]:
+    """The left encoder loses counts when its wheel turns fast.
+
+    A counter that is read by interrupts, a filter on its lines or an optical disc at its limit lets
+    a share of the marks slip by above some speed. The share sets in over a tenth of that speed.
+
+    Formula    left /= 1 - fraction * limited(0.5 + (|left speed| / above - 1) / 0.1, 0, 1)
+               [m] = [m] / [1]
+    Signature  the left wheel goes farther than its counter says, above a speed and not below it
+    Ruler      lift the robot, chalk the left tyre and let it turn a hundred times, slowly, then
+               fast: the counter shows fewer counts when fast, by the fraction
+    Alike      unequal_wheel_radii, when driven at one speed: drive slow and fast lines
+    """
+    return travel._replace(left=travel.left / (1.0 - fraction * _fast(drive.left_speed.end, above)))
+
+
+@wheel_effect(fraction=FRACTION, above=ABOVE)
+def right_missed_ticks(
+    travel: WheelTravel[Number], drive: Drive[Number], fraction: float, above: float
+) -> WheelTravel[Number]:
+    """The right encoder loses counts when its wheel turns fast.
+
+    A counter that is read by interrupts, a filter on its lines or an optical disc at its limit lets
+    a share of the marks slip by above some speed. The share sets in over a tenth of that speed.
+
+    Formula    right /= 1 - fraction * limited(0.5 + (|right speed| / above - 1) / 0.1, 0, 1)
+               [m] = [m] / [1]
+    Signature  the right wheel goes farther than its counter says, above a speed and not below it
+    Ruler      lift the robot, chalk the right tyre and let it turn a hundred times, slowly, then
+               fast: the counter shows fewer counts when fast, by the fraction
+    Alike      unequal_wheel_radii, when driven at one speed: drive slow and fast lines
+    """
+    return travel._replace(
+        right=travel.right / (1.0 - fraction * _fast(drive.right_speed.end, above))
+    )
+
+
+def _fast(speed: Number, above: float) -> Number:
+    """0 well below the threshold, 1 well above it."""
+    return limited(0.5 + (abs(speed) / above - 1.0) / RAMP, 0.0, 1.0)

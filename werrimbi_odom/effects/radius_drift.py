@@ -1,0 +1,43 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Radii that change while the robot drives."""
+
+from __future__ import annotations
+
+from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.motion import Number, WheelTravel
+
+
+@wheel_effect(
+    per_metre=Parameter(
+        "1/m",
+        null=0.0,
+        typical=3e-4,
+        bounds=(-0.01, 0.01),
+        says="relative growth of both radii per metre of path",
+    ),
+    per_second=Parameter(
+        "1/s",
+        null=0.0,
+        typical=1e-4,
+        bounds=(-5e-3, 5e-3),
+        says="relative growth of both radii per second since the drive began",
+    ),
+)
+def radius_drift(
+    travel: WheelTravel[Number], drive: Drive[Number], per_metre: float, per_second: float
+) -> WheelTravel[Number]:
+    """Both wheels swell or shrink steadily during the drive: warmth, pressure, wear.
+
+    Each drive begins with the radii of the robot file. A straight law holds about as long as the
+    drives that it was fitted on, not for a lifetime.
+
+    Formula    travel *= 1 + per_metre * distance + per_second * time       [m] = [m] * [1]
+    Signature  a scale error that grows from the drive's beginning to its end
+    Ruler      chalk a wheel and roll it ten turns along a tape, before the drive and right after
+    Alike      wheel_radius_scale, on short drives; per_metre and per_second, at one steady speed:
+               drive long, with rests
+    """
+    grown = 1.0 + per_metre * drive.distance.mean + per_second * drive.time.mean
+    return WheelTravel(travel.left * grown, travel.right * grown)

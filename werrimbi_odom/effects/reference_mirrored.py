@@ -1,0 +1,24 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Set-up mistake: a reference in a left-handed frame."""
+
+from __future__ import annotations
+
+from werrimbi_odom.model.effect import View, reference_effect
+
+
+@reference_effect(twins=("wheels_swapped",))
+def reference_mirrored(view: View) -> View:
+    """The reference's frame is left-handed: y points down, or east and north are exchanged.
+
+    Images have y down, maps have north up and count clockwise, and some capture systems do both.
+
+    Formula    measured y = -y;  measured yaw = -yaw (x and y exchanged is the same, turned)
+    Signature  left turns come out as right turns of the same size; lines are good
+    Ruler      push the robot from the reference's origin along x, then to the left: y must grow;
+               turn it to the left: yaw must grow
+    Twins      wheels_swapped is one and the same to the reference, on any drive (once the radii of
+               left and right are exchanged too): the robot turns the wrong way, or the reference
+               does. Turn the robot to the left by hand and look whose yaw grows
+    """
+    return view._replace(mirrored=not view.mirrored)

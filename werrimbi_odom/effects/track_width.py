@@ -1,0 +1,33 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""An effective wheel base that differs from the nominal one."""
+
+from __future__ import annotations
+
+from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.effect import Parameter, body_effect
+from werrimbi_odom.model.motion import BodyMotion, Number
+
+
+@body_effect(
+    multiplier=Parameter(
+        "", null=1.0, typical=1.02, bounds=(1e-4, 1e4), says="effective over assumed wheel base"
+    ),
+)
+def track_width(
+    motion: BodyMotion[Number], drive: Drive[Number], multiplier: float
+) -> BodyMotion[Number]:
+    """The wheels turn the robot as if they stood farther apart, or closer, than is assumed.
+
+    A wide or soft tyre touches the floor along a line, not at a point, and which part of it carries
+    the turn depends on load and wear. Near 2, 1/2, 1000 or the like, a diameter, a half base or
+    millimetres stand in the robot file.
+
+    Formula    turn /= multiplier                                    [rad] = [rad] / [1]
+    Signature  every turn is off by the same share, left and right, fast and slow; lines are good
+    Ruler      spin ten turns by the odometry from a chalk line on the floor: the robot falls short
+               of the line by 20 pi * (multiplier - 1)
+    Twins      wheel_separation_multiplier of the robot file is the same number. Where yaw alone is
+               measured, wheel_radius_scale is its inverse: drive a taped distance
+    """
+    return motion._replace(turn=motion.turn / multiplier)
