@@ -63,7 +63,7 @@ class Ending:
         """Odometry minus measured: x, y [m] and heading [rad]; NaN where not measured."""
         if self.measured is None:
             return np.full(3, np.nan)
-        difference = np.array(self.pose) - np.array(self.measured)
+        difference: np.ndarray = np.subtract(self.pose, self.measured)
         difference[2] = wrap(float(difference[2]))
         return difference
 

@@ -138,11 +138,9 @@ def _say(result: Calibration) -> None:
     console.print("[bold red]Something else is missing: calibration does not explain these drives.")
     for words in result.strange:
         console.print(f"  - {words}", markup=False)
-    for item in result.misfit[:5]:
-        console.print(
-            f"  - the {item.channel} error still goes with {item.variable} (p = {item.p_value:.0e})",
-            markup=False,
-        )
+    for cell in result.misfit[:5]:
+        words = f"the {cell.channel} error still goes with {cell.variable}"
+        console.print(f"  - {words} (p = {cell.p_value:.0e})", markup=False)
     console.print(
         "The values above are the best of a model that does not fit, so they have no error bars. "
         "Look first at how the reference is mounted and named: its point on the robot, its forward "
@@ -167,9 +165,9 @@ def _judged(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) 
         figures[word] = float(np.sqrt(np.mean(errors**2)))
         figures[f"median_{word}"] = float(np.median(errors))
     print(
-        f"held-out legs: rms {1e3 * figures['before']:.2f} mm before, "
-        f"{1e3 * figures['after']:.2f} mm after; median "
-        f"{1e3 * figures['median_before']:.2f} mm before, {1e3 * figures['median_after']:.2f} mm after"
+        f"held-out legs, before and after: "
+        f"rms {1e3 * figures['before']:.2f} and {1e3 * figures['after']:.2f} mm, "
+        f"median {1e3 * figures['median_before']:.2f} and {1e3 * figures['median_after']:.2f} mm"
     )
     return figures
 

@@ -36,10 +36,12 @@ class PathDrawing:
     subtitle: str = ""
 
 
-def ellipse(x: float, y: float, covariance: Floats, points: int = 73) -> tuple[Floats, Floats]:
+def ellipse(
+    x: float, y: float, covariance: Floats, *, magnified: float = 1.0, points: int = 73
+) -> tuple[Floats, Floats]:
     """Outline of the 95 % ellipse about a point, [m]."""
     variances, axes = np.linalg.eigh(covariance)
-    radii = np.sqrt(np.maximum(variances, 0.0) * CHI2_95_OF_2)
+    radii = magnified * np.sqrt(np.maximum(variances, 0.0) * CHI2_95_OF_2)
     angle = np.linspace(0.0, 2.0 * np.pi, points)
     outline = axes @ (radii[:, None] * np.stack([np.cos(angle), np.sin(angle)]))
     return x + outline[0], y + outline[1]
@@ -52,11 +54,23 @@ def spread_along_path(x: Floats, y: Floats, count: int) -> NDArray[np.intp]:
     return np.unique(np.minimum(np.searchsorted(travelled, wanted), x.size - 1))
 
 
-def path_figure(drawing: PathDrawing, *, ellipses: int = 12) -> go.Figure:
+def magnification(drawing: PathDrawing) -> float:
+    """How many times larger ellipses must be drawn to be seen: 1, 2, 5, 10, 20 or 50."""
+    extent = max(float(np.ptp(drawing.x)), float(np.ptp(drawing.y)))
+    largest = np.sqrt(np.max(np.linalg.eigvalsh(drawing.covariance), initial=0.0) * CHI2_95_OF_2)
+    if not largest > 0.0:
+        return 1.0
+    wanted = 0.1 * extent / largest
+    return max((size for size in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if size <= wanted), default=1.0)
+
+
+def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> go.Figure:
     """The figure, interactive; equal scales on both axes."""
     import plotly.graph_objects as go
 
     figure = go.Figure()
+    magnified = magnification(drawing)
+    name = "95 % ellipse" if magnified == 1.0 else f"95 % ellipse, drawn {magnified:g} × larger"
     if drawing.reference_x is not None and drawing.reference_y is not None:
         figure.add_scatter(
             x=drawing.reference_x,
@@ -69,7 +83,10 @@ def path_figure(drawing: PathDrawing, *, ellipses: int = 12) -> go.Figure:
         )
     for order, index in enumerate(spread_along_path(drawing.x, drawing.y, ellipses)):
         outline_x, outline_y = ellipse(
-            float(drawing.x[index]), float(drawing.y[index]), drawing.covariance[index]
+            float(drawing.x[index]),
+            float(drawing.y[index]),
+            drawing.covariance[index],
+            magnified=magnified,
         )
         figure.add_scatter(
             x=outline_x,
@@ -78,7 +95,7 @@ def path_figure(drawing: PathDrawing, *, ellipses: int = 12) -> go.Figure:
             fill="toself",
             fillcolor="rgba(213, 94, 0, 0.16)",
             line={"color": ORANGE, "width": 1.2},
-            name="95 % ellipse",
+            name=name,
             legendgroup="ellipse",
             showlegend=order == 0,
             hoverinfo="skip",
@@ -103,10 +120,10 @@ def path_figure(drawing: PathDrawing, *, ellipses: int = 12) -> go.Figure:
         title={"text": heading, "x": 0.02, "xanchor": "left", "y": 0.96, "yanchor": "top"},
         template="plotly_white",
         font={"size": 15},
-        margin={"l": 70, "r": 25, "t": 95, "b": 65},
-        legend={"bordercolor": "#cccccc", "borderwidth": 1},
+        margin={"l": 70, "r": 25, "t": 85, "b": 110},
+        legend={"orientation": "h", "x": 0.0, "y": -0.1, "yanchor": "top"},
         width=1000,
-        height=760,
+        height=860,
     )
     figure.update_xaxes(title="x [m]", zeroline=False)
     figure.update_yaxes(title="y [m]", zeroline=False, scaleanchor="x", scaleratio=1)

@@ -113,7 +113,7 @@ def gained_in_words(
         lines.append("To see what it gained, drive squares with the new file: --after RESULTS2.csv")
     lines.append("\nE_max,syst of others, on squares of 4 m (paper, Table 2):")
     lines += [f"  {name:34}{1e3 * value:5.0f} mm" for name, value in OTHER_VEHICLES]
-    shown, when = (later, "after") if later is not None else (squares, "before")
+    shown, when = (squares, "before") if later is None else (later, "after")
     lines.append(
         f"  {f'this robot, {when}, {squares.side:g} m':34}{1e3 * e_max_syst(shown):5.0f} mm"
     )
