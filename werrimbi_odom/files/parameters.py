@@ -165,6 +165,15 @@ PARAMETERS: tuple[Parameter, ...] = (
         minimum=0.0,
     ),
     Parameter(
+        "covariance_order",
+        "string",
+        "first",
+        "",
+        "first: the paper's covariance. exact: exact moments, for headings known to worse than "
+        "about 0.3 rad (long drives without a fix); costs a little more time per message.",
+        choices=("first", "exact"),
+    ),
+    Parameter(
         "piece_path_tolerance",
         "float",
         0.003,

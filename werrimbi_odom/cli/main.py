@@ -1,0 +1,101 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The command `werrimbi`: one verb a module; what a user can mend is one line and exit code 2."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+from importlib import import_module, metadata
+from types import ModuleType
+from typing import NoReturn
+
+from werrimbi_odom.errors import InputError
+
+VERBS = ("odom", "calibrate", "simulate")
+"""Each a module beside this one with HELP, `add_arguments(parser)` and `run(arguments)`."""
+
+BAD_INPUT = 2
+INTERRUPTED = 130  # 128 + SIGINT, as shells say it
+NO_READER = 141  # 128 + SIGPIPE
+
+
+class _Parser(argparse.ArgumentParser):
+    """Says what is wrong in one line, without the usage before it."""
+
+    def error(self, message: str) -> NoReturn:
+        self.exit(BAD_INPUT, f"{self.prog}: {_one_line(message)} (see {self.prog} --help)\n")
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command line; returns its exit code.
+
+    Parameters
+    ----------
+    argv : sequence of str, optional
+        What follows the command's name; by default what the process was given.
+    """
+    words = sys.argv[1:] if argv is None else list(argv)
+    verb = "werrimbi"
+    try:
+        arguments = _parser(words).parse_args(words)
+        verb = f"werrimbi {arguments.verb}"
+        code = int(_module(arguments.verb).run(arguments))
+        sys.stdout.flush()  # here, where a broken pipe is still caught
+        return code
+    except SystemExit as end:  # argparse ends --help and bad usage so
+        return end.code if isinstance(end.code, int) else BAD_INPUT
+    except KeyboardInterrupt:
+        return INTERRUPTED
+    except BrokenPipeError:
+        # The interpreter flushes stdout once more at its end; let it, into nothing.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return NO_READER
+    except InputError as error:
+        problem = str(error)
+    except MemoryError:
+        problem = "this needs more memory than there is; cut the run into several"
+    except OSError as error:
+        problem = str(error)
+    print(f"{verb}: {_one_line(problem)}", file=sys.stderr)
+    return BAD_INPUT
+
+
+def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
+    parser = _Parser(
+        prog="werrimbi",
+        description="Wheel odometry that knows how wrong it is, and can tell its user why.",
+        epilog="werrimbi VERB --help tells more of each.",
+        allow_abbrev=False,
+    )
+    parser.add_argument("--version", action="version", version=f"werrimbi_odom {_version()}")
+    verbs = parser.add_subparsers(dest="verb", metavar="VERB", required=True, title="verbs")
+    chosen = next((word for word in words if not word.startswith("-")), None)
+    for name in VERBS:
+        if chosen == name or chosen not in VERBS:
+            module = _module(name)
+            below = verbs.add_parser(name, help=module.HELP, allow_abbrev=False)
+            if chosen == name:  # nobody else needs its options, nor what they cost to declare
+                module.add_arguments(below)
+    return parser
+
+
+def _module(verb: str) -> ModuleType:
+    return import_module(f"werrimbi_odom.cli.{verb}")
+
+
+def _version() -> str:
+    try:
+        return metadata.version("werrimbi_odom")
+    except metadata.PackageNotFoundError:
+        return "(a checkout, not installed)"
+
+
+def _one_line(text: str) -> str:
+    return " ".join(text.split())
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,277 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What `werrimbi odom` tells of a run besides its rows: distance, pieces, last pose, its error."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.files.start_pose import Start
+from werrimbi_odom.model.covariance import PoseCovariance
+from werrimbi_odom.model.pieces import Piece
+from werrimbi_odom.model.pose import Floats, Pose, between, compose, wrap
+from werrimbi_odom.model.trajectory import Trajectory
+
+KINDS = ("line", "arc", "spin")
+_NO_MOTION = 1e-3
+"""Travel [m] or turn [rad] that is not worth a remark."""
+
+
+@dataclass(frozen=True)
+class EndError:
+    """Odometry against the last pose that the reference measured; NaN where it did not."""
+
+    time: float
+    """Of that pose [s]."""
+    measured: Pose
+    position: float
+    """[m]"""
+    heading: float
+    """Measured minus odometry [rad]."""
+    position_sigmas: float
+    """In standard deviations of the odometry, in the direction of the error."""
+    heading_sigmas: float
+
+
+@dataclass(frozen=True)
+class Figures:
+    """Everything that is printed, and written with --json."""
+
+    run: Run
+    start: Start
+    driven: Trajectory
+    end_error: EndError | None
+    remarks: tuple[str, ...]
+
+    @property
+    def distance(self) -> float:
+        """Travel of the axle's midpoint, both directions counted [m]."""
+        return math.fsum(abs(piece.length) for piece in self.driven.pieces)
+
+    @property
+    def duration(self) -> float:
+        """From the first row to the last that could be used [s]."""
+        return float(self.driven.time[-1] - self.driven.time[0])
+
+    @property
+    def final(self) -> Pose:
+        """The last pose; yaw within half a turn."""
+        driven = self.driven
+        return Pose(float(driven.x[-1]), float(driven.y[-1]), wrap(float(driven.yaw[-1])))
+
+    @property
+    def covariance(self) -> PoseCovariance[float]:
+        """Of the last pose."""
+        return PoseCovariance(*(float(entry[-1]) for entry in self.driven.covariance))
+
+    @property
+    def sigmas(self) -> tuple[float, float, float]:
+        """1σ along the heading and across it [m], and of the heading [rad]."""
+        cos, sin = math.cos(self.final.yaw), math.sin(self.final.yaw)
+        p = self.covariance
+        along = cos * cos * p.xx + 2.0 * cos * sin * p.xy + sin * sin * p.yy
+        across = sin * sin * p.xx - 2.0 * cos * sin * p.xy + cos * cos * p.yy
+        return _root(along), _root(across), _root(p.yawyaw)
+
+    def pieces(self, kind: str) -> list[Piece]:
+        """The pieces of a kind."""
+        return [piece for piece in self.driven.pieces if piece.kind == kind]
+
+    def as_json(self) -> dict[str, Any]:
+        """For --json."""
+        along, across, heading = self.sigmas
+        return {
+            "run": str(self.run.path),
+            "distance_m": self.distance,
+            "duration_s": self.duration,
+            "pieces": {
+                kind: {
+                    "count": len(self.pieces(kind)),
+                    "length_m": math.fsum(abs(piece.length) for piece in self.pieces(kind)),
+                    "turn_rad": math.fsum(abs(piece.turn) for piece in self.pieces(kind)),
+                }
+                for kind in KINDS
+            },
+            "start": {**_pose_json(self.start.pose), "says": self.start.told},
+            "final": {
+                "t_s": float(self.driven.time[-1]),
+                **_pose_json(self.final),
+                "sigma_along_m": along,
+                "sigma_across_m": across,
+                "sigma_yaw_rad": heading,
+                "covariance": self.covariance._asdict(),
+            },
+            "rows": self.driven.tally.as_dict(),
+            **_end_json(self.end_error),
+            "notes": [*self.run.notes, *self.remarks],
+        }
+
+    def rows(self) -> Iterator[tuple[str, str]]:
+        """For the table on the terminal."""
+        yield "distance", f"{self.distance:.3f} m in {self.duration:.1f} s"
+        yield "pieces", ", ".join(_counted(len(self.pieces(kind)), kind) for kind in KINDS)
+        yield "start", f"{_told(self.start.pose)}: {self.start.told}"
+        yield "final pose", _told(self.final)
+        along, across, heading = self.sigmas
+        yield (
+            "its 1σ",
+            f"{1e3 * along:.1f} mm along, {1e3 * across:.1f} mm across, "
+            f"{math.degrees(heading):.2f}° in heading",
+        )
+        yield "rows of ticks", _rows_told(self.driven.tally.as_dict())
+        end = self.end_error
+        if end is not None:
+            yield "measured", f"{_told(end.measured)} at {end.time:.3f} s"
+            yield "error", "; ".join(_errors_told(end))
+        for note in (*self.run.notes, *self.remarks):
+            yield "note", note
+
+
+def figures_of(run: Run, start: Start, driven: Trajectory) -> Figures:
+    """Work out the figures of a run that was dead reckoned from `start`."""
+    reference = run.reference
+    if reference is None:
+        return Figures(run, start, driven, None, ())
+    known = np.flatnonzero(reference.has_position | reference.has_yaw)
+    if known.size == 0:
+        return Figures(run, start, driven, None, ("the reference measured nothing",))
+    first, last = known[0], _last_row(reference, known, driven)
+    remarks = list(_late_or_early(reference, known, driven))
+    if driven.tally.clock_jumps:
+        remarks.append("the ticks' clock was set back, so poses of one time cannot be compared")
+        return Figures(run, start, driven, None, tuple(remarks))
+    if last is None:
+        remarks.append("reference and ticks have no time in common; are both clocks the same?")
+        return Figures(run, start, driven, None, tuple(remarks))
+    end = _end_error(reference, start.pose, driven, int(first), int(last))
+    return Figures(run, start, driven, end, tuple(remarks))
+
+
+def _last_row(reference: Reference, known: Any, driven: Trajectory) -> int | None:
+    """The last measured row while there were ticks; where there is none, one after their end."""
+    time = reference.time[known]
+    if known.size < 2 or time[-1] < driven.time[0] or time[0] > driven.time[-1]:
+        return None
+    during = known[(time <= driven.time[-1]) & (time > time[0])]
+    return int(during[-1] if during.size else known[-1])
+
+
+def _end_error(
+    reference: Reference, start: Pose, driven: Trajectory, first: int, last: int
+) -> EndError:
+    """Relative to the reference's first row, so that a late reference is judged fairly."""
+    measured = Pose(*(float(part[last]) for part in (reference.x, reference.y, reference.yaw)))
+    moved = between(_pose_at(driven, reference.time[first]), _pose_at(driven, reference.time[last]))
+    reckoned = compose(start, moved)
+    error = np.array(measured) - np.array(reckoned)
+    heading = wrap(float(error[2])) if math.isfinite(error[2]) else math.nan
+    at = max(int(np.searchsorted(driven.time, reference.time[last], side="right")) - 1, 0)
+    covariance = np.asarray(driven.covariance.matrix()[at])
+    return EndError(
+        float(reference.time[last]),
+        measured,
+        float(np.hypot(error[0], error[1])),
+        heading,
+        _sigmas(error[:2], covariance[:2, :2]),
+        _sigmas(np.array([heading]), covariance[2:, 2:]),
+    )
+
+
+def _pose_at(driven: Trajectory, time: float) -> Pose:
+    parts = (driven.x, driven.y, driven.yaw)
+    return Pose(*(float(np.interp(time, driven.time, part)) for part in parts))
+
+
+def _sigmas(error: Floats, covariance: Floats) -> float:
+    """Mahalanobis distance; NaN where something was not measured or the odometry has no spread."""
+    if not np.isfinite(error).all():
+        return math.nan
+    spread, axes = np.linalg.eigh(covariance)
+    if spread[-1] <= 0.0 or spread[0] <= 1e-12 * spread[-1]:
+        return math.nan
+    return float(np.sqrt(np.sum(np.square(error @ axes) / spread)))
+
+
+def _late_or_early(reference: Reference, known: Any, driven: Trajectory) -> Iterator[str]:
+    """Remarks where the first measured pose is not that of the first row of ticks."""
+    begin = float(reference.time[known[0]])
+    before = between(_pose_at(driven, driven.time[0]), _pose_at(driven, begin))
+    if max(math.hypot(before.x, before.y), abs(before.yaw)) > _NO_MOTION:
+        yield (
+            f"the reference begins {begin - driven.time[0]:.2f} s after the ticks, when the robot "
+            f"had gone {math.hypot(before.x, before.y):.3f} m; its first pose stands at the first "
+            "row all the same"
+        )
+    early = known[reference.has_position[known] & (reference.time[known] <= driven.time[0])]
+    if early.size:
+        begin_and_end = early[[0, -1]]
+        carried = np.hypot(*(np.ptp(part[begin_and_end]) for part in (reference.x, reference.y)))
+        if carried > 10.0 * _NO_MOTION:
+            yield f"the reference moved {carried:.3f} m before the first row of ticks"
+
+
+def _rows_told(tally: dict[str, int]) -> str:
+    told = [f"{tally['messages']}, {tally['accepted']} used"]
+    events = {
+        "duplicates": "with the stamp of the one before",
+        "out_of_order": "late",
+        "not_finite": "not finite",
+        "implausible": "implausible",
+        "clock_jumps": "clock jumps",
+        "gaps": "gaps",
+        "wraps": "wraps",
+        "resets": "resets",
+        "jumps": "jumps",
+    }
+    told += [f"{tally[name]} {words}" for name, words in events.items() if tally[name]]
+    return ", ".join(told)
+
+
+def _errors_told(end: EndError) -> Iterator[str]:
+    if math.isfinite(end.position):
+        yield f"{end.position:.4f} m{_in_sigmas(end.position_sigmas)}"
+    if math.isfinite(end.heading):
+        yield f"{math.degrees(end.heading):+.2f}°{_in_sigmas(end.heading_sigmas)} in heading"
+
+
+def _in_sigmas(number: float) -> str:
+    return f" ({number:.1f} σ)" if math.isfinite(number) else ""
+
+
+def _told(pose: Pose) -> str:
+    parts = []
+    if math.isfinite(pose.x) and math.isfinite(pose.y):
+        parts.append(f"x {pose.x:.3f} m, y {pose.y:.3f} m")
+    if math.isfinite(pose.yaw):
+        parts.append(f"heading {math.degrees(wrap(pose.yaw)):.2f}°")
+    return ", ".join(parts)
+
+
+def _counted(count: int, word: str) -> str:
+    return f"{count} {word}" if count == 1 else f"{count} {word}s"
+
+
+def _pose_json(pose: Pose) -> dict[str, float]:
+    return {"x_m": pose.x, "y_m": pose.y, "yaw_rad": pose.yaw}
+
+
+def _end_json(end: EndError | None) -> dict[str, Any]:
+    if end is None:
+        return {"reference_last": None, "end_error_m": None, "end_error_rad": None}
+    return {
+        "reference_last": {"t_s": end.time, **_pose_json(end.measured)},
+        "end_error_m": end.position,
+        "end_error_rad": end.heading,
+        "end_error_position_sigmas": end.position_sigmas,
+        "end_error_heading_sigmas": end.heading_sigmas,
+    }
+
+
+def _root(variance: float) -> float:
+    return math.sqrt(max(variance, 0.0))
