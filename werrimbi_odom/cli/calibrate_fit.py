@@ -110,15 +110,16 @@ def _say(result: Calibration) -> None:
     console = Console()
     table = Table(title="Calibration by maximum likelihood")
     for heading in ("parameter", "before", "after", "± 1σ", ""):
-        table.add_column(heading, justify="left" if heading in ("parameter", "") else "right")
+        left = heading in ("parameter", "")
+        table.add_column(heading, justify="left" if left else "right", no_wrap=bool(heading))
     for name, item in result.multipliers.items():
         std = "?" if item.std is None else f"{item.std:.6f}"
-        remark = "" if item.determined else "not determined by this driving; left alone"
+        remark = "" if item.determined else "not determined; left alone"
         table.add_row(name, f"{item.before:.6f}", f"{item.value:.6f}", std, remark)
     for name, noise in result.noises.items():
         before = getattr(result.fit.robot, name, None)
         if not noise.determined:
-            remark = f"not determined by this driving (at most about {2.0 * noise.std:.1e})"
+            remark = f"not determined (below {2.0 * noise.std:.0e})"
         else:
             remark = "m^0.5" if name.endswith("noise") else "m" if name.endswith("xy") else "rad"
         table.add_row(

@@ -15,15 +15,10 @@ from werrimbi_odom.model.covariance import (
     noise_of_wheel_variances,
     piece_covariance,
 )
-from werrimbi_odom.model.drive import Drive, Span, drive_of_run
-from werrimbi_odom.model.effect import (
-    View,
-    after_body_effects,
-    after_wheel_effects,
-    view_of,
-    wiring_of,
-)
-from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
+from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.driving import acts, driven, features
+from werrimbi_odom.model.effect import View, view_of, wiring_of
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -62,54 +57,23 @@ class _Path:
 
 def raw_drive(robot: Robot, run: MatchedRun) -> tuple[WheelTravel[Floats], Drive[Floats]]:
     """Travel of the wheels before any effect, and what effects may look at."""
-    wiring = wiring_of(robot.effects)
-    counters = run.counters
-    sides = [(run.left, counters.first_left), (run.right, counters.first_right)]
-    if wiring.swapped:
-        sides.reverse()
-    (left, first_left), (right, first_right) = sides
-    left, first_left = wiring.left_sign * left, wiring.left_sign * first_left
-    right, first_right = wiring.right_sign * right, wiring.right_sign * first_right
-    travel = WheelTravel(left * robot.left_tick, right * robot.right_tick)
-    motion = wheels_to_body(travel, robot.track)
-    per_left = 2.0 * np.pi / robot.left_ticks_per_revolution
-    per_right = 2.0 * np.pi / robot.right_ticks_per_revolution
-    drive = drive_of_run(
-        np.diff(run.time),
-        travel.left,
-        travel.right,
-        motion.along,
-        motion.turn,
-        left * per_left,
-        right * per_right,
-        flicker=0.75 * (robot.left_tick + robot.right_tick),
-        first_angles=(first_left * per_left, first_right * per_right),
-        channels=run.channels,
-    )
-    return travel, drive
+    wheels = wiring_of(robot.effects).wheels
+    left, right = wheels(run.left, run.right)
+    first_counts = wheels(run.counters.first_left, run.counters.first_right)
+    raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
+    return raw, features(robot, np.diff(run.time), raw, first_counts, run.channels)
 
 
 def _driven(robot: Robot, run: MatchedRun, first_heading: float) -> _Path:
     raw, drive = raw_drive(robot, run)
-    travel, motion = _after_effects(robot, raw, drive)
+    travel, motion = driven(robot, raw, drive, 0.0)
     yaw = np.concatenate([[0.0], np.cumsum(motion.turn)])
-    if robot.effects:
-        # An effect may look at the heading, and the heading contains the effects: `turn` does not
-        # depend on it, so a second pass with the corrected heading is the answer.
-        heading = first_heading + yaw - yaw[run.ends[0]]
-        corrected = replace(drive, heading=Span(heading[:-1], heading[:-1] + drive.heading.change))
-        travel, motion = _after_effects(robot, raw, corrected)
+    if acts(robot):
+        # The heading at the first leg is known in the reference's frame; effects may look at it.
+        travel, motion = driven(robot, raw, drive, first_heading - float(yaw[run.ends[0]]))
     dx, dy = displacement(motion, yaw[:-1])
     x, y = np.concatenate([[0.0], np.cumsum(dx)]), np.concatenate([[0.0], np.cumsum(dy)])
     return _Path(motion, travel, x, y, yaw)
-
-
-def _after_effects(
-    robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats]
-) -> tuple[WheelTravel[Floats], BodyMotion[Floats]]:
-    travel = after_wheel_effects(robot.effects, raw, drive)
-    motion = wheels_to_body(travel, robot.track)
-    return travel, after_body_effects(robot.effects, motion, drive)
 
 
 def relative_poses(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Floats:

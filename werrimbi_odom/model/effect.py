@@ -19,15 +19,13 @@ import inspect
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple, TypeVar
+from typing import Any, Literal, NamedTuple
 
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
-from werrimbi_odom.model.pose import Floats
 
 Stage = Literal["wiring", "wheels", "body", "reference"]
 
-Counted = TypeVar("Counted", float, Floats)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +92,7 @@ class Wiring(NamedTuple):
     right_sign: float = 1.0
     """The same for the right wheel."""
 
-    def wheels(self, left: Counted, right: Counted) -> tuple[Counted, Counted]:
+    def wheels(self, left: Any, right: Any) -> tuple[Any, Any]:
         """Counts of the true left and right wheel from what is recorded as left and right."""
         if self.swapped:
             left, right = right, left

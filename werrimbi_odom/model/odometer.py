@@ -10,17 +10,17 @@ from typing import NamedTuple
 from werrimbi_odom.model.covariance import (
     CERTAIN,
     PoseCovariance,
-    carried,
     noise_of_wheel_variances,
     path_noise,
-    piece_covariance,
-    plus,
 )
+from werrimbi_odom.model.driving import Driving
+from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder import Encoder, EncoderLimits, EncoderTally, WheelStep
-from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pieces import OpenPiece, Piece, PieceRule, PieceTolerance
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known
 
 
 class TwistCovariance(NamedTuple):
@@ -52,6 +52,8 @@ class Estimate:
     """Travel of the axle's midpoint since the start, both directions counted [m]."""
     closed: Piece | None
     """The piece that this message brought to its end, if it did."""
+    mean_shift: tuple[float, float] | None = None
+    """Where exact moments are carried: mean of the true position less the pose (x, y) [m]."""
 
 
 class Odometer:
@@ -79,9 +81,11 @@ class Odometer:
         self.distance = 0.0
         self._rule = PieceRule.of(robot, tolerance or PieceTolerance())
         self._encoder = Encoder(robot, limits or EncoderLimits())
-        self._time = 0.0
+        self._driving = Driving(robot)
+        self._wiring = wiring_of(robot.effects)
+        self._time: float | None = None
         self._pose = Pose()
-        self._piece = OpenPiece(0.0, Pose(), CERTAIN)
+        self._piece = OpenPiece(0.0, Pose(), known(robot.covariance_order))
 
     @property
     def tally(self) -> EncoderTally:
@@ -91,7 +95,11 @@ class Odometer:
     @property
     def piece(self) -> Piece:
         """The open piece as it stands."""
-        return self._piece.finished(self._time, self.robot.track)
+        return self._piece.finished(self._now, self.robot.track)
+
+    @property
+    def _now(self) -> float:
+        return 0.0 if self._time is None else self._time
 
     def update(self, time: float, left: float, right: float) -> Estimate | None:
         """Take the counters of one message.
@@ -109,13 +117,14 @@ class Odometer:
             None for the first message (there is no interval yet) and for one that was refused;
             `tally` says why.
         """
+        left, right = self._wiring.wheels(left, right)
         step = self._encoder.step(time, left, right)
         if step is None:
-            if self._encoder.tally.accepted == 1:
-                self._begin(time)
+            if self._time is None and self._encoder.tally.accepted:
+                self._begin(time, left, right)
             return None
-        travel = WheelTravel(step.left, step.right)
-        motion = wheels_to_body(travel, self.robot.track)
+        raw = WheelTravel(step.left, step.right)
+        travel, motion = self._driving.step(step.duration, raw, self._pose.yaw)
         pose = self._moved(motion)
         closed = self._cut(step, travel, motion, pose)
         self._time, self._pose = time, pose
@@ -126,20 +135,24 @@ class Odometer:
         """Go on from another pose, known with a covariance; returns the piece that this ends."""
         finished = self.piece
         self._pose = pose
-        self._piece = OpenPiece(self._time, pose, covariance)
+        self._piece = OpenPiece(self._now, pose, known(self.robot.covariance_order, covariance))
         return finished
 
-    def covariance(self) -> PoseCovariance[float]:
+    def errors(self) -> Uncertainty[float]:
         """Of the present pose, in the odometry frame."""
         piece = self._piece
         noise = path_noise(self.robot, piece.left, piece.right)
         dx, dy = self._pose.x - piece.start.x, self._pose.y - piece.start.y
-        own = piece_covariance(piece.motion, noise, piece.start.yaw)
-        return plus(carried(piece.covariance_start, dx, dy), own)
+        return after_piece(piece.errors_start, piece.motion, noise, piece.start.yaw, dx, dy)
 
-    def _begin(self, time: float) -> None:
+    def covariance(self) -> PoseCovariance[float]:
+        """Of the present pose, in the odometry frame."""
+        return self.errors().covariance
+
+    def _begin(self, time: float, left: float, right: float) -> None:
         self._time = time
         self._piece.time_start = time
+        self._driving.begin(left, right)
 
     def _moved(self, motion: BodyMotion[float]) -> Pose:
         dx, dy = displacement(motion, self._pose.yaw)
@@ -153,11 +166,11 @@ class Odometer:
         if not lost and self._piece.extend(self._rule, travel, motion, pose):
             return None
         finished = self.piece
-        covariance = self.covariance()
+        errors = self.errors()
         if lost:
-            covariance = plus(covariance, lost_travel_covariance(self.robot, step, self._pose.yaw))
+            errors = with_lost_travel(errors, self.robot, step, self._pose.yaw)
         travelled = self._piece.travelled_after
-        self._piece = OpenPiece(self._time, self._pose, covariance, travelled)
+        self._piece = OpenPiece(self._now, self._pose, errors, travelled)
         self._piece.extend(self._rule, travel, motion, pose)
         return finished
 
@@ -165,23 +178,27 @@ class Odometer:
         self, step: WheelStep, motion: BodyMotion[float], closed: Piece | None
     ) -> Estimate:
         per_second = 1.0 / step.duration
+        errors = self.errors()
         return Estimate(
             step.time,
             self._pose,
-            self.covariance(),
+            errors.covariance,
             BodyMotion(
                 motion.along * per_second, motion.sideways * per_second, motion.turn * per_second
             ),
             twist_covariance(self.robot, step),
             self.distance,
             closed,
+            errors.mean_shift,
         )
 
 
-def lost_travel_covariance(robot: Robot, step: WheelStep, yaw: float) -> PoseCovariance[float]:
-    """Covariance of the travel that a counter reset hid, about a pose with heading `yaw`."""
+def with_lost_travel(
+    errors: Uncertainty[float], robot: Robot, step: WheelStep, yaw: float
+) -> Uncertainty[float]:
+    """Errors of a pose with heading `yaw`, with the travel added that a counter reset hid."""
     noise = noise_of_wheel_variances(step.left_lost, step.right_lost, robot.track)
-    return piece_covariance(BodyMotion(0.0, 0.0, 0.0), noise, yaw)
+    return after_piece(errors, BodyMotion(0.0, 0.0, 0.0), noise, yaw, 0.0, 0.0)
 
 
 def twist_covariance(robot: Robot, step: WheelStep) -> TwistCovariance:

@@ -24,6 +24,7 @@ from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion, Number, WheelTravel, displacement
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.uncertainty import Uncertainty
 
 PieceKind = Literal["line", "arc", "spin"]
 
@@ -147,7 +148,7 @@ class OpenPiece:
 
     time_start: float
     start: Pose
-    covariance_start: PoseCovariance[float]
+    errors_start: Uncertainty[float]
     travelled: float = 0.0
     """Travel u of the earlier pieces, since the pose was last set [m]."""
     left: float = 0.0
@@ -216,7 +217,7 @@ class OpenPiece:
             self.start,
             self.travel,
             self.motion,
-            self.covariance_start,
+            self.errors_start.covariance,
         )
 
 

@@ -6,8 +6,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
+from typing import Literal
 
 from werrimbi_odom.model.effect import AppliedEffect
+
+CovarianceOrder = Literal["first", "exact"]
+COVARIANCE_ORDERS: tuple[CovarianceOrder, ...] = ("first", "exact")
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,6 +35,8 @@ class Robot:
     left_wheel_noise, right_wheel_noise : float
         k_L and k_R [m^0.5]: a wheel that travels a distance s errs with variance k² s
         (paper, equation 4). The defaults are the paper's own robot (section 5.2).
+    covariance_order : "first" or "exact"
+        The paper's first order, or exact moments for large errors.
     effects : tuple of AppliedEffect
         Physical effects that the model holds, in the order in which they act.
 
@@ -50,11 +56,12 @@ class Robot:
     encoder_bits: int = 0
     left_wheel_noise: float = 4.0e-4
     right_wheel_noise: float = 5.8e-4
+    covariance_order: CovarianceOrder = "first"
     effects: tuple[AppliedEffect, ...] = ()
 
     def __post_init__(self) -> None:
         for field in fields(self):
-            if field.name == "effects":
+            if field.name in ("effects", "covariance_order"):
                 continue
             value = getattr(self, field.name)
             if not math.isfinite(value):
@@ -64,6 +71,10 @@ class Robot:
                     raise ValueError(f"{field.name} must not be negative, it is {value}")
             elif field.name != "encoder_bits" and value <= 0.0:
                 raise ValueError(f"{field.name} must be greater than zero, it is {value}")
+        if self.covariance_order not in COVARIANCE_ORDERS:
+            raise ValueError(
+                f"covariance_order must be first or exact, it is {self.covariance_order}"
+            )
         if self.encoder_bits != 0 and not 2 <= self.encoder_bits <= 64:
             raise ValueError(
                 f"encoder_bits must be 0 (never wraps) or from 2 to 64, it is {self.encoder_bits}"

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Odometry of a whole recorded run at once: what `Odometer` does row by row, in array operations."""
+"""Odometry of a whole recorded run at once: what `Odometer` does row by row, in arrays."""
 
 from __future__ import annotations
 
@@ -13,23 +13,24 @@ from werrimbi_odom.model.covariance import (
     CERTAIN,
     PathNoise,
     PoseCovariance,
-    carried,
     noise_of_wheel_variances,
     path_noise,
-    piece_covariance,
-    plus,
 )
 from werrimbi_odom.model.cutting import Cut, cut
+from werrimbi_odom.model.driving import Driven, acts, driven, features
+from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder import (
     Counts,
     EncoderLimits,
     EncoderTally,
     wheel_steps,
 )
+from werrimbi_odom.model.moments import PathMoments
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pieces import Piece, PieceRule, PieceTolerance, kind_of
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known
 
 _BLOCK = 16384  # rows whose covariances are worked at once: their arrays stay in the cache
 
@@ -49,6 +50,8 @@ class Trajectory:
     """Goes on counting past a whole turn [rad]."""
     covariance: PoseCovariance[Floats]
     """In the odometry frame."""
+    mean_shift: tuple[Floats, Floats] | None
+    """Where exact moments are carried: mean of the true position less the pose (x, y) [m]."""
     row: NDArray[np.intp]
     """Rows of the record."""
     tally: EncoderTally
@@ -87,29 +90,47 @@ def trajectory(
     ValueError
         When no row can be used (empty, or none with finite numbers).
     """
+    left, right = wiring_of(robot.effects).wheels(left, right)
     steps = wheel_steps(robot, time, left, right, limits)
     if steps.first_row < 0:
         raise ValueError("no row has a finite time and finite counts")
-    travel = WheelTravel(steps.left, steps.right)
-    motion = wheels_to_body(travel, robot.track)
+    raw = WheelTravel(steps.left, steps.right)
+    first_counts = float(left[steps.first_row]), float(right[steps.first_row])
+    travel, motion = _driven(robot, steps.duration, raw, first_counts, start.yaw)
     yaw = _summed(start.yaw, motion.turn)
     dx, dy = displacement(motion, yaw[:-1])
     x, y = _summed(start.x, dx), _summed(start.y, dy)
     lost = noise_of_wheel_variances(steps.left_lost, steps.right_lost, robot.track)
     rule = PieceRule.of(robot, tolerance or PieceTolerance())
     pieces = cut(rule, travel, motion, x, y, yaw, broken=lost.b > 0.0)
-    chain = _chained(robot, pieces, x, y, yaw, covariance, lost)
+    at_start = known(robot.covariance_order, covariance)
+    chain = _chained(robot, pieces, x, y, yaw, at_start, lost)
+    errors = _at_every_step(robot, pieces, x, y, yaw, chain, at_start)
     stamps = np.concatenate([time[[steps.first_row]], steps.time])
     return Trajectory(
         stamps,
         x,
         y,
         yaw,
-        _at_every_step(robot, pieces, x, y, yaw, chain, covariance),
+        errors.covariance,
+        errors.mean_shift,
         np.concatenate([[steps.first_row], steps.row]),
         steps.tally,
         _as_values(robot, pieces, chain, stamps, x, y, yaw),
     )
+
+
+def _driven(
+    robot: Robot,
+    duration: Floats,
+    raw: WheelTravel[Floats],
+    first_counts: tuple[float, float],
+    yaw: float,
+) -> Driven:
+    """Travel and motion of the steps; nothing is worked out for effects that are not there."""
+    if not acts(robot):
+        return Driven(raw, wheels_to_body(raw, robot.track))
+    return driven(robot, raw, features(robot, duration, raw, first_counts), yaw)
 
 
 def _summed(start: float, steps: Floats) -> Floats:
@@ -122,40 +143,30 @@ def _chained(
     x: Floats,
     y: Floats,
     yaw: Floats,
-    covariance: PoseCovariance[float],
+    errors: Uncertainty[float],
     lost: PathNoise[Floats],
-) -> list[PoseCovariance[float]]:
-    """Covariance of the pose at the start of each piece, from one piece to the next."""
+) -> list[Uncertainty[float]]:
+    """Errors of the pose at the start of each piece, from one piece to the next."""
     begin = pieces.start
     end = np.append(begin[1:], x.size - 1)
-    own = _own_covariance(robot, pieces, end - 1, yaw[begin])
-    hidden = piece_covariance(
-        BodyMotion(*np.zeros((3, begin.size))),
-        PathNoise(*(part[begin] for part in lost)),
-        yaw[begin],
-    )
+    whole = np.stack([*pieces.travel, *pieces.motion])[:, end - 1]
     rows = zip(
         (x[end] - x[begin]).tolist(),
         (y[end] - y[begin]).tolist(),
-        zip(*(entry.tolist() for entry in own), strict=True),
-        zip(*(entry.tolist() for entry in hidden), strict=True),
+        yaw[begin].tolist(),
+        whole.T.tolist(),
+        zip(*(part[begin].tolist() for part in lost), strict=True),
         strict=True,
     )
     chain = []
-    for dx, dy, added, unseen in rows:
+    for dx, dy, heading, (left, right, *motion), unseen in rows:
         if any(unseen):
-            covariance = plus(covariance, PoseCovariance(*unseen))
-        chain.append(covariance)
-        covariance = plus(carried(covariance, dx, dy), PoseCovariance(*added))
+            still = BodyMotion(0.0, 0.0, 0.0)
+            errors = after_piece(errors, still, PathNoise(*unseen), heading, 0.0, 0.0)
+        chain.append(errors)
+        noise = path_noise(robot, left, right)
+        errors = after_piece(errors, BodyMotion(*motion), noise, heading, dx, dy)
     return chain
-
-
-def _own_covariance(
-    robot: Robot, pieces: Cut, steps: NDArray[np.intp] | slice, yaw: Floats
-) -> PoseCovariance[Floats]:
-    """Covariance that the pieces have added by the end of some steps; `yaw` at their starts."""
-    noise = path_noise(robot, pieces.travel.left[steps], pieces.travel.right[steps])
-    return piece_covariance(BodyMotion(*(part[steps] for part in pieces.motion)), noise, yaw)
 
 
 def _at_every_step(
@@ -164,31 +175,58 @@ def _at_every_step(
     x: Floats,
     y: Floats,
     yaw: Floats,
-    chain: list[PoseCovariance[float]],
-    covariance: PoseCovariance[float],
-) -> PoseCovariance[Floats]:
-    """Covariance at every entry: the chain up to its piece, and the piece in closed form."""
+    chain: list[Uncertainty[float]],
+    at_start: Uncertainty[float],
+) -> Uncertainty[Floats]:
+    """Errors at every entry: the chain up to its piece, and the piece in closed form."""
     count = x.size - 1
-    at_start = np.array(chain, dtype=np.float64).reshape(-1, 6).T
     lengths = np.diff(np.append(pieces.start, count))
     piece = np.repeat(np.arange(lengths.size), lengths)
-    result = np.empty((6, count + 1))
-    result[:, 0] = covariance
+    starts = _as_columns(chain)
+    covariance = np.empty((6, count + 1))
+    covariance[:, 0] = at_start.covariance
+    shift = np.zeros((2, count + 1))
+    exact = at_start.moments is not None
     for first in range(0, count, _BLOCK):
         block = slice(first, min(first + _BLOCK, count))
         own_piece = piece[block]
         begin = pieces.start[own_piece]
         after = slice(block.start + 1, block.stop + 1)
-        earlier = PoseCovariance(*at_start[:, own_piece])
-        moved = carried(earlier, x[after] - x[begin], y[after] - y[begin])
-        result[:, after] = plus(moved, _own_covariance(robot, pieces, block, yaw[begin]))
-    return PoseCovariance(*result)
+        noise = path_noise(robot, pieces.travel.left[block], pieces.travel.right[block])
+        errors = after_piece(
+            Uncertainty(
+                PoseCovariance(*(column[own_piece] for column in starts.covariance)),
+                PathMoments(*(column[own_piece] for column in starts.moments))
+                if starts.moments is not None
+                else None,
+            ),
+            BodyMotion(*(part[block] for part in pieces.motion)),
+            noise,
+            yaw[begin],
+            x[after] - x[begin],
+            y[after] - y[begin],
+        )
+        covariance[:, after] = errors.covariance
+        if errors.mean_shift is not None:
+            shift[:, after] = errors.mean_shift
+    moments = PathMoments(shift[0] + 1j * shift[1]) if exact else None
+    return Uncertainty(PoseCovariance(*covariance), moments)
+
+
+def _as_columns(chain: list[Uncertainty[float]]) -> Uncertainty[Floats]:
+    """Errors at the starts of all pieces as arrays of shape (m,)."""
+    covariance = PoseCovariance(*np.array([each.covariance for each in chain]).reshape(-1, 6).T)
+    moments = [each.moments for each in chain if each.moments is not None]
+    if not moments:
+        return Uncertainty(covariance)
+    columns = (np.array(column) for column in zip(*moments, strict=True))
+    return Uncertainty(covariance, PathMoments(*columns))
 
 
 def _as_values(
     robot: Robot,
     pieces: Cut,
-    chain: list[PoseCovariance[float]],
+    chain: list[Uncertainty[float]],
     time: Floats,
     x: Floats,
     y: Floats,
@@ -196,7 +234,7 @@ def _as_values(
 ) -> tuple[Piece, ...]:
     end = np.append(pieces.start[1:], x.size - 1)
     values = []
-    for begin, stop, covariance in zip(pieces.start.tolist(), end.tolist(), chain, strict=True):
+    for begin, stop, errors in zip(pieces.start.tolist(), end.tolist(), chain, strict=True):
         motion = BodyMotion(*(float(part[stop - 1]) for part in pieces.motion))
         values.append(
             Piece(
@@ -206,7 +244,7 @@ def _as_values(
                 Pose(float(x[begin]), float(y[begin]), float(yaw[begin])),
                 WheelTravel(*(float(part[stop - 1]) for part in pieces.travel)),
                 motion,
-                covariance,
+                errors.covariance,
             )
         )
     return tuple(values)

@@ -1,0 +1,81 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What is known of a pose's error, to first order (the paper) or by exact moments; piece by piece.
+
+Both orders chain the same pieces; only what is carried along differs. All functions take floats,
+or arrays of one shape, alike.
+"""
+
+from __future__ import annotations
+
+from typing import Generic, NamedTuple
+
+from werrimbi_odom.model.covariance import (
+    CERTAIN,
+    PathNoise,
+    PoseCovariance,
+    carried,
+    piece_covariance,
+    plus,
+)
+from werrimbi_odom.model.moments import PathMoments, chained, from_covariance, piece_moments
+from werrimbi_odom.model.motion import BodyMotion, Number, displacement
+from werrimbi_odom.model.robot import CovarianceOrder
+
+
+class Uncertainty(NamedTuple, Generic[Number]):
+    """Errors of a pose in the odometry frame."""
+
+    covariance: PoseCovariance[Number]
+    """Mean square of the error about the nominal pose: to first order, or exact."""
+    moments: PathMoments | None = None
+    """Exact moments, where these are carried."""
+
+    @property
+    def mean_shift(self) -> tuple[Number, Number] | None:
+        """How far the mean of the true position lies from the nominal pose [m].
+
+        Known by exact moments alone. It is for information: poses stay nominal, and
+        `covariance` contains its square.
+        """
+        if self.moments is None:
+            return None
+        return self.moments.error.real, self.moments.error.imag
+
+
+def known(
+    order: CovarianceOrder, covariance: PoseCovariance[float] = CERTAIN
+) -> Uncertainty[float]:
+    """A pose given with Gaussian errors."""
+    return Uncertainty(covariance, from_covariance(covariance) if order == "exact" else None)
+
+
+def after_piece(
+    start: Uncertainty[Number],
+    motion: BodyMotion[Number],
+    noise: PathNoise[Number],
+    yaw: Number,
+    dx: Number,
+    dy: Number,
+) -> Uncertainty[Number]:
+    """Errors at the end of a piece.
+
+    Parameters
+    ----------
+    start
+        Errors at its start.
+    motion, noise
+        Of the whole piece.
+    yaw : float or ndarray
+        Nominal heading at its start [rad].
+    dx, dy : float or ndarray
+        Displacement that was integrated message by message, odometry frame [m].
+    """
+    if start.moments is not None:
+        # The lever of the earlier heading error is what was driven, not the arc that stands for it.
+        driven = displacement(BodyMotion(dx, dy, 0.0 * dx), -yaw)
+        piece = piece_moments(motion, noise)._replace(nominal=driven[0] + 1j * driven[1])
+        moments = chained(start.moments, piece, yaw)
+        return Uncertainty(moments.about_pose(), moments)
+    own = piece_covariance(motion, noise, yaw)
+    return Uncertainty(plus(carried(start.covariance, dx, dy), own))
