@@ -14,6 +14,7 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.error import CommentMark
 from ruamel.yaml.nodes import ScalarNode
 from ruamel.yaml.representer import RoundTripRepresenter
+from ruamel.yaml.scalarfloat import ScalarFloat
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 from ruamel.yaml.tokens import CommentToken
 
@@ -34,8 +35,14 @@ class _Representer(RoundTripRepresenter):
             digits = digits.replace("e", ".0e")
         return self.represent_scalar("tag:yaml.org,2002:float", digits)
 
+    def represent_scalar_float(self, data: ScalarFloat) -> ScalarNode:
+        """A float in the look it had; ruamel drops digits of long ones with an exponent."""
+        node: ScalarNode = super().represent_scalar_float(data)
+        return node if float(node.value) == data else self.represent_float(float(data))
+
 
 _Representer.add_representer(float, _Representer.represent_float)
+_Representer.add_representer(ScalarFloat, _Representer.represent_scalar_float)
 
 
 def edited(

@@ -85,6 +85,8 @@ def load(text: str, path: Path) -> CommentedMap:
         raise
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
+        if str(error.context).startswith("while scanning"):  # where it began, not where it showed
+            mark = error.context_mark or mark
         where = f", line {mark.line + 1}" if mark is not None else ""
         problem = " ".join(str(error.problem or error.context).split())
         raise InputError(f"{path}{where}: this is not YAML: {problem}") from None

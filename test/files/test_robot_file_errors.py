@@ -1,0 +1,177 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Robot files that are wrong: what is said, and about which line."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files import yaml_text
+from werrimbi_odom.files.robot_file import read_robot_file
+
+GOOD = """\
+odom_node:
+  ros__parameters:
+    wheel_separation: 0.35
+    wheel_radius: 0.05
+    left_ticks_per_revolution: 2000.0
+    right_ticks_per_revolution: 2000.0
+"""
+
+
+def _with(line: str) -> str:
+    return f"{GOOD}    {line}\n"
+
+
+def complaint(path: Path, text: str | bytes) -> str:
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    with pytest.raises(InputError) as caught:
+        read_robot_file(path)
+    said = str(caught.value)
+    assert said.startswith(str(path)), said
+    assert "\n" not in said
+    return said.removeprefix(str(path))
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        (
+            _with("wheel_separaton_multiplier: 1.0"),
+            ", line 7: unknown parameter wheel_separaton_multiplier; "
+            "the nearest known one is wheel_separation_multiplier",
+        ),
+        (_with("5: 1.0"), ", line 7: unknown parameter 5"),
+        (
+            GOOD.replace("0.05", "-0.05"),
+            ", line 4: wheel_radius must be a number greater than 0 (m), not -0.05",
+        ),
+        (
+            GOOD.replace("0.05", "0"),
+            ", line 4: wheel_radius must be a number greater than 0 (m), not 0",
+        ),
+        (GOOD.replace("0.05", ".nan"), ", line 4: wheel_radius must be a number (m), not nan"),
+        (GOOD.replace("0.05", "-.inf"), ", line 4: wheel_radius must be a number (m), not -inf"),
+        (GOOD.replace("0.05", "5 cm"), ", line 4: wheel_radius must be a number (m), not '5 cm'"),
+        (GOOD.replace("0.05", "true"), ", line 4: wheel_radius must be a number (m), not True"),
+        (GOOD.replace("0.05", "[0.05]"), ", line 4: wheel_radius must be a number (m), not [0.05]"),
+        (GOOD.replace("0.05", ""), ", line 4: wheel_radius must be a number (m), not None"),
+        (GOOD.replace("0.05", "2024-01-01"), ", line 4: wheel_radius must be a number (m), not "),
+        (_with("encoder_bits: 16.5"), ", line 7: encoder_bits must be a whole number (bits)"),
+        (_with("encoder_bits: 12"), ", line 7: encoder_bits must be one of 0, 8, 16, 32"),
+        (_with("left_wheel_noise: -1e-4"), ", line 7: left_wheel_noise must be a number of at"),
+        (_with("enable_odom_tf: 1"), ", line 7: enable_odom_tf must be true or false, not 1"),
+        (_with('enable_odom_tf: "yes"'), ", line 7: enable_odom_tf must be true or false"),
+        (_with("input_type: joints"), ", line 7: input_type must be one of joint_state, int32"),
+        (_with("odom_frame_id: 7"), ", line 7: odom_frame_id must be a text, not 7"),
+        (_with("left_wheel_names: a"), ", line 7: left_wheel_names must be a list of names"),
+        (_with("left_wheel_names: []"), ", line 7: left_wheel_names must be a list of names"),
+        (_with("left_wheel_names: [a, 1]"), ", line 7: left_wheel_names must be a list of names"),
+        (
+            _with("effects: [lateral_slip]"),
+            ", line 7: unknown effect lateral_slip: this version knows no effects yet",
+        ),
+        (_with("effects: lateral_slip"), ", line 7: effects must be a list of names, [] for none"),
+        (_with("wheel_radius: 0.06"), ', line 7: this is not YAML: found duplicate key "wheel_rad'),
+        (
+            "odom_node:\n  ros__parameters:\n    wheel_radius: 0.05\n",
+            ": odom_node must also give wheel_separation (m), left_ticks_per_revolution (ticks), "
+            "right_ticks_per_revolution (ticks)",
+        ),
+        ("odom_node:\n  ros__parameters:\n", ": odom_node must also give wheel_separation (m)"),
+        ("odom_node:\n  ros__parameters: 5\n", ", line 2: ros__parameters must hold lines of name"),
+        ("odom_node:\n  wheel_radius: 1\n", ", line 1: below odom_node comes ros__parameters"),
+        ("odom_node:\n", ", line 1: below odom_node comes ros__parameters"),
+        ("5:\n  ros__parameters: {}\n", ", line 1: the top key must be a node's name, not 5"),
+        ("a: 1\nb: 2\n", ": a robot file tells of one node (odom_node or /**); here are: a, b"),
+        (GOOD + GOOD.replace("odom_node", "/**"), ": a robot file tells of one node"),
+        ("{}\n", ": a robot file tells of one node (odom_node or /**); here are: none"),
+        ("", " is empty"),
+        ("# only a comment\n", " is empty"),
+        ("- a\n", ": a robot file begins with the node's name and a colon"),
+        ("just words\n", ": a robot file begins with the node's name and a colon"),
+        (GOOD.replace("0.05", '"0.05'), ", line 4: this is not YAML"),
+        (GOOD.replace("0.05", "\t0.05"), ", line 4: this is not YAML"),
+        (GOOD.replace(" 0.05", "0.05"), ", line 4: this is not YAML"),
+        (GOOD.replace("0.05", "2024-13-77"), ": this is not YAML: month must be in 1..12"),
+        (GOOD.replace("0.05", "9" * 5000), ": this is not YAML: Exceeds the limit"),
+        (GOOD + "---\n" + GOOD, ", line 7: a second document begins"),
+        (GOOD.encode() + b"    # \xff\n", ", line 7: byte 0xff is not UTF-8"),
+        (GOOD + "\0", ": this is not YAML"),
+    ],
+)
+def test_wrong_files(tmp_path: Path, text: str | bytes, said: str) -> None:
+    assert complaint(tmp_path / "robot.yaml", text).startswith(said)
+
+
+def test_no_such_file_and_a_folder(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=r"none\.yaml: there is no such file"):
+        read_robot_file(tmp_path / "none.yaml")
+    with pytest.raises(InputError, match="is a folder; give the YAML file in it"):
+        read_robot_file(tmp_path)
+    with pytest.raises(InputError, match="cannot be read"):
+        read_robot_file("a\0b")
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("x: !!python/object/apply:os.system ['touch {proof}']\n", ", line 1: the tag"),
+        ("x: !!python/name:os.system\n", ", line 1: the tag"),
+        ("a: &a [x, x]\nb: &b [*a, *a]\nc: [*b, *b]\n", ", line 2: write the value out instead"),
+        ("a: &a\n  b: *a\n", ", line 2: write the value out instead"),
+        ("<<: *a\n", ", line 1: write the value out instead"),
+        ("[" * 100_000, ", line 1: nested more than 8 deep"),
+        ("{a: " * 50_000, ", line 1: nested more than 8 deep"),
+        ("- " * 50_000, ", line 1: nested more than 8 deep"),
+        ("a" * 1_000_001, " is larger than 1,000,000 bytes"),
+    ],
+)
+def test_hostile_files_cost_little_and_run_nothing(tmp_path: Path, text: str, said: str) -> None:
+    proof = tmp_path / "proof"
+    began = time.process_time()
+    got = complaint(tmp_path / "robot.yaml", text.replace("{proof}", str(proof)))
+    assert got.startswith(said)
+    assert time.process_time() - began < 5.0
+    assert not proof.exists()
+
+
+def test_a_device_without_end_is_not_read_to_its_end() -> None:
+    with pytest.raises(InputError, match="larger than"):
+        read_robot_file("/dev/zero")
+
+
+@settings(
+    max_examples=300,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+@given(
+    st.one_of(
+        st.binary(max_size=200),
+        st.text(max_size=200).map(lambda text: text.encode("utf-8", "surrogatepass")),
+        st.text("{}[]:,&*!|>-?'\"#%@` \n\tab0.", max_size=80).map(
+            lambda text: GOOD.encode() + b"    x: " + text.encode()
+        ),
+        st.text("{}[]:,&*!|>-?'\"#%@` \n\tab0.e-", max_size=20).map(
+            lambda text: GOOD.replace("0.05", text).encode()
+        ),
+    )
+)
+def test_whatever_is_in_the_file_nothing_but_an_input_error(tmp_path: Path, raw: bytes) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_bytes(raw)
+    try:
+        read_robot_file(path)
+    except InputError as error:
+        assert str(path) in str(error)
+
+
+def test_depth_allows_the_blocks_of_effects() -> None:
+    assert yaml_text.MAX_DEPTH >= 4
