@@ -1,9 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A recorded run cut into pieces: what `OpenPiece.extend` does step by step, in array operations."""
+"""A recorded run cut into pieces: what `OpenPiece.extend` does step by step, in array operations.
+
+Every comparison is the one that `extend` makes, on the same sums added in the same order, so that
+both cut at the same step. Only what cannot change the answer differs: wheels are looked at for
+reversals only once they have turned, and the arcs of several pieces are checked together, after
+the wheels' travel alone has cut them; where one is left, what follows is cut again.
+"""
 
 from __future__ import annotations
 
+import math
+from bisect import bisect_right
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +21,10 @@ from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pieces import PieceRule
 from werrimbi_odom.model.pose import Floats
 
-_FIRST_BLOCK, _LARGEST_BLOCK = 64, 4096  # steps looked at together: few where pieces are short
+# Steps looked at together. How many is a matter of speed; no figure depends on it.
+_FEW, _MANY = 64, 4096
+_SOON = 32  # steps in which a wheel that turns has mostly gone back by more than a flicker
+_WHEELS, _BODY = slice(0, 2), slice(2, 5)  # rows of the sums
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,91 +60,193 @@ def cut(
     broken : ndarray of bool, shape (n,)
         Steps that must begin a piece (travel was lost before them).
     """
-    run = _Run(rule, np.stack([*travel, *motion]), x, y, yaw)
-    ends = np.append(np.flatnonzero(broken), x.size - 1).tolist()
-    sums = np.empty_like(run.steps)
-    starts: list[int] = []
-    start, travelled = 0, 0.0
-    for limit in ends:
-        while start < limit:
-            starts.append(start)
-            start = _end_of_piece(run, sums, start, limit, travelled)
-            travelled += float(abs(sums[0, start - 1]) + abs(sums[1, start - 1]))
-    left, right, along, sideways, turn = sums
+    cutter = _Cutter(rule, travel, motion, x, y, yaw)
+    begin = 0
+    with np.errstate(divide="ignore", invalid="ignore"):  # no slope before the first motion
+        for end in [*np.flatnonzero(broken).tolist(), x.size - 1]:
+            if begin < end:
+                cutter.cut(begin, end)
+                begin = end
+    left, right, along, sideways, turn = cutter.sums
     return Cut(
-        np.array(starts, dtype=np.intp),
+        np.array(cutter.starts, dtype=np.intp),
         WheelTravel(left, right),
         BodyMotion(along, sideways, turn),
     )
 
 
-@dataclass(frozen=True, slots=True)
-class _Run:
-    rule: PieceRule
-    steps: Floats
-    """Left, right, along, sideways, turn of each step, shape (5, n)."""
-    x: Floats
-    y: Floats
-    yaw: Floats
+class _Cutter:
+    """The pieces so far, and the last of them as it stands."""
 
+    def __init__(
+        self,
+        rule: PieceRule,
+        travel: WheelTravel[Floats],
+        motion: BodyMotion[Floats],
+        x: Floats,
+        y: Floats,
+        yaw: Floats,
+    ) -> None:
+        self.rule = rule
+        self.x, self.y, self.yaw = x, y, yaw
+        self.steps = np.stack([*travel, *motion])
+        self.sums = np.empty_like(self.steps)
+        """From the start of its piece to the end of each step; overwritten as pieces are recut."""
+        self.starts: list[int] = []
+        self._travelled: list[float] = []  # travel u before each piece
+        self._wheels = [_Wheel(steps, rule.flicker) for steps in travel]
+        self._usual = _FEW
+        self._bounds = -math.inf, math.inf
 
-def _end_of_piece(run: _Run, sums: Floats, start: int, limit: int, travelled: float) -> int:
-    """First step after the piece that begins at `start`; fills its columns of `sums`."""
-    rule = run.rule
-    begin, block = start, _FIRST_BLOCK
-    carry: Floats | None = None
-    left_span = right_span = (0.0, 0.0)
-    lowest, highest = -np.inf, np.inf
-    while begin < limit:
-        end = min(begin + block, limit)
-        steps = run.steps[:, begin:end]
-        if carry is not None:
+    def cut(self, begin: int, end: int) -> None:
+        """Cut the steps from `begin` to before `end`; a piece begins with the first of them."""
+        self._open(begin)
+        ahead = _FEW
+        while begin < end:
+            stop = begin
+            while stop < min(begin + ahead, end):
+                stop = self._follow_wheels(stop, end)
+            off = self._first_off_arc(begin, stop)
+            if off < stop:
+                self._forget_after(off)
+                begin, ahead = off, _FEW
+            else:
+                begin, ahead = stop, min(2 * ahead, _MANY)
+
+    def _open(self, start: int) -> None:
+        """Begin a piece."""
+        before = 0.0
+        if self.starts:
+            left, right = self.sums[_WHEELS, start - 1].tolist()
+            before = self._travelled[-1] + (abs(left) + abs(right))
+            self._usual = (self._usual + start - self.starts[-1]) // 2
+        self.starts.append(start)
+        self._travelled.append(before)
+        self._bounds = -math.inf, math.inf
+        for wheel in self._wheels:
+            wheel.begin(start)
+
+    def _forget_after(self, start: int) -> None:
+        """Begin a piece with an earlier step than the last piece did."""
+        while self.starts[-1] > start:
+            self.starts.pop()
+            self._travelled.pop()
+        self._open(start)
+
+    def _follow_wheels(self, begin: int, limit: int) -> int:
+        """Follow the open piece from the step `begin` on as far as its wheels keep to one line.
+
+        Begins the next piece where they leave it; returns the step to go on with.
+        """
+        start = self.starts[-1]
+        likely_end = min(wheel.next_reversal(begin) for wheel in self._wheels) + _SOON
+        block = min(max(4 * self._usual, begin - start), likely_end - begin, _MANY)
+        end = min(begin + max(block, _FEW), limit)
+        travel = self._summed(_WHEELS, begin, end)
+        left, right = np.abs(travel)
+        u, v = left + right, right - left
+        lead = self.rule.allowed_lead(self._share(self._travelled[-1] + u))
+        low, high = (v - lead) / u, (v + lead) / u
+        low[0], high[0] = max(low[0], self._bounds[0]), min(high[0], self._bounds[1])
+        low, high = np.maximum.accumulate(low), np.minimum.accumulate(high)
+        slope = v / u  # not a number before the first motion: every comparison is false
+        bad = (slope < low) | (slope > high)
+        for wheel, travelled in zip(self._wheels, travel, strict=True):
+            wheel.mark_reversed(bad, travelled, begin)
+        bad[0] &= begin > start
+        good = _until(bad)
+        if good:
+            self._summed(_BODY, begin, begin + good)
+        if good < bad.size:
+            self._open(begin + good)
+        else:
+            self._bounds = float(low[-1]), float(high[-1])
+        return begin + good
+
+    def _summed(self, rows: slice, begin: int, end: int) -> Floats:
+        """Sums of the open piece to the end of each of the steps from `begin` to before `end`."""
+        steps = self.steps[rows, begin:end]
+        if begin > self.starts[-1]:
             steps = steps.copy()
-            steps[:, 0] += carry
-        here = np.cumsum(steps, axis=1, out=sums[:, begin:end])
-        left, right = here[0], here[1]
-        size_left, size_right = np.abs(left), np.abs(right)
-        u, v = size_left + size_right, size_right - size_left
-        share = np.minimum(1.0, (travelled + u) / rule.settled)
-        bad = _off_arc(run, here, start, begin, end, u, share)
-        turned_left, left_span = _reversed(left, left_span, rule.flicker)
-        turned_right, right_span = _reversed(right, right_span, rule.flicker)
-        bad |= turned_left
-        bad |= turned_right
-        lead = rule.allowed_lead(share)
-        with np.errstate(divide="ignore", invalid="ignore"):
-            low = np.fmax.accumulate((v - lead) / u)
-            high = np.fmin.accumulate((v + lead) / u)
-            slope = v / u  # not a number before the first motion: every comparison is false
-        bad |= slope < np.fmax(low, lowest)
-        bad |= slope > np.fmin(high, highest)
-        if begin == start:
-            bad[0] = False
-        first = int(bad.argmax())
-        if bad[first]:
-            return begin + first
-        carry, begin = here[:, -1].copy(), end
-        lowest, highest = np.fmax(low[-1], lowest), np.fmin(high[-1], highest)
-        block = min(2 * block, _LARGEST_BLOCK)
-    return limit
+            steps[:, 0] += self.sums[rows, begin - 1]
+        return np.add.accumulate(steps, axis=1, out=self.sums[rows, begin:end])
+
+    def _share(self, travelled: Floats) -> Floats:
+        """Of the full tolerance, that holds after so much travel u since the start of the run."""
+        return np.minimum(1.0, travelled / self.rule.settled)
+
+    def _first_off_arc(self, begin: int, end: int) -> int:
+        """First of some steps after which the pose is off its piece's arc; `end` if none is."""
+        first = bisect_right(self.starts, begin) - 1
+        starts = np.array(self.starts[first:])
+        lengths = np.diff([begin, *self.starts[first + 1 :], end])
+        start = np.repeat(starts, lengths)
+        travelled = np.repeat(self._travelled[first:], lengths)
+        left, right, *motion = self.sums[:, begin:end]
+        u = np.abs(left) + np.abs(right)
+        dx, dy = displacement(BodyMotion(*motion), self.yaw[start])
+        miss_x = self.x[begin + 1 : end + 1] - self.x[start] - dx
+        miss_y = self.y[begin + 1 : end + 1] - self.y[start] - dy
+        off = self.rule.off_arc(u, self._share(travelled + u), miss_x, miss_y) > 0.0
+        off[starts[(starts >= begin) & (starts < end)] - begin] = False
+        return begin + _until(off)
 
 
-def _off_arc(
-    run: _Run, sums: Floats, start: int, begin: int, end: int, u: Floats, share: Floats
-) -> NDArray[np.bool_]:
-    """Where the pose has left the arc that the sums describe."""
-    dx, dy = displacement(BodyMotion(*sums[2:]), np.full(end - begin, run.yaw[start]))
-    miss_x = run.x[begin + 1 : end + 1] - run.x[start] - dx
-    miss_y = run.y[begin + 1 : end + 1] - run.y[start] - dy
-    return run.rule.off_arc(u, share, miss_x, miss_y) > 0.0
+class _Wheel:
+    """Where one wheel turns, known beforehand; and its span over the open piece."""
+
+    def __init__(self, travel: Floats, flicker: float) -> None:
+        self._flicker = flicker
+        moving = np.flatnonzero(travel)
+        backwards = np.signbit(travel[moving])
+        turns = moving[1:][backwards[1:] != backwards[:-1]]
+        position = np.cumsum(travel)
+        soon = np.minimum(turns + _SOON, travel.size) - 1
+        lasting = np.abs(position[soon] - position[turns - 1]) > flicker
+        self._turns: list[int] = [*turns.tolist(), travel.size]
+        """Steps against the motion before, flicker or reversal; the last is behind the run."""
+        self._reversals: list[int] = [*turns[lasting].tolist(), travel.size]
+        """Those that are no mere flicker, as far as is soon seen."""
+        self._next_turn = 0
+        self._span = 0.0, 0.0
+
+    def next_reversal(self, step: int) -> int:
+        """The next step after this one with which the wheel probably reverses."""
+        return self._reversals[bisect_right(self._reversals, step)]
+
+    def begin(self, start: int) -> None:
+        """Begin a piece."""
+        self._next_turn = self._turns[bisect_right(self._turns, start)]
+        self._span = 0.0, 0.0
+
+    def mark_reversed(self, bad: NDArray[np.bool_], travel: Floats, begin: int) -> None:
+        """Mark in `bad` where the wheel has reversed, given its travel from the step `begin` on."""
+        one_way = min(max(self._next_turn - begin, 0), travel.size)
+        if one_way:
+            last = float(travel[one_way - 1])
+            self._span = min(self._span[0], last), max(self._span[1], last)
+        if one_way == travel.size:
+            return
+        rest, flicker = travel[one_way:], self._flicker
+        lowest, highest = self._span
+        if highest > flicker:  # so far it goes forwards, and reverses when it falls back
+            highs = np.maximum.accumulate(np.maximum(rest, highest))
+            bad[one_way:] |= rest < highs - flicker
+            self._span = lowest, float(highs[-1])
+        elif lowest < -flicker:
+            lows = np.minimum.accumulate(np.minimum(rest, lowest))
+            bad[one_way:] |= rest > lows + flicker
+            self._span = float(lows[-1]), highest
+        else:
+            highs = np.maximum.accumulate(np.maximum(rest, highest))
+            lows = np.minimum.accumulate(np.minimum(rest, lowest))
+            forwards = (lows >= -flicker) & (rest >= highs - flicker)
+            backwards = (highs <= flicker) & (rest <= lows + flicker)
+            bad[one_way:] |= ~(forwards | backwards)
+            self._span = float(lows[-1]), float(highs[-1])
 
 
-def _reversed(
-    travel: Floats, span: tuple[float, float], flicker: float
-) -> tuple[NDArray[np.bool_], tuple[float, float]]:
-    """Where a wheel has reversed, given its span so far; and the span at the end."""
-    lowest = np.minimum(np.minimum.accumulate(travel), span[0])
-    highest = np.maximum(np.maximum.accumulate(travel), span[1])
-    forwards = (lowest >= -flicker) & (travel >= highest - flicker)
-    backwards = (highest <= flicker) & (travel <= lowest + flicker)
-    return ~(forwards | backwards), (float(lowest[-1]), float(highest[-1]))
+def _until(bad: NDArray[np.bool_]) -> int:
+    """How many come before the first that is bad."""
+    first = int(bad.argmax())
+    return first if bad[first] else bad.size

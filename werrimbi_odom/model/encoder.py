@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
-from typing import NamedTuple
+from typing import Any, NamedTuple, overload
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,6 +23,10 @@ Counts = NDArray[np.float64] | NDArray[np.int64]
 
 CLOCK_JUMP = 1.0
 """A stamp older than the last by more than this [s] is a clock set back, not a late message."""
+
+_BLOCK = 8192  # rows of a record taken together: their arrays stay in the cache
+_STRETCH = 256  # rows taken one by one where one was in doubt
+_LARGEST_COUNT = 1 << 61  # integer counts from which rows are taken one by one
 
 _LEARNED_MARGIN = 4.0  # a wheel may go this many times faster than it ever did ...
 _LEARNED_FLOOR = 1.0  # ... or one turn a second, before a fall to zero is called a reset
@@ -129,6 +133,9 @@ class Encoder:
             self.tally.not_finite += 1
             return None
         reading = _Reading(time, left, right)
+        if self._doubted is not None and time == self._doubted.time:
+            self.tally.duplicates += 1  # a doubted message does not confirm itself
+            return None
         if self._last is None:
             self._last = reading
             self.tally.accepted += 1
@@ -191,6 +198,17 @@ class Encoder:
         self._last, self._doubted, self._period = reading, None, duration
         self.tally.accepted += 1
 
+    def _have_taken(self, steps: _Part, last: _Reading, fastest: float) -> None:
+        """Go on behind steps that were taken together; `last` is the reading they end with."""
+        duration = float(steps.duration[-1])
+        self._left_speed = float(steps.left[-1]) / duration
+        self._right_speed = float(steps.right[-1]) / duration
+        self._fastest = fastest
+        self.tally.messages += steps.row.size
+        self.tally.accepted += steps.row.size
+        self.tally.gaps += int(np.count_nonzero(steps.duration > self.limits.gap_duration))
+        self._last, self._doubted, self._period = last, None, duration
+
     def _exceeds(self, limit: float, start: _Reading, end: _Reading, duration: float) -> bool:
         robot = self.robot
         left = wrapped(end.left - start.left, robot.encoder_bits) * robot.left_tick
@@ -207,11 +225,10 @@ class Encoder:
             if far > self._reach(usual):
                 return True
         reach = self._reach(duration)
-        return bool(
-            fell_to_zero(reading.left / per_left, last.left / per_left, left / per_left, reach)
-            or fell_to_zero(
-                reading.right / per_right, last.right / per_right, right / per_right, reach
-            )
+        return fell_to_zero(
+            reading.left / per_left, last.left / per_left, left / per_left, reach
+        ) or fell_to_zero(
+            reading.right / per_right, last.right / per_right, right / per_right, reach
         )
 
     def _reach(self, duration: float) -> float:
@@ -224,10 +241,16 @@ def wrapped(difference: float, bits: int) -> float:
     if bits == 0:
         return difference
     half = 1 << (bits - 1)
+    if -half <= difference < half:
+        return difference
     return (difference + half) % (2 * half) - half
 
 
-def fell_to_zero(new: float, old: float, step: float, reach: float) -> bool:
+@overload
+def fell_to_zero(new: float, old: float, step: float, reach: float) -> bool: ...
+@overload
+def fell_to_zero(new: Floats, old: Floats, step: Floats, reach: Floats) -> NDArray[np.bool_]: ...
+def fell_to_zero(new: Any, old: Any, step: Any, reach: Any) -> Any:
     """Whether a counter came to near zero further than a wheel can reach; all in turns."""
     return (abs(new) <= reach) & (abs(old) > reach) & (abs(step) > reach)
 
@@ -267,88 +290,156 @@ def wheel_steps(
 ) -> WheelSteps:
     """All steps of a record at once; the same as feeding its rows to an `Encoder`.
 
+    Rows that leave no doubt are taken together, in array operations; from one that does, the
+    `Encoder` goes on by itself for a stretch.
+
     Parameters
     ----------
     time : ndarray, shape (n,), [s]
     left, right : ndarray, shape (n,)
         Cumulative signed counts, integer or float.
     """
-    limits = limits or EncoderLimits()
-    quiet = _steps_of_quiet_record(robot, time, left, right, limits)
-    return quiet or _steps_one_by_one(robot, time, left, right, limits)
+    encoder = Encoder(robot, limits or EncoderLimits())
+    record = _Record(np.asarray(time, dtype=np.float64), _as_counts(left), _as_counts(right))
+    parts: list[_Part] = []
+    row = 0
+    while row < record.rows:
+        part, row = _judged_steps(encoder, record, row)
+        parts.append(part)
+        quiet = row < record.rows
+        while quiet:
+            part = _quiet_steps(encoder, record, row)
+            parts.append(part)
+            row += part.row.size
+            quiet = part.row.size == _BLOCK
+    return WheelSteps(record.first_row(), *_joined(parts), encoder.tally)
 
 
-def _steps_of_quiet_record(
-    robot: Robot, time: Floats, left: Counts, right: Counts, limits: EncoderLimits
-) -> WheelSteps | None:
-    """All steps in array operations, or None when any row needs `Encoder`'s judgement."""
-    duration = np.diff(time)
-    if time.size == 0 or not (duration > 0.0).all() or not np.isfinite(time[[0, -1]]).all():
-        return None
-    raw_left, raw_right = np.diff(left), np.diff(right)
-    if not (np.isfinite(raw_left).all() and np.isfinite(raw_right).all()):
-        return None
-    left_count = _wrapped_all(raw_left, robot.encoder_bits)
-    right_count = _wrapped_all(raw_right, robot.encoder_bits)
-    left_turns = left_count / robot.left_ticks_per_revolution
-    right_turns = right_count / robot.right_ticks_per_revolution
-    rate = np.maximum(np.abs(left_turns), np.abs(right_turns)) / duration
-    fastest_before = np.maximum.accumulate(np.concatenate([[0.0], rate[:-1]]))
-    if limits.max_wheel_speed > 0.0:
-        reach = duration * _reach_rate(robot, limits, 0.0)
-    else:
-        reach = duration * np.maximum(_LEARNED_FLOOR, _LEARNED_MARGIN * fastest_before)
-    doubtful = (left[1:] == 0) & (right[1:] == 0) & (rate > 0.0)
-    sides = (
-        (left, left_turns, robot.left_ticks_per_revolution),
-        (right, right_turns, robot.right_ticks_per_revolution),
-    )
-    for counts, turns, per_turn in sides:
-        in_turns = np.asarray(counts, dtype=np.float64) / per_turn
-        fell = (np.abs(in_turns[1:]) <= reach) & (np.abs(in_turns[:-1]) > reach)
-        doubtful |= fell & (np.abs(turns) > reach)
-    left_travel, right_travel = left_count * robot.left_tick, right_count * robot.right_tick
-    if limits.max_wheel_speed > 0.0:
-        fastest_travel = np.maximum(np.abs(left_travel), np.abs(right_travel))
-        doubtful |= fastest_travel > limits.max_wheel_speed * duration
-    if doubtful.any():
-        return None
-    tally = EncoderTally(
-        messages=time.size,
-        accepted=time.size,
-        gaps=int(np.count_nonzero(duration > limits.gap_duration)),
-        wraps=int(
-            np.count_nonzero(left_count != raw_left) + np.count_nonzero(right_count != raw_right)
-        ),
-    )
-    none_lost = np.zeros(duration.size)
-    rows = np.arange(1, time.size)
-    return WheelSteps(
-        0, rows, time[1:], duration, left_travel, right_travel, none_lost, none_lost, tally
-    )
+class _Record(NamedTuple):
+    time: Floats
+    left: Counts
+    right: Counts
+
+    @property
+    def rows(self) -> int:
+        return self.time.size
+
+    def reading(self, row: int) -> _Reading:
+        """One row in Python's numbers, whose integers are exact at any size."""
+        return _Reading(self.time[row].item(), self.left[row].item(), self.right[row].item())
+
+    def first_row(self) -> int:
+        """The first row of finite numbers, -1 when there is none."""
+        rows = range(self.rows)
+        return next((row for row in rows if all(map(math.isfinite, self.reading(row)))), -1)
 
 
-def _steps_one_by_one(
-    robot: Robot, time: Floats, left: Counts, right: Counts, limits: EncoderLimits
-) -> WheelSteps:
-    encoder = Encoder(robot, limits)
+class _Part(NamedTuple):
+    """Some steps of a record: the arrays of `WheelSteps`."""
+
+    row: NDArray[np.intp]
+    time: Floats
+    duration: Floats
+    left: Floats
+    right: Floats
+    left_lost: Floats
+    right_lost: Floats
+
+
+def _joined(parts: list[_Part]) -> _Part:
+    none = np.empty(0)
+    rows = [np.empty(0, dtype=np.intp), *(part.row for part in parts)]
+    columns = zip(*((none,) * 6, *(part[1:] for part in parts)), strict=True)
+    return _Part(np.concatenate(rows), *(np.concatenate(column) for column in columns))
+
+
+def _judged_steps(encoder: Encoder, record: _Record, row: int) -> tuple[_Part, int]:
+    """A stretch from `row` on, one by one; and the row after it, which follows an accepted one."""
     rows: list[int] = []
     steps: list[WheelStep] = []
-    first_row = -1
-    readings = zip(time.tolist(), left.tolist(), right.tolist(), strict=True)
-    for row, reading in enumerate(readings):
-        step = encoder.step(*reading)
+    least = row + _STRETCH
+    accepted = False
+    while row < record.rows and not (accepted and row >= least):
+        before = encoder.tally.accepted
+        step = encoder.step(*record.reading(row))
+        accepted = encoder.tally.accepted > before
         if step is not None:
             rows.append(row)
             steps.append(step)
-        elif first_row < 0 and encoder.tally.accepted:
-            first_row = row
-    table = np.array(steps, dtype=np.float64).reshape(-1, len(WheelStep._fields))
-    return WheelSteps(first_row, np.array(rows, dtype=np.intp), *table.T, encoder.tally)
+        row += 1
+    columns = np.array(steps, dtype=np.float64).reshape(-1, len(WheelStep._fields)).T
+    return _Part(np.array(rows, dtype=np.intp), *columns), row
 
 
-def _wrapped_all(difference: Counts, bits: int) -> Counts:
-    if bits == 0 or (bits == 64 and difference.dtype.kind == "i"):
-        return difference  # int64 differences wrap by themselves
-    half = 1 << (bits - 1)
-    return (difference + half) % (2 * half) - half
+def _quiet_steps(encoder: Encoder, record: _Record, row: int) -> _Part:
+    """Steps to the rows from `row` on that leave no doubt, a block at the most.
+
+    The row before must be the last one that `encoder` accepted; afterwards it stands as if it had
+    taken these steps itself.
+    """
+    robot, limits = encoder.robot, encoder.limits
+    rows = slice(row - 1, row + _BLOCK)
+    time, left, right = record.time[rows], record.left[rows], record.right[rows]
+    if _is_huge(left) or _is_huge(right):
+        return _joined([])
+    per_left, per_right = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
+    limit = limits.max_wheel_speed
+    with np.errstate(all="ignore"):  # numbers that are not finite are in doubt, and so not used
+        duration = np.diff(time)
+        left_count, left_wraps = _differences(left, robot.encoder_bits)
+        right_count, right_wraps = _differences(right, robot.encoder_bits)
+        left_turns, right_turns = left_count / per_left, right_count / per_right
+        rate = np.maximum(np.abs(left_turns), np.abs(right_turns)) / duration
+        fastest = np.maximum.accumulate(np.concatenate([[encoder._fastest], rate]))
+        if limit > 0.0:
+            reach = duration * _reach_rate(robot, limits, 0.0)
+        else:
+            reach = duration * np.maximum(_LEARNED_FLOOR, _LEARNED_MARGIN * fastest[:-1])
+        left_travel, right_travel = left_count * robot.left_tick, right_count * robot.right_tick
+        doubt = ~((duration > 0.0) & (duration < np.inf) & (rate < np.inf))
+        doubt |= (left[1:] == 0) & (right[1:] == 0) & (rate > 0.0)
+        for turns, steps in ((left / per_left, left_turns), (right / per_right, right_turns)):
+            doubt |= fell_to_zero(turns[1:], turns[:-1], steps, reach)
+        if limit > 0.0:
+            doubt |= np.maximum(np.abs(left_travel), np.abs(right_travel)) > limit * duration
+    count = int(doubt.argmax()) if doubt.any() else doubt.size
+    part = _Part(
+        np.arange(row, row + count),
+        time[1 : count + 1],
+        duration[:count],
+        left_travel[:count],
+        right_travel[:count],
+        np.zeros(count),
+        np.zeros(count),
+    )
+    if count:
+        encoder.tally.wraps += int(np.count_nonzero(left_wraps[:count]))
+        encoder.tally.wraps += int(np.count_nonzero(right_wraps[:count]))
+        encoder._have_taken(part, record.reading(row + count - 1), float(fastest[count]))
+    return part
+
+
+def _differences(counts: Counts, bits: int) -> tuple[Floats, NDArray[np.bool_]]:
+    """`wrapped` differences of consecutive counts, and where they wrapped."""
+    steps = np.diff(counts)
+    wraps = np.zeros(steps.shape, dtype=np.bool_)
+    if bits > 0:
+        half = 1 << (bits - 1)
+        wraps = (steps < -half) | (steps >= half)
+        if wraps.any():
+            steps[wraps] = (steps[wraps] + half) % (2 * half) - half
+    return steps.astype(np.float64, copy=False), wraps
+
+
+def _is_huge(counts: Counts) -> bool:
+    """Whether differences of integer counts could leave their 64 bits."""
+    return counts.dtype.kind == "i" and bool(
+        counts.max() >= _LARGEST_COUNT or counts.min() <= -_LARGEST_COUNT
+    )
+
+
+def _as_counts(counts: Counts) -> Counts:
+    """Integers of any kind as 64 bits, everything else as floats."""
+    if counts.dtype.kind in "iub":
+        return counts.astype(np.int64, copy=False)
+    return counts.astype(np.float64, copy=False)
