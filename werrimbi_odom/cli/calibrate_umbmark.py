@@ -120,17 +120,22 @@ def _recorded(
     paths: Sequence[Path], source: RobotFile, robot: Robot, arguments: argparse.Namespace
 ) -> Squares:
     from werrimbi_odom.cli.progress import with_progress
-    from werrimbi_odom.files.run import read_run
+    from werrimbi_odom.files.reading import read_run
     from werrimbi_odom.inference.recorded_square import Record, recorded_square, squares_of
 
     found = []
     for path in with_progress(paths, "reading squares"):
-        run_ = read_run(
-            path, ticks_topic=arguments.ticks_topic, reference_topic=arguments.reference_topic
+        drive = read_run(
+            path,
+            source,
+            ticks_topic=arguments.ticks_topic,
+            reference_topic=arguments.reference_topic,
         )
-        if run_.reference is None:
+        for note in drive.notes:
+            print(f"{path}: {note}")
+        if drive.reference is None:
             raise InputError(f"{path}: there is no reference to compare the odometry with")
-        ticks, reference = run_.ticks, run_.reference
+        ticks, reference = drive.ticks, drive.reference
         record = Record(
             str(path),
             ticks.time,

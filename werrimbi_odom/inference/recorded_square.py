@@ -21,7 +21,7 @@ from werrimbi_odom.model.robot import Robot
 TURN_TOLERANCE = 0.6
 """A lap turns by a whole turn to within this [rad], by odometry that may be off by 10 %."""
 
-LEG_TOLERANCE = 0.25
+LEG_TOLERANCE = 0.1
 """Legs are as long as the side to within this share of it."""
 
 GAP_TOLERANCE = 0.25
@@ -176,15 +176,18 @@ def _corners(path: _Path, sense: int) -> NDArray[np.intp]:
 
 
 def _check_legs(name: str, path: _Path, corners: NDArray[np.intp], side: float) -> None:
+    """Four legs, straight and as long as the side, and nothing else driven."""
     ends = np.concatenate([[0], corners, [path.x.size - 1]])
-    lengths = np.hypot(np.diff(path.x[ends]), np.diff(path.y[ends]))
-    legs, rest = lengths[:4], lengths[4]
-    if (np.abs(legs - side) > LEG_TOLERANCE * side).any() or rest > LEG_TOLERANCE * side:
-        shown = ", ".join(f"{length:.2f}" for length in legs)
-        after = f" and {rest:.2f} m after the last corner" if rest > LEG_TOLERANCE * side else ""
+    straight = np.hypot(np.diff(path.x[ends]), np.diff(path.y[ends]))[:4]
+    steps = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(path.x), np.diff(path.y)))])
+    driven = np.diff(steps[ends])
+    wrong = np.abs(np.concatenate([straight, driven[:4]]) - side) > LEG_TOLERANCE * side
+    if wrong.any() or driven[4] > LEG_TOLERANCE * side:
+        shown = ", ".join(f"{length:.2f}" for length in driven[:4])
         raise InputError(
-            f"{name}: not a square of side {side:g} m: its legs are {shown} m{after} by odometry. "
-            "A square begins and ends at a corner; is the side right?"
+            f"{name}: not a square of side {side:g} m: by odometry its legs are {shown} m, and "
+            f"{driven[4]:.2f} m follow the last corner. A square begins and ends at a corner, and "
+            "a run holds one square and nothing else; are the side and wheel_radius right?"
         )
 
 
