@@ -9,8 +9,9 @@ from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
-RAMP = 0.1
-"""Share of the threshold over which the loss sets in: a fit needs a slope to find a threshold."""
+RAMP = 0.05
+"""Share of the threshold over which the loss sets in: a fit needs a slope to find a threshold, and
+speeds just below it, as counted, may be true ones or diminished ones."""
 
 FRACTION = Parameter(
     "", null=0.0, typical=0.02, bounds=(0.0, 0.5), says="share of the counts that are lost"
@@ -20,7 +21,7 @@ ABOVE = Parameter(
     null=0.3,
     typical=0.3,
     bounds=(0.01, 20.0),
-    says="speed of the rim, as counted, beyond which they are lost",
+    says="speed of the rim beyond which they are lost",
     tries=(0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 4.0, 8.0),
 )
 
@@ -32,16 +33,16 @@ def left_missed_ticks(
     """The left encoder loses counts when its wheel turns fast.
 
     A counter that is read by interrupts, a filter on its lines or an optical disc at its limit lets
-    a share of the marks slip by above some speed. The share sets in over a tenth of that speed.
+    a share of the marks slip by above some speed.
 
-    Formula    left /= 1 - fraction * limited(0.5 + (|left speed| / above - 1) / 0.1, 0, 1)
-               [m] = [m] / [1]
+    Formula    left /= 1 - fraction, where |left speed| > above            [m] = [m] / [1]
+               (setting in within 5 % of that speed)
     Signature  the left wheel goes farther than its counter says, above a speed and not below it
     Ruler      lift the robot, chalk the left tyre and let it turn a hundred times, slowly, then
                fast: the counter shows fewer counts when fast, by the fraction
     Alike      unequal_wheel_radii, when driven at one speed: drive slow and fast lines
     """
-    return travel._replace(left=travel.left / (1.0 - fraction * _fast(drive.left_speed.end, above)))
+    return travel._replace(left=travel.left / (1.0 - _lost(drive.left_speed.end, fraction, above)))
 
 
 @wheel_effect(fraction=FRACTION, above=ABOVE)
@@ -51,20 +52,21 @@ def right_missed_ticks(
     """The right encoder loses counts when its wheel turns fast.
 
     A counter that is read by interrupts, a filter on its lines or an optical disc at its limit lets
-    a share of the marks slip by above some speed. The share sets in over a tenth of that speed.
+    a share of the marks slip by above some speed.
 
-    Formula    right /= 1 - fraction * limited(0.5 + (|right speed| / above - 1) / 0.1, 0, 1)
-               [m] = [m] / [1]
+    Formula    right /= 1 - fraction, where |right speed| > above            [m] = [m] / [1]
+               (setting in within 5 % of that speed)
     Signature  the right wheel goes farther than its counter says, above a speed and not below it
     Ruler      lift the robot, chalk the right tyre and let it turn a hundred times, slowly, then
                fast: the counter shows fewer counts when fast, by the fraction
     Alike      unequal_wheel_radii, when driven at one speed: drive slow and fast lines
     """
     return travel._replace(
-        right=travel.right / (1.0 - fraction * _fast(drive.right_speed.end, above))
+        right=travel.right / (1.0 - _lost(drive.right_speed.end, fraction, above))
     )
 
 
-def _fast(speed: Number, above: float) -> Number:
-    """0 well below the threshold, 1 well above it."""
-    return limited(0.5 + (abs(speed) / above - 1.0) / RAMP, 0.0, 1.0)
+def _lost(counted: Number, fraction: float, above: float) -> Number:
+    """Share that is lost at a speed as counted: from none well below the threshold to all of it."""
+    threshold = above * (1.0 - 0.5 * fraction)  # a lossy counter crosses it late, on average so
+    return fraction * limited(0.5 + (abs(counted) / threshold - 1.0) / RAMP, 0.0, 1.0)

@@ -9,7 +9,7 @@ from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
 
-STRAIGHT = 0.02
+STRAIGHT = 0.05
 """Sharpness below which the sense of turning counts the less, the straighter the way: on a line the
 counters' jitter turns the robot to and fro, and must not count as turns."""
 

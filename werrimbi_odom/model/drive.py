@@ -18,6 +18,10 @@ import numpy as np
 from werrimbi_odom.model.motion import Number
 from werrimbi_odom.model.pose import Floats
 
+ROLLBACK = 1.5e-3
+"""A wheel that goes back by no more than this [m] has not reversed: whatever the counters resolve,
+a stopped wheel is still settled by its controller, by some tenths of a millimetre to and fro."""
+
 
 class Span(NamedTuple, Generic[Number]):
     """A quantity at the start and at the end of a step."""
@@ -158,7 +162,7 @@ class DriveMemory:
     Parameters
     ----------
     flicker : float
-        A wheel that goes back by less has not reversed [m].
+        A wheel that goes back by less (or by less than `ROLLBACK`) has not reversed [m].
     left_angle, right_angle : float
         Of the wheels at the first message, from the counters' zeros [rad].
     """
@@ -174,8 +178,8 @@ class DriveMemory:
     _middle: _Shuttle = field(init=False)
 
     def __post_init__(self) -> None:
-        self._left, self._right = _Shuttle(self.flicker), _Shuttle(self.flicker)
-        self._middle = _Shuttle(self.flicker)
+        least = max(self.flicker, ROLLBACK)
+        self._left, self._right, self._middle = _Shuttle(least), _Shuttle(least), _Shuttle(least)
 
     def step(
         self,
@@ -241,8 +245,9 @@ def drive_of_run(
 
     Arrays have shape (n,), as in `RawStep`; the heading starts at zero (`Drive.with_heading`).
     """
-    middle = _shuttled(along, flicker)
-    left_side, right_side = _shuttled(left, flicker), _shuttled(right, flicker)
+    least = max(flicker, ROLLBACK)
+    middle = _shuttled(along, least)
+    left_side, right_side = _shuttled(left, least), _shuttled(right, least)
     return Drive(
         duration,
         _grown(0.0, duration),

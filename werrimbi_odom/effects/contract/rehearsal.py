@@ -1,0 +1,154 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A short drive with everything in it, on which the laws of effects are tried."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, fields, replace
+from itertools import pairwise
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from werrimbi_odom.model.drive import Drive, DriveMemory, RawStep, Span, drive_of_run
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, wheels_to_body
+from werrimbi_odom.model.pose import Floats
+
+TRACK, RADIUS, FLICKER = 0.35, 0.05, 2.5e-4
+FIRST_ANGLES = (0.3, -1.1)
+
+# Speed [m/s] and yaw rate [rad/s] to be reached, one after the other: lines, arcs and spins to both
+# sides, slow and fast, backwards, standing still.
+_TARGETS = (
+    (0.0, 0.0), (0.4, 0.0), (0.7, 0.0), (0.5, 1.2), (0.2, -0.8), (0.0, 0.0), (-0.4, 0.0),
+    (-0.3, 0.6), (0.3, 0.2), (0.6, -1.5), (0.0, 1.5), (0.0, -2.0), (0.0, 0.0), (-0.5, -0.5),
+    (0.1, 0.0), (0.8, 0.05), (0.8, 2.0), (0.175, -1.0), (0.0, 0.0), (0.5, 0.0), (0.0, 0.0),
+)  # fmt: skip
+
+
+class Moment(NamedTuple):
+    """One step, in floats, as the node has it."""
+
+    travel: WheelTravel[float]
+    motion: BodyMotion[float]
+    drive: Drive[float]
+
+
+@dataclass(frozen=True)
+class Rehearsal:
+    """Travel of the wheels in each step, and how long it took; arrays of shape (n,)."""
+
+    duration: Floats
+    left: Floats
+    right: Floats
+    channels: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, channels: tuple[str, ...] = ()) -> Rehearsal:
+        """The drive, with made-up values in the channels that an effect looks at."""
+        random = np.random.default_rng(1)
+        each = 30
+        share = np.arange(1, each + 1) / each
+        ramp = np.minimum(1.0, 2.0 * share)[:, None]  # half the time to get there, half to stay
+        targets = np.array(_TARGETS)
+        speeds = np.concatenate(
+            [before + ramp * (after - before) for before, after in pairwise(targets)]
+        )
+        duration = random.uniform(0.01, 0.05, len(speeds))
+        along, turn = (speeds * duration[:, None]).T
+        half = 0.5 * TRACK * turn
+        return cls(duration, along - half, along + half, channels)
+
+    @property
+    def travel(self) -> WheelTravel[Floats]:
+        """Of all steps."""
+        return WheelTravel(self.left, self.right)
+
+    @property
+    def motion(self) -> BodyMotion[Floats]:
+        """Of all steps, with some creep to the side, as other effects may have made."""
+        motion = wheels_to_body(self.travel, TRACK)
+        return motion._replace(sideways=0.01 * motion.along)
+
+    @property
+    def drive(self) -> Drive[Floats]:
+        """All steps at once."""
+        motion = self.motion
+        return drive_of_run(
+            self.duration,
+            self.left,
+            self.right,
+            motion.along,
+            motion.turn,
+            self.left / RADIUS,
+            self.right / RADIUS,
+            flicker=FLICKER,
+            first_angles=FIRST_ANGLES,
+            channels=self._measured(),
+        )
+
+    def steps(self) -> Iterator[Moment]:
+        """Step by step, through the causal memory that the node has."""
+        memory = DriveMemory(FLICKER, *FIRST_ANGLES)
+        motion, heading = self.motion, 0.0
+        measured = self._measured()
+        for i, (duration, left, right) in enumerate(
+            zip(self.duration.tolist(), self.left.tolist(), self.right.tolist(), strict=True)
+        ):
+            one = BodyMotion(*(float(part[i]) for part in motion))
+            raw = RawStep(duration, left, right, one.along, one.turn, left / RADIUS, right / RADIUS)
+            now = {name: Span(float(s.start[i]), float(s.end[i])) for name, s in measured.items()}
+            yield Moment(WheelTravel(left, right), one, memory.step(raw, heading, now))
+            heading += one.turn
+
+    def split(self, shares: tuple[float, ...]) -> Rehearsal:
+        """The same drive with each step in parts."""
+        parts = np.array(shares)
+        return replace(
+            self,
+            duration=np.outer(self.duration, parts).ravel(),
+            left=np.outer(self.left, parts).ravel(),
+            right=np.outer(self.right, parts).ravel(),
+        )
+
+    def _measured(self) -> dict[str, Span[Floats]]:
+        time = np.concatenate([[0.0], np.cumsum(self.duration)])
+        # Straight between whole seconds: then a part of a step sees what it would see of the whole.
+        knots = np.arange(math.ceil(time[-1]) + 1.0)
+        found = {}
+        for number, name in enumerate(self.channels):
+            values = np.interp(time, knots, 3.0 + number + 2.0 * np.sin(0.7 * knots))
+            found[name] = Span(values[:-1], values[1:])
+        return found
+
+
+def rows(drive: Drive[Floats], index: Any) -> Drive[Floats]:
+    """Some rows of a drive."""
+    return _each(drive, lambda values: values[index])
+
+
+def sealed(drive: Drive[Floats]) -> Drive[Floats]:
+    """A copy that nobody can write into."""
+    return _each(drive, seal)
+
+
+def seal(values: Floats) -> Floats:
+    """A copy that nobody can write into."""
+    copy = values.copy()
+    copy.setflags(write=False)
+    return copy
+
+
+def _each(drive: Drive[Floats], change: Any) -> Drive[Floats]:
+    def changed(value: Any) -> Any:
+        if isinstance(value, Span):
+            return Span(change(value.start), change(value.end))
+        if isinstance(value, np.ndarray):
+            return change(value)
+        return {name: changed(span) for name, span in value.items()}
+
+    return replace(
+        drive, **{item.name: changed(getattr(drive, item.name)) for item in fields(drive)}
+    )

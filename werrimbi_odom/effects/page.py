@@ -1,0 +1,158 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""An effect's page: its docstring, taken apart, for the command line, the docs, the workbench."""
+
+from __future__ import annotations
+
+import textwrap
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from werrimbi_odom.model.effect import Effect, Stage
+
+SECTIONS = ("Formula", "Signature", "Ruler", "Twins", "Alike")
+"""Words that begin a section of the docstring, at the start of a line."""
+
+MEANING: Mapping[str, str] = {
+    "Formula": "the law",
+    "Signature": "what it does to the data",
+    "Ruler": "how to check it on the robot",
+    "Twins": "what no drive can tell from it",
+    "Alike": "what some drives cannot tell from it",
+}
+
+STAGES: Mapping[Stage, str] = {
+    "wiring": "how the counters are wired",
+    "wheels": "on the travel of the wheels",
+    "body": "on the motion of the body",
+    "reference": "on what the reference shows; never on what the node publishes",
+}
+
+
+@dataclass(frozen=True)
+class Page:
+    """What is to be read of an effect.
+
+    Parameters
+    ----------
+    physics : tuple of str
+        Paragraphs, a line each; the first is the summary.
+    sections : mapping of str to str
+        Text of each section that is there; lines as they were written.
+    """
+
+    physics: tuple[str, ...]
+    sections: Mapping[str, str]
+
+
+def page_of(effect: Effect) -> Page:
+    """Take the docstring of an effect apart."""
+    physics: list[str] = []
+    sections: dict[str, list[str]] = {}
+    current: list[str] | None = None
+    for line in effect.doc.strip().splitlines():
+        first, _, rest = line.partition(" ")
+        if first in SECTIONS:
+            current = sections.setdefault(first, [])
+            current.append(rest.strip())
+        elif current is not None and (line.startswith(" ") or not line):
+            current.append(line)
+        else:
+            current = None
+            physics.append(line)
+    return Page(
+        tuple(" ".join(part.split()) for part in "\n".join(physics).split("\n\n") if part.strip()),
+        {name: _flush(lines) for name, lines in sections.items()},
+    )
+
+
+def as_text(effect: Effect) -> str:
+    """The page in plain text."""
+    page = page_of(effect)
+    lines = [f"{effect.name}: acts {STAGES[effect.stage]}", ""]
+    for paragraph in page.physics:
+        lines += [textwrap.fill(paragraph, 96), ""]
+    for name, text in page.sections.items():
+        lines += [f"{name} ({MEANING[name]})", textwrap.indent(text, "  "), ""]
+    if effect.parameters:
+        lines.append("Parameters")
+        for name, item in effect.parameters.items():
+            lines += [f"  {name}{_in_unit(item.unit)}: {item.says}", f"    {numbers(effect, name)}"]
+    return "\n".join(lines).rstrip() + "\n"
+
+
+def numbers(effect: Effect, name: str) -> str:
+    """A parameter's values, in words."""
+    item = effect.parameters[name]
+    low, high = item.bounds
+    words = f"absent at {item.null:g}, typical {item.typical:g}, possible {low:g} to {high:g}"
+    if item.tries:
+        words = f"typical {item.typical:g}, possible {low:g} to {high:g}"
+    return words + ("; anew in each run, unless counters keep their zero" if item.per_run else "")
+
+
+def as_json(effect: Effect) -> dict[str, Any]:
+    """The page for programs."""
+    page = page_of(effect)
+    return {
+        "effect": effect.name,
+        "stage": effect.stage,
+        "summary": effect.summary,
+        "physics": " ".join(page.physics),
+        **{name.lower(): page.sections.get(name) for name in SECTIONS},
+        "twin_effects": list(effect.twins),
+        "channels": list(effect.channels),
+        "parameters": {
+            name: {
+                "unit": item.unit,
+                "null": item.null,
+                "typical": item.typical,
+                "bounds": list(item.bounds),
+                "says": item.says,
+                "per_run": item.per_run,
+                "tries": list(item.tries),
+            }
+            for name, item in effect.parameters.items()
+        },
+    }
+
+
+def as_markdown(effect: Effect) -> str:
+    """The page for docs/effects.md."""
+    page = page_of(effect)
+    lines = [f"### `{effect.name}`", "", f"Acts {STAGES[effect.stage]}.", ""]
+    for paragraph in page.physics:
+        lines += [textwrap.fill(paragraph, 100), ""]
+    for name, text in page.sections.items():
+        if name == "Formula":
+            lines += ["```text", text, "```", ""]
+        else:
+            lines += [
+                textwrap.fill(f"**{name}** ({MEANING[name]}). {' '.join(text.split())}.", 100),
+                "",
+            ]
+    if effect.parameters:
+        lines += [
+            "| parameter | unit | absent at | typical | possible | what it is |",
+            "| --- | --- | --- | --- | --- | --- |",
+        ]
+        for name, item in effect.parameters.items():
+            low, high = item.bounds
+            absent = "-" if item.tries else f"{item.null:g}"
+            run = "; anew in each run, unless counters keep their zero" if item.per_run else ""
+            lines.append(
+                f"| `{name}` | {item.unit or '1'} | {absent} | {item.typical:g} "
+                f"| {low:g} to {high:g} | {item.says}{run} |"
+            )
+        lines.append("")
+    return "\n".join(lines)
+
+
+def _in_unit(unit: str) -> str:
+    return f" [{unit}]" if unit else ""
+
+
+def _flush(lines: list[str]) -> str:
+    """Lines without the indentation that the section's word asked for."""
+    return "\n".join([lines[0], *(textwrap.dedent("\n".join(lines[1:])).splitlines())]).strip()
