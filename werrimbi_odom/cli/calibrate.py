@@ -8,6 +8,8 @@ import argparse
 from importlib import import_module
 from importlib.util import find_spec
 
+from werrimbi_odom.errors import InputError
+
 HELP = "better numbers for the robot file, with error bars"
 
 KINDS = {
@@ -22,12 +24,24 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     kinds = parser.add_subparsers(dest="kind", metavar="KIND", required=True)
     for kind, says in KINDS.items():
         if find_spec(_module(kind)) is not None:
-            import_module(_module(kind)).add_arguments(kinds.add_parser(kind, help=says))
+            below = kinds.add_parser(kind, help=says, allow_abbrev=False)
+            import_module(_module(kind)).add_arguments(below)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Calibrate; 0 on success."""
-    return int(import_module(_module(arguments.kind)).run(arguments))
+    """Calibrate; 0 on success.
+
+    Raises
+    ------
+    InputError
+        When something given cannot be used, or a package is not installed.
+    """
+    try:
+        return int(import_module(_module(arguments.kind)).run(arguments))
+    except ModuleNotFoundError as missing:
+        raise InputError(
+            f"calibrate needs the Python package {missing.name}: pip install 'werrimbi_odom[tools]'"
+        ) from missing
 
 
 def _module(kind: str) -> str:

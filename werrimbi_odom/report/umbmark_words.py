@@ -114,9 +114,8 @@ def gained_in_words(
     lines.append("\nE_max,syst of others, on squares of 4 m (paper, Table 2):")
     lines += [f"  {name:34}{1e3 * value:5.0f} mm" for name, value in OTHER_VEHICLES]
     shown, when = (squares, "before") if later is None else (later, "after")
-    lines.append(
-        f"  {f'this robot, {when}, {squares.side:g} m':34}{1e3 * e_max_syst(shown):5.0f} mm"
-    )
+    own, size = f"this robot, {when}, {squares.side:g} m", 1e3 * e_max_syst(shown)
+    lines.append(f"  {own:34}{size:5.{1 if size < 10.0 else 0}f} mm")
     return "\n".join(lines)
 
 

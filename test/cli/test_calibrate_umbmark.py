@@ -1,0 +1,206 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi calibrate umbmark` from tables and from recorded runs, in files and out of files."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+from pathlib import Path
+
+import pytest
+
+from werrimbi_odom.cli import calibrate
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.simulation import TrueRobot, record, square, write_run
+
+ROBOT = """\
+# my robot
+odom_node:
+  ros__parameters:
+    wheel_separation: 0.35  # ruler
+    wheel_radius: 0.05
+    wheel_separation_multiplier: 1.01
+    left_ticks_per_revolution: 2000.0
+    right_ticks_per_revolution: 2000.0
+"""
+BEFORE = """\
+sense,x_m,y_m
+cw,0.030,0.034
+cw,0.034,0.028
+ccw,0.092,-0.090
+ccw,0.102,-0.098
+"""
+AFTER = """\
+sense,x_m,y_m
+cw,0.013,0.013
+cw,0.017,0.009
+ccw,-0.028,0.014
+ccw,-0.024,0.018
+"""
+DATA = Path(os.environ.get("WERRIMBI_DATA", "../shared/data")) / "robots" / "optitrack_robot"
+
+
+def werrimbi_calibrate(*words: object) -> int:
+    parser = argparse.ArgumentParser()
+    calibrate.add_arguments(parser)
+    return calibrate.run(parser.parse_args([str(word) for word in words]))
+
+
+@pytest.fixture
+def desk(tmp_path: Path) -> Path:
+    """A folder with a robot file and two tables."""
+    (tmp_path / "robot.yaml").write_text(ROBOT, encoding="utf-8")
+    (tmp_path / "before.csv").write_text(BEFORE, encoding="utf-8")
+    (tmp_path / "after.csv").write_text(AFTER, encoding="utf-8")
+    return tmp_path
+
+
+def umbmark(desk: Path, *words: object, table: str = "before.csv") -> int:
+    return werrimbi_calibrate(
+        "umbmark",
+        desk / table,
+        "--robot",
+        desk / "robot.yaml",
+        "--out",
+        desk / "new.yaml",
+        "--side",
+        4.0,
+        *words,
+    )
+
+
+def test_a_table_to_a_robot_file(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert umbmark(desk, "--json", desk / "f.json", "--report", desk / "f.html") == 0
+    figures = json.loads((desk / "f.json").read_text(encoding="utf-8"))
+    assert figures["e_max_syst_m"]["before"] == pytest.approx(0.1351, abs=5e-5)
+    assert figures["e_max_syst_m"]["after"] is None
+    assert figures["centre_of_gravity"]["cw"] == pytest.approx([0.032, 0.031])
+    assert figures["centre_of_gravity"]["ccw"] == pytest.approx([0.097, -0.094])
+    new, text = read_robot_file(desk / "new.yaml"), (desk / "new.yaml").read_text(encoding="utf-8")
+    for name, estimate in figures["parameters"].items():
+        assert new.values[name] == pytest.approx(estimate["value"], abs=1e-9)
+        assert 0.0 < estimate["std"] < 0.01
+    assert new.values["wheel_separation_multiplier"] == pytest.approx(1.01 * 0.99495, abs=2e-5)
+    assert "# my robot" in text
+    assert "# ruler" in text
+    assert "plotly" in (desk / "f.html").read_text(encoding="utf-8")
+    said = capsys.readouterr().out
+    for words in ("135.1 mm", "CLAPPER", "5 squares in each sense are usual", "--after"):
+        assert words in said
+
+
+def test_a_second_table_says_what_was_gained(
+    desk: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert umbmark(desk, "--after", desk / "after.csv", "--json", desk / "f.json") == 0
+    figures = json.loads((desk / "f.json").read_text(encoding="utf-8"))
+    assert figures["e_max_syst_m"]["after"] == pytest.approx(0.0305, abs=5e-5)
+    assert figures["centre_of_gravity_after"]["ccw"] == pytest.approx([-0.026, 0.016])
+    said = capsys.readouterr().out
+    assert "after the calibration: 30.5 mm, before: 135.1 mm (4.4 times smaller)" in said
+    assert "this robot, after, 4 m" in said
+
+
+def test_a_calibration_that_did_not_help_is_called_so(
+    desk: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert umbmark(desk, "--after", desk / "before.csv", table="after.csv") == 0
+    assert "no better than before" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("", "is empty; its first line must be sense,x_m,y_m"),
+        ("sense,x,y_m\ncw,1,2\n", "line 1: the header must hold sense,x_m,y_m; x_m is missing"),
+        (
+            BEFORE.replace("0.102", "0,102"),
+            "line 5: 4 cells where the header has 3; .* decimals by points",
+        ),
+        (BEFORE.replace("0.102", "wide"), "line 5, column x_m: 'wide' is not a number"),
+        (BEFORE.replace("0.102", "nan"), "line 5, column x_m: 'nan' is no measurement"),
+        (BEFORE.replace("ccw,0.1", "left,0.1"), "line 5, column sense: 'left' must be cw or ccw"),
+        (BEFORE.replace("ccw", "cw"), r"before.csv: too few squares: .* 2 more ccw \(0 given\)"),
+        (BEFORE.replace("0.102", "102"), "ccw square number 2: .* metres"),
+        ("sense,x_m,x_m,y_m\ncw,1,1,1\n", "the column x_m is there twice"),
+        ('sense,x_m,y_m\ncw,"1,2\n', "line 2"),
+    ],
+)
+def test_a_bad_table_is_refused_with_its_place(desk: Path, text: str, says: str) -> None:
+    (desk / "before.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=says):
+        umbmark(desk)
+    assert not (desk / "new.yaml").exists()
+
+
+def test_comments_spaces_case_and_more_columns_are_fine(desk: Path) -> None:
+    text = "\ufeff# floor 2\n" + BEFORE.replace("cw,", "CW, ").replace("\n", ",note\n") + "\n"
+    (desk / "before.csv").write_text(text.replace("cCW", "CCW"), encoding="utf-8")
+    assert umbmark(desk) == 0
+
+
+def test_files_that_cannot_be_read_or_written(desk: Path) -> None:
+    with pytest.raises(InputError, match="no such file"):
+        umbmark(desk, table="none.csv")
+    (desk / "before.csv").write_bytes(BEFORE.encode() + b"cw,\xff,1\n")
+    with pytest.raises(InputError, match="line 6: byte 0xff is not UTF-8"):
+        umbmark(desk)
+    (desk / "before.csv").write_text(BEFORE, encoding="utf-8")
+    (desk / "new.yaml").write_text("mine", encoding="utf-8")
+    with pytest.raises(InputError, match="--force"):
+        umbmark(desk)
+    assert (desk / "new.yaml").read_text(encoding="utf-8") == "mine"
+    assert umbmark(desk, "--force") == 0
+    with pytest.raises(InputError, match="cannot be written"):
+        umbmark(desk, "--force", "--json", desk / "no" / "f.json")
+
+
+def test_tables_and_runs_are_not_mixed(desk: Path) -> None:
+    with pytest.raises(InputError, match="not both and not several"):
+        werrimbi_calibrate(
+            "umbmark", desk / "before.csv", desk, "--side", 4, "--robot", desk / "robot.yaml",
+            "--out", desk / "new.yaml",
+        )  # fmt: skip
+
+
+def test_recorded_runs_before_and_after(desk: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (desk / "robot.yaml").write_text(
+        ROBOT.replace("wheel_separation_multiplier: 1.01", "encoder_bits: 0"), encoding="utf-8"
+    )
+    true = TrueRobot(wheel_separation=0.357)
+    runs = []
+    for seed, sense in enumerate(("cw", "ccw", "cw", "ccw")):
+        drive = record(true, square(1.0, sense), seed=seed)
+        runs.append(write_run(drive, desk / "runs" / f"{sense}_{seed}"))
+    arguments = [*runs, "--side", 1.0, "--robot", desk / "robot.yaml", "--out", desk / "new.yaml"]
+    assert (
+        werrimbi_calibrate("umbmark", *arguments, "--after", *runs, "--json", desk / "f.json") == 0
+    )
+    figures = json.loads((desk / "f.json").read_text(encoding="utf-8"))
+    found = figures["parameters"]["wheel_separation_multiplier"]
+    assert abs(found["value"] - 1.02) < 1.96 * found["std"] < 0.005
+    size = figures["e_max_syst_m"]
+    assert size["after"] < size["before"] / 20
+    # The same runs given as --after are the same offsets as the arithmetic of the correction gives.
+    assert size["after"] == pytest.approx(size["same_runs_corrected"], abs=1e-4)
+    (runs[0] / "reference.csv").unlink()
+    with pytest.raises(InputError, match="there is no reference"):
+        werrimbi_calibrate("umbmark", *arguments, "--force")
+
+
+@pytest.mark.skipif(not DATA.exists(), reason=f"the real robots are not at {DATA}")
+def test_a_real_robots_squares(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    runs = sorted(DATA.glob("square_*"))
+    words = ["--side", 1.7, "--robot", DATA / "robot.yaml", "--out", tmp_path / "new.yaml"]
+    assert werrimbi_calibrate("umbmark", *runs, *words, "--report", tmp_path / "f.html") == 0
+    new = read_robot_file(tmp_path / "new.yaml").robot
+    assert new.wheel_separation_multiplier == pytest.approx(1.0085, abs=3e-4)
+    assert "3 clockwise and 3 anticlockwise squares of 1.7 m" in capsys.readouterr().out
+    ccw = [run for run in runs if run.name[-1] in "456"]
+    with pytest.raises(InputError, match="2 more cw"):
+        werrimbi_calibrate("umbmark", *ccw, *words, "--force")
+    with pytest.raises(InputError, match="not a square of side 2 m"):
+        werrimbi_calibrate("umbmark", *runs, *words, "--force", "--side", 2.0)
