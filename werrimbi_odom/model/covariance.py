@@ -156,11 +156,13 @@ def _turned(covariance: PoseCovariance[Number], angle: Number) -> PoseCovariance
         cos, sin = np.cos(angle), np.sin(angle)
     else:
         cos, sin = math.cos(angle), math.sin(angle)
+    cos2, sin2, both = cos * cos, sin * sin, cos * sin
+    across = 2.0 * both * xy
     return PoseCovariance(
-        cos * cos * xx - 2.0 * cos * sin * xy + sin * sin * yy,
-        cos * sin * (xx - yy) + (cos * cos - sin * sin) * xy,
+        cos2 * xx - across + sin2 * yy,
+        both * (xx - yy) + (cos2 - sin2) * xy,
         cos * xyaw - sin * yyaw,
-        sin * sin * xx + 2.0 * cos * sin * xy + cos * cos * yy,
+        sin2 * xx + across + cos2 * yy,
         sin * xyaw + cos * yyaw,
         yawyaw,
     )
@@ -194,10 +196,10 @@ def _entire_of_array(h: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         return S, _polynomial(_T, t), _polynomial(_U, t), _polynomial(_V, t)
     if not small.any():
         return _closed(h, np.sin(h), np.cos(h))
-    parts = np.empty((4, *h.shape))
-    parts[:, small] = _entire_of_array(h[small])
-    parts[:, ~small] = _entire_of_array(h[~small])
-    return parts[0], parts[1], parts[2], parts[3]
+    S, T, U, V = (np.empty_like(h) for _ in range(4))
+    for side in (np.nonzero(small), np.nonzero(~small)):
+        S[side], T[side], U[side], V[side] = _entire_of_array(h[side])
+    return S, T, U, V
 
 
 def _closed(h: Number, sin: Number, cos: Number) -> tuple[Number, Number, Number, Number]:
@@ -211,5 +213,6 @@ def _closed(h: Number, sin: Number, cos: Number) -> tuple[Number, Number, Number
 def _polynomial(coefficients: tuple[float, ...], t: Number) -> Number:
     total = 0.0 * t + coefficients[-1]
     for coefficient in coefficients[-2::-1]:
-        total = total * t + coefficient
+        total *= t  # in place for arrays
+        total += coefficient
     return total

@@ -109,7 +109,7 @@ class _Cutter:
             off = self._first_off_arc(begin, stop)
             if off < stop:
                 self._forget_after(off)
-                begin, ahead = off, _FEW
+                begin, ahead = off, max(ahead // 4, _FEW)
             else:
                 begin, ahead = stop, min(2 * ahead, _MANY)
 
@@ -145,7 +145,7 @@ class _Cutter:
         travel = self._summed(_WHEELS, begin, end)
         left, right = np.abs(travel)
         u, v = left + right, right - left
-        lead = self.rule.allowed_lead(self._share(self._travelled[-1] + u))
+        lead = self._allowed_lead(u)
         low, high = (v - lead) / u, (v + lead) / u
         low[0], high[0] = max(low[0], self._bounds[0]), min(high[0], self._bounds[1])
         low, high = np.maximum.accumulate(low), np.minimum.accumulate(high)
@@ -153,7 +153,8 @@ class _Cutter:
         bad = (slope < low) | (slope > high)
         for wheel, travelled in zip(self._wheels, travel, strict=True):
             wheel.mark_reversed(bad, travelled, begin)
-        bad[0] &= begin > start
+        if begin == start:
+            bad[0] = False
         good = _until(bad)
         if good:
             self._summed(_BODY, begin, begin + good)
@@ -170,6 +171,11 @@ class _Cutter:
             steps = steps.copy()
             steps[:, 0] += self.sums[rows, begin - 1]
         return np.add.accumulate(steps, axis=1, out=self.sums[rows, begin:end])
+
+    def _allowed_lead(self, u: Floats) -> Floats | float:
+        if self._travelled[-1] >= self.rule.settled:
+            return self.rule.allowed_lead(1.0)
+        return self.rule.allowed_lead(self._share(self._travelled[-1] + u))
 
     def _share(self, travelled: Floats) -> Floats:
         """Of the full tolerance, that holds after so much travel u since the start of the run."""

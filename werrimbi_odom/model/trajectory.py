@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,7 +33,7 @@ from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known
 
-_BLOCK = 16384  # rows whose covariances are worked at once: their arrays stay in the cache
+_BLOCK = 8192  # rows whose covariances are worked at once: their arrays stay in the cache
 
 
 @dataclass(frozen=True, slots=True)
@@ -97,9 +98,7 @@ def trajectory(
     raw = WheelTravel(steps.left, steps.right)
     first_counts = float(left[steps.first_row]), float(right[steps.first_row])
     travel, motion = _driven(robot, steps.duration, raw, first_counts, start.yaw)
-    yaw = _summed(start.yaw, motion.turn)
-    dx, dy = displacement(motion, yaw[:-1])
-    x, y = _summed(start.x, dx), _summed(start.y, dy)
+    x, y, yaw = _integrated(start, motion)
     lost = noise_of_wheel_variances(steps.left_lost, steps.right_lost, robot.track)
     rule = PieceRule.of(robot, tolerance or PieceTolerance())
     pieces = cut(rule, travel, motion, x, y, yaw, broken=lost.b > 0.0)
@@ -133,8 +132,22 @@ def _driven(
     return driven(robot, raw, features(robot, duration, raw, first_counts), yaw)
 
 
-def _summed(start: float, steps: Floats) -> Floats:
-    return np.cumsum(np.concatenate([[start], steps]))
+def _integrated(start: Pose, motion: BodyMotion[Floats]) -> Floats:
+    """x, y, yaw before the first step and after each, shape (3, n + 1)."""
+    poses = np.empty((3, motion.turn.size + 1))
+    poses[:, 0] = start
+    poses[2, 1:] = motion.turn
+    np.cumsum(poses[2], out=poses[2])
+    for steps in _blocks(motion.turn.size):
+        part = BodyMotion(*(values[steps] for values in motion))
+        poses[:2, 1:][:, steps] = displacement(part, poses[2, steps])
+    np.cumsum(poses[:2], axis=1, out=poses[:2])
+    return poses
+
+
+def _blocks(count: int) -> Iterator[slice]:
+    """Some thousand steps at a time: their arrays stay in the cache."""
+    return (slice(first, min(first + _BLOCK, count)) for first in range(0, count, _BLOCK))
 
 
 def _chained(
@@ -149,7 +162,7 @@ def _chained(
     """Errors of the pose at the start of each piece, from one piece to the next."""
     begin = pieces.start
     end = np.append(begin[1:], x.size - 1)
-    whole = np.stack([*pieces.travel, *pieces.motion])[:, end - 1]
+    whole = np.stack([part[end - 1] for part in (*pieces.travel, *pieces.motion)])
     rows = zip(
         (x[end] - x[begin]).tolist(),
         (y[end] - y[begin]).tolist(),
@@ -187,8 +200,7 @@ def _at_every_step(
     covariance[:, 0] = at_start.covariance
     shift = np.zeros((2, count + 1))
     exact = at_start.moments is not None
-    for first in range(0, count, _BLOCK):
-        block = slice(first, min(first + _BLOCK, count))
+    for block in _blocks(count):
         own_piece = piece[block]
         begin = pieces.start[own_piece]
         after = slice(block.start + 1, block.stop + 1)
@@ -232,19 +244,21 @@ def _as_values(
     y: Floats,
     yaw: Floats,
 ) -> tuple[Piece, ...]:
-    end = np.append(pieces.start[1:], x.size - 1)
-    values = []
-    for begin, stop, errors in zip(pieces.start.tolist(), end.tolist(), chain, strict=True):
-        motion = BodyMotion(*(float(part[stop - 1]) for part in pieces.motion))
-        values.append(
-            Piece(
-                kind_of(motion, robot.track),
-                float(time[begin]),
-                float(time[stop]),
-                Pose(float(x[begin]), float(y[begin]), float(yaw[begin])),
-                WheelTravel(*(float(part[stop - 1]) for part in pieces.travel)),
-                motion,
-                errors.covariance,
-            )
-        )
-    return tuple(values)
+    begin = pieces.start
+    end = np.append(begin[1:], x.size - 1)
+    starts = np.stack([part[begin] for part in (x, y, yaw)])
+    travels = np.stack([part[end - 1] for part in pieces.travel])
+    motions = np.stack([part[end - 1] for part in pieces.motion])
+    rows = zip(
+        time[begin].tolist(),
+        time[end].tolist(),
+        (Pose(*start) for start in starts.T.tolist()),
+        (WheelTravel(*travel) for travel in travels.T.tolist()),
+        (BodyMotion(*motion) for motion in motions.T.tolist()),
+        chain,
+        strict=True,
+    )
+    return tuple(
+        Piece(kind_of(motion, robot.track), since, until, start, travel, motion, errors.covariance)
+        for since, until, start, travel, motion, errors in rows
+    )
