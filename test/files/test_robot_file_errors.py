@@ -170,7 +170,10 @@ def test_whatever_is_in_the_file_nothing_but_an_input_error(tmp_path: Path, raw:
     try:
         read_robot_file(path)
     except InputError as error:
-        assert str(path) in str(error)
+        said = str(error)
+    else:
+        said = str(path)
+    assert str(path) in said
 
 
 def test_depth_allows_the_blocks_of_effects() -> None:

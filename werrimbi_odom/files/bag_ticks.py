@@ -215,13 +215,12 @@ class _Pairs:
     def take(self, message: Message) -> None:
         is_left, count = message.topic == self._left, int(message.content.data)
         other = self._waiting.get(not is_left)
+        self._left_out["without a partner in time"] += is_left in self._waiting
         if other is not None and abs(message.received - other[0]) <= self._window:
             self._waiting.clear()
             self._time.append(message.received / 1e9)
             self._counts.extend((count, other[1]) if is_left else (other[1], count))
             return
-        if is_left in self._waiting:
-            self._left_out["without a partner in time"] += 1
         self._waiting[is_left] = (message.received, count)
 
     def ticks(self) -> tuple[Ticks, list[str]]:
@@ -254,4 +253,4 @@ def _names(robot_file: RobotFile, side: str) -> tuple[str, ...]:
 
 
 def _told(left_out: Counter[str]) -> list[str]:
-    return [f"left out: {count} messages {why}" for why, count in left_out.items()]
+    return [f"left out: {count} messages {why}" for why, count in left_out.items() if count]

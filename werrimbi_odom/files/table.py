@@ -177,10 +177,11 @@ def _loaded(source: Any, kind: np.dtype[Any]) -> NDArray[Any]:
 
 
 def _lines(path: Path) -> Iterator[str]:
-    """Lines with `nan` written into empty cells."""
+    """Lines with `nan` written into empty cells; blank lines left out."""
     with path.open(encoding="utf-8-sig", newline=None) as file:
         for line in file:
-            yield _EMPTY.sub("nan", line) if line.strip() else line
+            if not line.isspace():
+                yield _EMPTY.sub("nan", line)
 
 
 def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:

@@ -1,0 +1,150 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""References from bags: poses, transforms and a gyro."""
+
+from __future__ import annotations
+
+import math
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.reading import read_run
+
+MS = 10**6
+POSES = [(1.0, 2.0, 0.5), (1.5, -2.0, 3.0), (2.0, 0.0, -2.5)]
+BASE = ("map", "base_link")
+
+
+def ticks(ros: Any) -> tuple[str, int, Any]:
+    return ("/ticks", 1, ros.counts(1, 2))
+
+
+def written(ros: Any, path: Path, entries: list[Any]) -> Path:
+    return Path(ros.write(path / "bag", [ticks(ros), *entries]))
+
+
+@pytest.mark.parametrize("kind", ["pose", "odometry", "transform", "tf"])
+def test_poses(tmp_path: Path, ros: Any, robot: Any, kind: str) -> None:
+    def message(t: int, pose: tuple[float, float, float]) -> Any:
+        if kind in ("transform", "tf"):
+            stamped = ros.transform(t, BASE, *pose)
+            return ros.transforms(stamped) if kind == "tf" else stamped
+        return getattr(ros, kind)(t, *pose)
+
+    entries = [
+        (f"/{kind}", 999 * MS + n, message(n * MS, pose)) for n, pose in enumerate(POSES, start=1)
+    ]
+    reference = read_run(written(ros, tmp_path, entries), robot()).reference
+    assert reference is not None
+    assert reference.time.tolist() == [0.001, 0.002, 0.003]
+    found = np.stack([reference.x, reference.y, reference.yaw], axis=1)
+    np.testing.assert_allclose(found, POSES, atol=1e-12)
+    assert reference.sigma_xy is None
+    assert reference.sigma_yaw is None
+
+
+def test_a_covariance_of_each_pose_is_kept(tmp_path: Path, ros: Any, robot: Any) -> None:
+    entries = [
+        ("/amcl", 2, ros.pose_with_covariance(1 * MS, *POSES[0], (0.01, 0.03, 0.0004))),
+        ("/amcl", 3, ros.pose_with_covariance(2 * MS, *POSES[1], (0.0, 0.0, 0.0))),
+    ]
+    reference = read_run(written(ros, tmp_path, entries), robot()).reference
+    assert reference is not None
+    np.testing.assert_allclose(reference.sigma_xy, [math.sqrt(0.02), np.nan])
+    np.testing.assert_allclose(reference.sigma_yaw, [0.02, np.nan])
+
+
+def test_what_is_no_pose_is_not_measured(tmp_path: Path, ros: Any, robot: Any) -> None:
+    entries = [
+        ("/pose", 2, ros.pose(1 * MS, 1.0, 2.0, math.nan)),
+        ("/pose", 3, ros.pose(2 * MS, math.inf, 2.0, 0.5)),
+    ]
+    reference = read_run(written(ros, tmp_path, entries), robot()).reference
+    assert reference is not None
+    np.testing.assert_array_equal(reference.x, [1.0, np.nan])
+    np.testing.assert_array_equal(reference.y, [2.0, np.nan])
+    np.testing.assert_allclose(reference.yaw, [np.nan, 0.5])
+
+
+def test_nothing_measured_at_all(tmp_path: Path, ros: Any, robot: Any) -> None:
+    entries = [("/pose", 2, ros.pose(1 * MS, math.nan, 2.0, math.nan))]
+    with pytest.raises(InputError, match="/pose: no message holds a finite pose"):
+        read_run(written(ros, tmp_path, entries), robot())
+
+
+def test_a_gyro_gives_yaw_alone(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """Yaw rate 2 t for 1 s is one radian; trapezia are exact for it, at uneven intervals too."""
+    stamps = [0, 100, 150, 400, 400, 390, 1000]
+    entries = [
+        ("/imu", n, ros.imu(10**9 + t * MS, 2e-3 * t)) for n, t in enumerate(stamps, start=2)
+    ]
+    entries.insert(3, ("/imu", 5, ros.imu(10**9 + 300 * MS, 99.0, known=False)))
+    entries.insert(3, ("/imu", 5, ros.imu(10**9 + 300 * MS, math.nan)))
+    entries = [(topic, n, message) for n, (topic, _, message) in enumerate(entries, start=2)]
+    reference = read_run(written(ros, tmp_path, entries), robot()).reference
+    assert reference is not None
+    assert np.isnan(reference.x).all()
+    assert reference.yaw[0] == 0.0
+    assert reference.yaw[3] == pytest.approx(0.16, abs=1e-6)
+    assert reference.yaw[4] == reference.yaw[5] == reference.yaw[3], "late stamps turn nothing"
+    assert reference.yaw[-1] == pytest.approx(1.0, abs=0.01)
+
+
+def transforms(ros: Any, *pairs: tuple[str, str]) -> list[Any]:
+    return [
+        (
+            "/tf",
+            n,
+            ros.transforms(
+                *(ros.transform(n * MS, pair, float(k), n, 0.0) for k, pair in enumerate(pairs))
+            ),
+        )
+        for n in (2, 3)
+    ]
+
+
+def test_among_transforms_the_base_or_the_one_that_is_named(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    bag = written(ros, tmp_path, transforms(ros, ("map", "odom"), ("/odom", "/base_link")))
+    run = read_run(bag, robot())
+    assert run.reference is not None
+    assert run.reference.x.tolist() == [1.0, 1.0]
+    assert run.notes[-1] == "reference from /tf (tf2_msgs/msg/TFMessage), odom -> base_link"
+    run = read_run(bag, robot(), reference_topic="/tf:odom")
+    assert run.reference is not None
+    assert run.reference.x.tolist() == [0.0, 0.0]
+    said = "/tf: name the frame with --reference-topic /tf:CHILD_FRAME; it has: map -> odom, odom"
+    with pytest.raises(InputError, match=re.escape(said)):
+        read_run(bag, robot("base_frame_id: base_footprint"))
+    with pytest.raises(InputError, match="name the frame"):
+        read_run(bag, robot(), reference_topic="/tf:tracker")
+
+
+def test_several_candidates_are_listed_and_none_may_be_wished(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    entries = [
+        ("/mocap", 2, ros.pose(1 * MS, *POSES[0])),
+        ("/odom", 3, ros.odometry(1 * MS, *POSES[1])),
+        ("/tf_static", 4, ros.transforms(ros.transform(1, BASE, *POSES[2]))),
+    ]
+    bag = written(ros, tmp_path, entries)
+    with pytest.raises(InputError) as caught:
+        read_run(bag, robot())
+    assert str(caught.value) == (
+        f"{bag}: choose with --reference-topic (none for no reference); candidates are: /mocap "
+        "(geometry_msgs/msg/PoseStamped), /odom (nav_msgs/msg/Odometry)"
+    )
+    assert read_run(bag, robot(), reference_topic="none").reference is None
+    run = read_run(bag, robot(), reference_topic="odom")
+    assert run.reference is not None
+    assert run.reference.x.tolist() == [1.5]
+    for wish in ("/laser", "/ticks"):
+        with pytest.raises(InputError, match=f"there is no reference in {wish}; candidates are"):
+            read_run(bag, robot(), reference_topic=wish)

@@ -1,0 +1,266 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""CSV runs: every number exactly as it stands there, every bad cell named by line and column."""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files import table
+from werrimbi_odom.files.run_folder import read_run_folder
+
+TICKS = "t_s,left_ticks,right_ticks\n"
+REFERENCE = "t_s,x_m,y_m,yaw_rad\n"
+FINE = TICKS + "0.0,1,2\n0.1,3,4\n"
+
+
+def folder(path: Path, ticks: str | bytes = FINE, reference: str | None = None) -> Path:
+    (path / "ticks.csv").write_bytes(ticks if isinstance(ticks, bytes) else ticks.encode())
+    if reference is not None:
+        (path / "reference.csv").write_text(reference)
+    return path
+
+
+def complaint(path: Path) -> str:
+    with pytest.raises(InputError) as caught:
+        read_run_folder(path)
+    return str(caught.value).removeprefix(f"{path}/")
+
+
+def test_a_plain_run(tmp_path: Path) -> None:
+    run = read_run_folder(folder(tmp_path, FINE, REFERENCE + "0.0,1.5,-2,3.25\n"))
+    assert run.name == tmp_path.name
+    assert run.ticks.time.tolist() == [0.0, 0.1]
+    assert run.ticks.left.dtype == run.ticks.right.dtype == np.int64
+    assert run.ticks.left.tolist() == [1, 3]
+    assert run.reference is not None
+    pose = (run.reference.x[0], run.reference.y[0], run.reference.yaw[0])
+    assert pose == (1.5, -2.0, 3.25)
+    assert run.reference.sigma_xy is None
+
+
+def test_the_name_of_here(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(folder(tmp_path))
+    assert read_run_folder(".").name == tmp_path.name
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        FINE.replace("\n", "\r\n"),
+        "\ufeff" + FINE,
+        FINE + "\n\n  \n",
+        FINE.rstrip("\n"),
+        FINE.replace("0.1,3", "\n0.1,3"),
+        FINE.replace("0.1,3,4", " 0.1 , 3 ,\t4 "),
+        '"t_s","left_ticks","right_ticks"\n"0.0","1","2"\n"0.1","3","4"\n',
+        FINE.replace("0.1,3,4", "1e-1,3.0,+4"),
+        "right_ticks,t_s,left_ticks\n2,0.0,1\n4,0.1,3\n",
+        "right_ticks, note,t_s,left_ticks\n2,,0.0,1\n4,,0.1,3\n",
+    ],
+)
+def test_many_ways_to_write_the_same(tmp_path: Path, text: str) -> None:
+    ticks = read_run_folder(folder(tmp_path, text)).ticks
+    assert ticks.time.tolist() == [0.0, 0.1]
+    assert ticks.left.tolist() == [1, 3]
+    assert ticks.right.tolist() == [2, 4]
+    assert ticks.left.dtype == np.int64
+
+
+def test_other_columns_are_channels(tmp_path: Path) -> None:
+    text = "t_s,left_ticks,temperature,right_ticks,load\n0,1,20.5,2,\n1,1,,2,3\n"
+    channels = read_run_folder(folder(tmp_path, text)).ticks.channels
+    assert list(channels) == ["temperature", "load"]
+    np.testing.assert_array_equal(channels["temperature"], [20.5, np.nan])
+    np.testing.assert_array_equal(channels["load"], [np.nan, 3.0])
+
+
+def test_readings_that_failed_are_kept_for_the_model_to_count(tmp_path: Path) -> None:
+    ticks = read_run_folder(folder(tmp_path, TICKS + "0,nan,2\n1,3.5,inf\n0.5,4,6\n")).ticks
+    np.testing.assert_array_equal(ticks.left, [np.nan, 3.5, 4.0])
+    np.testing.assert_array_equal(ticks.right, [2.0, np.inf, 6.0])
+    assert ticks.time.tolist() == [0.0, 1.0, 0.5], "order is the model's business too"
+
+
+def test_what_was_not_measured_is_nan(tmp_path: Path) -> None:
+    text = "t_s,x_m,y_m,yaw_rad,sigma_xy_m,sigma_yaw_rad,z_m\n0,1,2,,0.01,,9\n1,,,3,,0.1,9\n"
+    reference = read_run_folder(folder(tmp_path, FINE, text)).reference
+    assert reference is not None
+    np.testing.assert_array_equal(reference.x, [1.0, np.nan])
+    np.testing.assert_array_equal(reference.yaw, [np.nan, 3.0])
+    np.testing.assert_array_equal(reference.sigma_xy, [0.01, np.nan])
+    np.testing.assert_array_equal(reference.sigma_yaw, [np.nan, 0.1])
+    assert reference.has_position.tolist() == [True, False]
+    assert reference.has_yaw.tolist() == [False, True]
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "ticks.csv is empty; its first line must be t_s,left_ticks,right_ticks"),
+        (TICKS, "ticks.csv has a header and no rows"),
+        (TICKS + "\n\n", "ticks.csv has a header and no rows"),
+        (
+            "0,1,2\n1,2,3\n",
+            "ticks.csv, line 1: there is no header; the first line must be t_s,left_ticks,",
+        ),
+        (
+            "t_s,left\n0,1\n",
+            "ticks.csv, line 1: no column left_ticks, right_ticks; the header is 't_s,left'",
+        ),
+        (
+            "t_s;left_ticks;right_ticks\n0;1;2\n",
+            "ticks.csv, line 1: the columns are separated by ';'",
+        ),
+        (
+            "t_s,left_ticks,right_ticks,t_s\n0,1,2,3\n",
+            "ticks.csv, line 1: the column t_s is there twice",
+        ),
+        (
+            "t_s,left_ticks,right_ticks,\n0,1,2,\n",
+            "ticks.csv, line 1: column 4 has no name",
+        ),
+        (FINE + "0.2,x,6\n", "ticks.csv, line 4, column left_ticks: 'x' is not a number"),
+        (FINE + "\n0.2,5,1_0\n", "ticks.csv, line 5, column right_ticks: '1_0' is not a number"),
+        (FINE + "0.2,5,٣\n", "ticks.csv, line 4, column right_ticks: '٣' is not a number"),
+        (FINE + "0.2,5,6\0\n", "ticks.csv, line 4, column right_ticks: '6\\x00' is not a number"),
+        (FINE + "noon,5,6\n", "ticks.csv, line 4, column t_s: 'noon' is not a number"),
+        (FINE + '"0.2,5",6\n', "ticks.csv, line 4, column t_s: '0.2,5' is not a number"),
+        (FINE + "0.2,5\n", "ticks.csv, line 4: 2 cells under 3 columns"),
+        (FINE + "0.2,5,6,7\n", "ticks.csv, line 4: 4 cells under 3 columns"),
+        (TICKS + "0,1\n1,2\n", "ticks.csv, line 2: 2 cells under 3 columns"),
+        (FINE + "0.2,,6\n", "ticks.csv, line 4, column left_ticks: it is empty; write nan where"),
+        (FINE + '0.2,5,""\n', "ticks.csv, line 4, column right_ticks: it is empty"),
+        (FINE + "0.2,5,", "ticks.csv, line 4, column right_ticks: it is empty"),
+        (FINE + ",5,6\n", "ticks.csv, line 4, column t_s: it is empty; every row needs its time"),
+        (FINE + "nan,5,6\n", "ticks.csv, line 4, column t_s: 'nan' is not a time"),
+        (FINE + "-inf,5,6\n", "ticks.csv, line 4, column t_s: '-inf' is not a time"),
+        (FINE + "0.2," + "y" * 999 + ",6\n", f"ticks.csv, line 4, column left_ticks: '{'y' * 40}."),
+        (FINE.encode() + b"0.2,\xe9,6\n", "ticks.csv, line 4: byte 0xe9 is not UTF-8 text"),
+        (FINE.encode("utf-16"), "ticks.csv, line 1: byte 0xff is not UTF-8 text"),
+    ],
+)
+def test_wrong_ticks(tmp_path: Path, text: str | bytes, said: str) -> None:
+    assert complaint(folder(tmp_path, text)).startswith(said)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("", "reference.csv is empty; its first line must be t_s,x_m,y_m,yaw_rad"),
+        (REFERENCE, "reference.csv has a header and no rows"),
+        ("t_s,x_m,y_m\n0,1,2\n", "reference.csv, line 1: no column yaw_rad"),
+        (REFERENCE + "0,1,2,3\n,1,2,3\n", "reference.csv, line 3, column t_s: it is empty"),
+        (REFERENCE + "0,1,inf,3\n", "reference.csv, line 2, column y_m: 'inf' cannot be measured"),
+        (REFERENCE + "0,1,,north\n", "reference.csv, line 2, column yaw_rad: 'north' is not a nu"),
+        (
+            "t_s,x_m,y_m,yaw_rad,sigma_xy\n0,1,2,3,4\n",
+            "reference.csv, line 1: unknown column sigma_xy; there are sigma_xy_m and",
+        ),
+        (
+            "t_s,x_m,y_m,yaw_rad,sigma_xy_m\n0,1,2,3,1\n0,1,2,3,-1\n",
+            "reference.csv, line 3, column sigma_xy_m: '-1' must not be less than 0",
+        ),
+    ],
+)
+def test_wrong_references(tmp_path: Path, text: str, said: str) -> None:
+    assert complaint(folder(tmp_path, FINE, text)).startswith(said)
+
+
+def test_folders_and_dead_links_in_the_place_of_files(tmp_path: Path) -> None:
+    (folder(tmp_path) / "reference.csv").symlink_to("nowhere")
+    assert complaint(tmp_path) == "reference.csv: there is no such file"
+    (tmp_path / "reference.csv").unlink()
+    (tmp_path / "reference.csv").mkdir()
+    assert complaint(tmp_path) == "reference.csv is a folder; it must be a CSV file"
+
+
+def test_what_is_too_large_is_refused_before_it_is_read(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder(tmp_path, FINE * 10)
+    monkeypatch.setattr(table, "MAX_ROWS", 20)
+    assert complaint(tmp_path).startswith("ticks.csv has more than 20 rows or")
+    folder(tmp_path, "t_s," + "a" * 2**21)
+    assert complaint(tmp_path).startswith("ticks.csv, line 1 is longer than 1,048,576 bytes")
+    folder(tmp_path, TICKS[:-1] + "," + ",".join(f"c{i}" for i in range(300)) + "\n")
+    assert complaint(tmp_path).startswith("ticks.csv, line 1: 303 columns are more than 256")
+    (tmp_path / "ticks.csv").unlink()
+    (tmp_path / "ticks.csv").symlink_to("/dev/zero")
+    assert complaint(tmp_path).startswith("ticks.csv, line 1 is longer than")
+
+
+INT64 = st.integers(-(2**63), 2**63 - 1)
+FINITE = st.floats(allow_nan=False, allow_infinity=False)
+ROWS = st.lists(st.tuples(FINITE, INT64, FINITE, st.one_of(st.none(), FINITE)), min_size=1)
+
+
+@settings(
+    max_examples=200,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+@given(rows=ROWS, order=st.permutations(["t_s", "left_ticks", "right_ticks", "current"]))
+def test_any_finite_numbers_are_read_back_exactly(
+    tmp_path: Path, rows: list[tuple[float, int, float, float | None]], order: list[str]
+) -> None:
+    names = ["t_s", "left_ticks", "right_ticks", "current"]
+    text = io.StringIO()
+    writer = csv.DictWriter(text, order)
+    writer.writeheader()
+    writer.writerows(dict(zip(names, row, strict=True)) for row in rows)
+    ticks = read_run_folder(folder(tmp_path, text.getvalue())).ticks
+    columns = [list(column) for column in zip(*rows, strict=True)]
+    assert ticks.time.tolist() == columns[0]
+    assert ticks.left.dtype == np.int64
+    assert ticks.left.tolist() == columns[1], "integers are exact to their last digit"
+    assert ticks.right.tolist() == columns[2]
+    expected = [np.nan if value is None else value for value in columns[3]]
+    np.testing.assert_array_equal(ticks.channels["current"], expected)
+
+
+@settings(
+    max_examples=200,
+    deadline=None,
+    suppress_health_check=[HealthCheck.function_scoped_fixture],
+)
+@given(st.binary(max_size=60), st.text("0123456789,.\n\r \"-e;nai'", max_size=60))
+def test_whatever_is_in_the_file_nothing_but_an_input_error(
+    tmp_path: Path, raw: bytes, text: str
+) -> None:
+    for content in (raw, TICKS.encode() + raw, TICKS.encode() + text.encode()):
+        try:
+            run = read_run_folder(folder(tmp_path, content))
+        except InputError as error:
+            said = str(error)
+        else:
+            said = f"{tmp_path}: all {'' if np.isfinite(run.ticks.time).all() else 'not '}well"
+        assert str(tmp_path) in said
+        assert "not well" not in said
+
+
+def test_a_million_rows_in_little_time(tmp_path: Path) -> None:
+    rows = "".join(f"{0.001 * i:.3f},{i},{2 * i}\n" for i in range(1_000_000))
+    folder(tmp_path, TICKS + rows)
+    began = time.process_time()
+    ticks = read_run_folder(tmp_path).ticks
+    took = time.process_time() - began
+    assert ticks.rows == 1_000_000
+    assert ticks.right[-1] == 1_999_998
+    assert took < 4.0, "about a second on a machine that does nothing else"
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may read everything")
+def test_no_permission(tmp_path: Path) -> None:
+    (folder(tmp_path) / "ticks.csv").chmod(0)
+    assert complaint(tmp_path) == "ticks.csv cannot be read: Permission denied"
