@@ -40,6 +40,8 @@ if TYPE_CHECKING:
 
     from werrimbi_odom.ros.player import Answers
 
+TOPICS = ("joint_states", "set_pose", "odom", "~/pieces")
+
 RECORDING = Path(__file__).parent / "recordings" / "square"
 
 
@@ -129,12 +131,14 @@ def measured_at(reference: Reference, time: float) -> Pose:
 
 
 @contextmanager
-def _node(robot_file: RobotFile, logs: str) -> Iterator[subprocess.Popen[bytes]]:
+def _node(robot_file: RobotFile, logs: str, private: str) -> Iterator[subprocess.Popen[bytes]]:
     command = [
         *(sys.executable, "-m", "werrimbi_odom.ros.odom_node", "--ros-args"),
         *("--params-file", str(robot_file.path)),
         *("-p", "input_type:=joint_state", "-p", "position_unit:=ticks"),
     ]
+    for topic in TOPICS:
+        command += ["-r", f"{topic}:={private}/{topic.removeprefix('~/')}"]
     if "*" not in robot_file.node:
         command += ["-r", f"__node:={robot_file.node.strip('/').rpartition('/')[2]}"]
     node = subprocess.Popen(command, env={**os.environ, "ROS_LOG_DIR": logs})
@@ -149,8 +153,9 @@ def _node(robot_file: RobotFile, logs: str) -> Iterator[subprocess.Popen[bytes]]
 
 
 def _through_the_node(robot_file: RobotFile, run: Run, start: Pose) -> Answers:
-    # A domain of our own: a robot on the same network must not hear these ticks.
+    # A domain and topics of our own: no robot, nor another demo, may hear these ticks.
     os.environ["ROS_DOMAIN_ID"] = str(random.randint(1, 100))
+    private = f"/demo_{os.getpid()}"
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     import rclpy
 
@@ -159,10 +164,9 @@ def _through_the_node(robot_file: RobotFile, run: Run, start: Pose) -> Answers:
     values = robot_file.values
     with tempfile.TemporaryDirectory() as logs:
         os.environ["ROS_LOG_DIR"] = logs
-        with _node(robot_file, logs) as node:
+        with _node(robot_file, logs, private) as node:
             rclpy.init()
-            name = "odom_node" if "*" in robot_file.node else robot_file.node.rpartition("/")[2]
-            player = Player(name)
+            player = Player(private)
             try:
                 if not player.wait_for_node(20.0, lambda: node.poll() is None):
                     raise InputError("odom_node did not start; its own words are above")

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import logging
 import shutil
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -36,11 +37,16 @@ def save_png(figure: go.Figure, path: Path, *, scale: float = 1.5) -> bool:
 
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(path.stem + ".part.png")
-    kaleido.write_fig_sync(
-        figure,
-        path=temporary,
-        opts={"format": "png", "scale": scale},
-        kopts={"path": browser},
-    )
+    # Its browser's first words may be cut short; it logs that with a traceback and goes on well.
+    logging.disable(logging.CRITICAL)
+    try:
+        kaleido.write_fig_sync(
+            figure,
+            path=temporary,
+            opts={"format": "png", "scale": scale},
+            kopts={"path": browser},
+        )
+    finally:
+        logging.disable(logging.NOTSET)
     temporary.replace(path)
     return True

@@ -22,8 +22,8 @@ from visualization_msgs.msg import Marker, MarkerArray
 
 Floats = NDArray[np.float64]
 
-IN_FLIGHT = 40
-"""Messages sent ahead of the node's answers: enough to keep it busy, too few to be dropped."""
+IN_FLIGHT = 8
+"""Messages sent ahead of the node's answers: enough to keep it busy, fewer than it queues."""
 PATIENCE = 0.5
 """Seconds without an answer after which the player goes on (the node refused a message)."""
 
@@ -48,17 +48,17 @@ class Answers:
 
 
 class Player(Node):  # type: ignore[misc]
-    """Publishes JointState on `joint_states`; listens to `odom` and the node's `~/pieces`."""
+    """Publishes `joint_states`; listens to `odom` and `pieces`; all under one namespace."""
 
-    def __init__(self, node_name: str = "odom_node") -> None:
-        super().__init__("werrimbi_player")
+    def __init__(self, namespace: str) -> None:
+        super().__init__("werrimbi_player", namespace=namespace)
         deep = QoSProfile(depth=1000, reliability=ReliabilityPolicy.RELIABLE)
         self.answers = Answers()
         self.offset = 0.0
         self._ticks = self.create_publisher(JointState, "joint_states", deep)
         self._pose = self.create_publisher(PoseWithCovarianceStamped, "set_pose", 10)
         self.create_subscription(Odometry, "odom", self._on_odometry, deep)
-        self.create_subscription(MarkerArray, f"{node_name}/pieces", self._on_pieces, deep)
+        self.create_subscription(MarkerArray, "pieces", self._on_pieces, deep)
 
     def wait_for_node(self, seconds: float, alive: Callable[[], bool]) -> bool:
         """Wait until the node listens to ticks and poses; False when it does not come up."""
@@ -92,18 +92,25 @@ class Player(Node):  # type: ignore[misc]
             [m, m, rad], in `frame`.
         """
         # A stamp of zero means "not stamped" to ROS, so a record that begins at zero begins later.
-        self.offset = max(0.0, 1.0 - float(time[0]))
-        self._set_pose(start, frame, float(time[0]) + self.offset)
+        self.offset = max(0.0, 2.0 - float(time[0]))
+        names = [*left_names, *right_names]
+
+        def tick(stamp: float, left_count: float, right_count: float) -> None:
+            message = JointState()
+            message.header.stamp = stamp_of(stamp + self.offset)
+            message.name = names
+            message.position = [left_count] * len(left_names) + [right_count] * len(right_names)
+            self._ticks.publish(message)
+
+        first = float(time[0]), float(left[0]), float(right[0])
+        self._shake_hands(tick, *first)
+        self._set_pose(start, frame, first[0] + self.offset)
         last_answer, answered = clock.monotonic(), 0
-        base = 0  # messages that will get no answer: the first, and those refused
+        base = 0  # messages that got no answer: refused ones
         for row, (stamp, left_count, right_count) in enumerate(
             zip(time.tolist(), left.tolist(), right.tolist(), strict=True)
         ):
-            message = JointState()
-            message.header.stamp = stamp_of(stamp + self.offset)
-            message.name = [*left_names, *right_names]
-            message.position = [left_count] * len(left_names) + [right_count] * len(right_names)
-            self._ticks.publish(message)
+            tick(stamp, left_count, right_count)
             rclpy.spin_once(self, timeout_sec=0.0)
             while row - base - len(self.answers.time) > IN_FLIGHT:
                 rclpy.spin_once(self, timeout_sec=0.01)
@@ -113,6 +120,23 @@ class Player(Node):  # type: ignore[misc]
                     base, last_answer = row - answered, clock.monotonic()
         self._listen_out()
         return self.answers
+
+    def _shake_hands(
+        self, tick: Callable[[float, float, float], None], stamp: float, left: float, right: float
+    ) -> None:
+        """Send the first reading, stamped ever a little later, until the node answers.
+
+        Until then nothing says that DDS has connected both ways; the robot does not move in it.
+        """
+        for attempt in range(2000):
+            tick(stamp - 0.9 + 4e-4 * attempt, left, right)
+            rclpy.spin_once(self, timeout_sec=0.01)
+            if self.answers.time:
+                break
+        until = clock.monotonic() + 0.2
+        while clock.monotonic() < until:  # what is still under way
+            rclpy.spin_once(self, timeout_sec=0.02)
+        self.answers = Answers()
 
     def _set_pose(self, start: tuple[float, float, float], frame: str, stamp: float) -> None:
         message = PoseWithCovarianceStamped()
