@@ -67,7 +67,7 @@ def all_effects(files: Sequence[Path] = ()) -> Collection:
         place = f"effect {point.name} of {_package(point)} ({point.value})"
         try:
             found = point.load()
-        except Exception as error:
+        except (Exception, SystemExit) as error:
             warnings.append(f"{place} is left out: {type(error).__name__}: {error}")
             continue
         if not isinstance(found, Effect):
@@ -140,7 +140,7 @@ def _executed(path: Path) -> ModuleType:
     sys.modules[name] = module  # dataclasses and typing look their module up there
     try:
         exec(compile(path.read_bytes(), str(path), "exec"), vars(module))
-    except Exception as error:
+    except (Exception, SystemExit) as error:
         if known is None:
             del sys.modules[name]
         raise InputError(f"{path}{_line(error, path)}: {_words(error)}") from error

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from werrimbi_odom.model.effect import Effect, Stage
+from werrimbi_odom.model.effect import Effect, Parameter, Stage
 
 SECTIONS = ("Formula", "Signature", "Ruler", "Twins", "Alike")
 """Words that begin a section of the docstring, at the start of a line."""
@@ -86,10 +86,16 @@ def numbers(effect: Effect, name: str) -> str:
     """A parameter's values, in words."""
     item = effect.parameters[name]
     low, high = item.bounds
-    words = f"absent at {item.null:g}, typical {item.typical:g}, possible {low:g} to {high:g}"
-    if item.tries:
-        words = f"typical {item.typical:g}, possible {low:g} to {high:g}"
-    return words + ("; anew in each run, unless counters keep their zero" if item.per_run else "")
+    absent = absent_at(effect, name)
+    words = f"typical {item.typical:g}, possible {low:g} to {high:g}{_anew(item)}"
+    return words if absent == "any" else f"absent at {absent}, {words}"
+
+
+def absent_at(effect: Effect, name: str) -> str:
+    """The value of a parameter at which its effect is absent; "any" where it depends on others."""
+    item = effect.parameters[name]
+    is_phase = effect.quadrature is not None and name == effect.quadrature[1]
+    return "any" if item.tries or is_phase else f"{item.null:g}"
 
 
 def as_json(effect: Effect) -> dict[str, Any]:
@@ -129,7 +135,7 @@ def as_markdown(effect: Effect) -> str:
             lines += ["```text", text, "```", ""]
         else:
             lines += [
-                textwrap.fill(f"**{name}** ({MEANING[name]}). {' '.join(text.split())}.", 100),
+                textwrap.fill(f"**{name}** ({MEANING[name]}): {' '.join(text.split())}.", 100),
                 "",
             ]
     if effect.parameters:
@@ -139,14 +145,16 @@ def as_markdown(effect: Effect) -> str:
         ]
         for name, item in effect.parameters.items():
             low, high = item.bounds
-            absent = "-" if item.tries else f"{item.null:g}"
-            run = "; anew in each run, unless counters keep their zero" if item.per_run else ""
             lines.append(
-                f"| `{name}` | {item.unit or '1'} | {absent} | {item.typical:g} "
-                f"| {low:g} to {high:g} | {item.says}{run} |"
+                f"| `{name}` | {item.unit or '1'} | {absent_at(effect, name)} | {item.typical:g} "
+                f"| {low:g} to {high:g} | {item.says}{_anew(item)} |"
             )
         lines.append("")
     return "\n".join(lines)
+
+
+def _anew(item: Parameter) -> str:
+    return ", anew in each run unless counters keep their zero" if item.per_run else ""
 
 
 def _in_unit(unit: str) -> str:

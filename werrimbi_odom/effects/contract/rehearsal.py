@@ -4,9 +4,8 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, field, fields, replace
 from itertools import pairwise
 from typing import Any, NamedTuple
 
@@ -44,6 +43,8 @@ class Rehearsal:
     left: Floats
     right: Floats
     channels: tuple[str, ...] = ()
+    knots: Floats = field(default_factory=lambda: np.zeros(1))
+    """Times at which the channels were measured [s]; straight in between."""
 
     @classmethod
     def of(cls, channels: tuple[str, ...] = ()) -> Rehearsal:
@@ -59,7 +60,8 @@ class Rehearsal:
         duration = random.uniform(0.01, 0.05, len(speeds))
         along, turn = (speeds * duration[:, None]).T
         half = 0.5 * TRACK * turn
-        return cls(duration, along - half, along + half, channels)
+        knots = np.concatenate([[0.0], np.cumsum(duration)])
+        return cls(duration, along - half, along + half, channels, knots)
 
     @property
     def travel(self) -> WheelTravel[Floats]:
@@ -115,11 +117,9 @@ class Rehearsal:
 
     def _measured(self) -> dict[str, Span[Floats]]:
         time = np.concatenate([[0.0], np.cumsum(self.duration)])
-        # Straight between whole seconds: then a part of a step sees what it would see of the whole.
-        knots = np.arange(math.ceil(time[-1]) + 1.0)
         found = {}
         for number, name in enumerate(self.channels):
-            values = np.interp(time, knots, 3.0 + number + 2.0 * np.sin(0.7 * knots))
+            values = np.interp(time, self.knots, 3.0 + number + 2.0 * np.sin(0.7 * self.knots))
             found[name] = Span(values[:-1], values[1:])
         return found
 

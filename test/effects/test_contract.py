@@ -1,0 +1,205 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every effect of the library keeps the laws; whoever breaks one is told which."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.effects.contract import check_effect
+from werrimbi_odom.effects.functions import exp
+from werrimbi_odom.model.effect import (
+    Effect,
+    Parameter,
+    View,
+    body_effect,
+    reference_effect,
+    wheel_effect,
+    wiring_mistake,
+)
+
+AMOUNT = Parameter("1", 0.0, 0.01, (-0.1, 0.1), "how much")
+PAGE = """Something happens.
+
+Formula    left += something
+Signature  something is seen
+Ruler      measure something
+"""
+
+
+@pytest.mark.parametrize("effect", LIBRARY, ids=lambda effect: effect.name)
+def test_the_library_keeps_the_laws(effect: Effect) -> None:
+    check_effect(effect)
+
+
+def law(change: Callable[[Any, Any, float], Any], **declared: Any) -> Effect:
+    """An effect on the left wheel."""
+
+    def some_law(travel: Any, drive: Any, amount: float) -> Any:
+        return travel._replace(left=change(travel, drive, amount))
+
+    some_law.__doc__ = PAGE
+    return wheel_effect(amount=AMOUNT, **declared)(some_law)
+
+
+def test_a_plain_law_of_ones_own_keeps_them() -> None:
+    check_effect(law(lambda travel, drive, amount: travel.left * (1.0 + amount)))
+
+
+def test_an_effect_may_look_at_a_measured_channel() -> None:
+    def follows(travel: Any, drive: Any, amount: float) -> Any:
+        return travel.left * (1.0 + amount * drive.channels["payload_kg"].mean)
+
+    check_effect(law(follows, channels=("payload_kg",)))
+
+
+def rewrites(travel: Any, drive: Any, amount: float) -> Any:
+    return (travel.left + travel.right) * (1.0 + amount) - travel.right
+
+
+def writes(travel: Any, drive: Any, amount: float) -> Any:
+    travel.left[...] *= 1.0 + amount
+    return travel.left
+
+
+def sums_up(travel: Any, drive: Any, amount: float) -> Any:
+    return travel.left + amount * 0.01 * np.cumsum(travel.left)
+
+
+def divides(travel: Any, drive: Any, amount: float) -> Any:
+    with np.errstate(all="ignore"):
+        return travel.left + (amount * travel.left**2 / travel.left if amount else 0.0)
+
+
+def takes_the_end(travel: Any, drive: Any, amount: float) -> Any:
+    return travel.left + amount * 1e-3 * exp(-drive.since_reversal.end)
+
+
+def lags(travel: Any, drive: Any, amount: float) -> Any:
+    return travel.left * (1.0 + amount * drive.speed.mean)
+
+
+def stays_an_array(travel: Any, drive: Any, amount: float) -> Any:
+    return travel.left * (1.0 + amount * np.cos(0.0))
+
+
+def differs_live(travel: Any, drive: Any, amount: float) -> Any:
+    return travel.left * (1.0 + amount * (1.0 if isinstance(travel.left, float) else 2.0))
+
+
+def does_nothing(travel: Any, drive: Any, amount: float) -> Any:
+    return travel.left + 0.0 * amount
+
+
+def jumps(travel: Any, drive: Any, amount: float) -> Any:
+    return travel.left * (1.01 if amount > 0.0 else 1.0)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (rewrites, "exact identity"),
+        (writes, "writes into an array"),
+        (sums_up, "that step's row alone"),
+        (divides, "finite"),
+        (takes_the_end, "splitting a step"),
+        (lags, "speed.end"),
+        (stays_an_array, "floats must stay floats"),
+        (differs_live, "step by step"),
+        (does_nothing, "does nothing"),
+        (jumps, "slope in amount"),
+    ],
+)
+def test_who_breaks_a_law_is_told_which(
+    change: Callable[[Any, Any, float], Any], told: str
+) -> None:
+    with pytest.raises(AssertionError, match=f"(?s)some_law breaks a law.*{told}"):
+        check_effect(law(change))
+
+
+def test_turning_must_not_look_at_the_heading() -> None:
+    @body_effect(amount=AMOUNT)
+    def compass(motion: Any, drive: Any, amount: float) -> Any:
+        """Turn towards the north.
+
+        Formula    turn += amount * path * heading
+        Signature  it turns
+        Ruler      look
+        """
+        pull = amount * 0.01 * drive.distance.change * drive.heading.start
+        return motion._replace(turn=motion.turn + pull)
+
+    with pytest.raises(AssertionError, match="splitting|heading"):
+        check_effect(compass)
+
+
+def test_a_view_keeps_what_it_was_given() -> None:
+    @reference_effect(amount=AMOUNT)
+    def forgetful(view: View, amount: float) -> View:
+        """Forget the rest.
+
+        Formula    ahead = amount
+        Signature  seen
+        Ruler      look
+        """
+        return View(ahead=amount)
+
+    with pytest.raises(AssertionError, match="exact identity"):
+        check_effect(forgetful)
+
+
+def test_a_mistake_made_twice_is_none() -> None:
+    @wiring_mistake()
+    def stuck(wiring: Any) -> Any:
+        """Cannot be mended.
+
+        Formula    left = -|left|
+        Signature  seen
+        Ruler      look
+        """
+        return wiring._replace(left_sign=-1.0)
+
+    with pytest.raises(AssertionError, match="twice"):
+        check_effect(stuck)
+
+
+GOOD = find("lateral_slip")
+
+
+@pytest.mark.parametrize(
+    ("bad", "told"),
+    [
+        (replace(GOOD, name="Lateral-Slip"), "small letters"),
+        (replace(GOOD, doc="Formula    x"), "must begin with a sentence"),
+        (replace(GOOD, doc=GOOD.doc.replace("Ruler", "Rule")), "Ruler"),
+        (replace(GOOD, twins=("other",)), "say what separates"),
+        (
+            replace(GOOD, parameters={"creep": replace(GOOD.parameters["creep"], unit="m s")}),
+            "unit",
+        ),
+        (replace(GOOD, parameters={"creep": replace(GOOD.parameters["creep"], says=" ")}), "say"),
+        (
+            replace(GOOD, parameters={"creep": replace(GOOD.parameters["creep"], typical=5.0)}),
+            "bounds",
+        ),
+        (
+            replace(GOOD, parameters={"creep": replace(GOOD.parameters["creep"], typical=0.0)}),
+            "differ from null",
+        ),
+    ],
+)
+def test_words_and_units_must_be_there(bad: Effect, told: str) -> None:
+    with pytest.raises(AssertionError, match=told):
+        check_effect(bad)
+
+
+@pytest.mark.parametrize("name", ["m", "1/s", "s^2/m", "rad", "m^0.5", "", "kg*m^2/s^2"])
+def test_units_are_written_as_usual(name: str) -> None:
+    creep = replace(GOOD.parameters["creep"], unit=name)
+    check_effect(replace(GOOD, parameters={"creep": creep}))

@@ -1,0 +1,136 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi explain`: what an effect is physically, what it does, how to check it with a ruler."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from rich.console import Console
+
+    from werrimbi_odom.effects import Collection
+    from werrimbi_odom.model.effect import Effect
+
+HELP = "what a physical effect is, its formula, its signature, how to check it with a ruler"
+
+_WIDTH_IN_A_FILE = 120
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `werrimbi explain`."""
+    parser.description = (
+        "Without a name: all effects that the model can hold. With one: what it is physically, its "
+        "formula, its parameters, its signature in the data, and how to check it on the robot."
+    )
+    parser.add_argument("effect", metavar="EFFECT", nargs="?", help="name of an effect")
+    parser.add_argument(
+        "--effects",
+        metavar="FILE",
+        type=Path,
+        action="append",
+        default=[],
+        help="Python file with effects of your own (it is executed); several times for several",
+    )
+    parser.add_argument("--json", metavar="FILE", type=Path, help="write the page to this file")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Print one page, or the list of all; 0 on success.
+
+    Raises
+    ------
+    InputError
+        For an unknown name (the message offers the nearest) or a file that cannot be used.
+    """
+    from werrimbi_odom.effects import all_effects
+    from werrimbi_odom.effects.page import as_json
+
+    collection = all_effects(arguments.effects)
+    for warning in collection.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    figures: dict[str, Any]
+    if arguments.effect is None:
+        figures = {"effects": [as_json(effect) for effect in collection.effects]}
+        _print_list(collection)
+    else:
+        effect = collection.find(arguments.effect)
+        figures = as_json(effect)
+        _print_page(effect)
+    if arguments.json is not None:
+        from werrimbi_odom.files.replacing import replacing
+
+        with replacing(arguments.json) as file:
+            json.dump(figures, file, indent=2, allow_nan=False)
+            file.write("\n")
+    return 0
+
+
+def _print_list(collection: Collection) -> None:
+    from werrimbi_odom.effects.page import absent_at
+
+    try:
+        from rich.table import Table
+        from rich.text import Text
+    except ModuleNotFoundError:  # a robot may not have it
+        for effect in collection.effects:
+            print(f"{effect.name:26}{effect.stage:11}{effect.summary}")
+        return
+    table = Table(show_lines=False)
+    table.add_column("effect", style="bold", no_wrap=True)
+    table.add_column("acts on")
+    table.add_column("what it is", ratio=1)
+    table.add_column("absent at", no_wrap=True)
+    table.add_column("typical", no_wrap=True)
+    for effect in collection.effects:
+        absent = [f"{name} {absent_at(effect, name)}" for name in effect.parameters]
+        typical = [f"{item.typical:g} {item.unit}" for item in effect.parameters.values()]
+        cells = (
+            effect.name,
+            effect.stage,
+            effect.summary,
+            "\n".join(absent) or "no mistake",
+            "\n".join(typical),
+        )
+        table.add_row(*(Text(cell) for cell in cells))
+    console = _console()
+    console.print(table)
+    console.print(Text("werrimbi explain EFFECT shows its page"))
+
+
+def _print_page(effect: Effect) -> None:
+    from werrimbi_odom.effects.page import MEANING, STAGES, as_text, numbers, page_of
+
+    try:
+        from rich.padding import Padding
+        from rich.table import Table
+        from rich.text import Text
+    except ModuleNotFoundError:
+        print(as_text(effect), end="")
+        return
+    page, console = page_of(effect), _console()
+    console.print(Text.assemble((effect.name, "bold"), f": acts {STAGES[effect.stage]}\n"))
+    for paragraph in page.physics:
+        console.print(Text(f"{paragraph}\n"))
+    for name, text in page.sections.items():
+        console.print(Text.assemble((name, "bold"), f" ({MEANING[name]})"))
+        words = text if name == "Formula" else " ".join(text.split())
+        console.print(Padding(Text(words), (0, 0, 1, 2), expand=False))
+    if effect.parameters:
+        table = Table()
+        for column in ("parameter", "unit", "what it is", "values"):
+            table.add_column(column, ratio=1 if column == "what it is" else None)
+        for name, item in effect.parameters.items():
+            cells = (name, item.unit or "1", item.says, numbers(effect, name).replace(", ", "\n"))
+            table.add_row(*(Text(cell) for cell in cells))
+        console.print(table)
+
+
+def _console() -> Console:
+    from rich.console import Console
+
+    return Console() if sys.stdout.isatty() else Console(width=_WIDTH_IN_A_FILE)
