@@ -40,6 +40,9 @@ if TYPE_CHECKING:
 
     from werrimbi_odom.ros.player import Answers
 
+EXPLAINED = 3.4
+"""Deviation [σ] that noise explains: 99 % of chi with three degrees of freedom."""
+
 TOPICS = ("joint_states", "set_pose", "odom", "~/pieces")
 
 RECORDING = Path(__file__).parent / "recordings" / "square"
@@ -245,7 +248,7 @@ def _in_words(ending: Ending) -> str:
     deviation = ending.deviation
     if deviation is None:
         return "Nothing was measured, so nothing can be said about the error."
-    if deviation < 3.4:  # 99 % of chi with 3 degrees of freedom
+    if deviation <= EXPLAINED:
         return (
             f"The end lies {deviation:.1f} σ from the truth, all directions together: "
             "the covariance promised just that."
@@ -268,6 +271,7 @@ def _draw(run: Run, start: Pose, answers: Answers, ending: Ending, out: Path) ->
         None if reference is None else reference.y,
         title=f"{run.name}: odometry of odom_node with its 95 % ellipses",
         subtitle="" if deviation is None else f"end {deviation:.1f} σ from what was measured",
+        magnified=1.0 if deviation is not None and deviation > EXPLAINED else None,
     )
     figure = path_figure(drawing)
     save_page(figure, out / "path.html")

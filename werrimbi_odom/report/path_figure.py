@@ -34,6 +34,8 @@ class PathDrawing:
     reference_y: Floats | None = None
     title: str = ""
     subtitle: str = ""
+    magnified: float | None = None
+    """How many times larger than they are to draw the ellipses; None: so that they are seen."""
 
 
 def ellipse(
@@ -69,7 +71,7 @@ def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> go.Figure:
     import plotly.graph_objects as go
 
     figure = go.Figure()
-    magnified = magnification(drawing)
+    magnified = drawing.magnified or magnification(drawing)
     name = "95 % ellipse" if magnified == 1.0 else f"95 % ellipse, drawn {magnified:g} × larger"
     if drawing.reference_x is not None and drawing.reference_y is not None:
         figure.add_scatter(
