@@ -160,15 +160,17 @@ class JointStates:
 class Pair:
     """Two topics, one for each wheel, paired by arrival (std_msgs/Int32 or Int64).
 
-    Each wheel's newest count waits for the other's; a count that is overtaken by the next of its
-    own wheel is dropped, and its motion is in the next one.
+    A count is paired with the nearest of the other wheel within the window: with the one that
+    waits, or, when the next one comes closer than that did, with this. So a pairing that began one
+    message off, after a lost one, mends itself. What finds no partner is dropped, and its motion is
+    in the next one.
     """
 
     def __init__(self, wiring: Wiring, message_type: type) -> None:
         self._take, self._health = wiring.take, wiring.health
         self._stamps = ArrivalStamps(wiring.node)
         self._window = int(1e9 * float(wiring.values["pairing_window"]))  # type: ignore[arg-type]
-        self._waiting: list[tuple[int, int] | None] = [None, None]
+        self._newest = [_Count(), _Count()]
         self._unpaired = 0
         for side, topic in enumerate(topics_of(wiring.values)):
             _subscribe(wiring, message_type, topic, self._listener(side))
@@ -183,17 +185,31 @@ class Pair:
 
         return arrived
 
-    def _arrived(self, side: int, count: int, info: Info) -> None:
+    def _arrived(self, side: int, value: int, info: Info) -> None:
         self._health.hear(side)
-        arrival = arrival_of(info)
-        other = self._waiting[1 - side]
-        if other is not None and abs(arrival - other[0]) <= self._window:
-            self._waiting = [None, None]
-            left, right = (count, other[1]) if side == 0 else (other[1], count)
-            self._take(self._stamps.of(info), left, right)
-            return
-        self._unpaired += self._waiting[side] is not None
-        self._waiting[side] = (arrival, count)
+        self._unpaired += self._newest[side].waits
+        count = self._newest[side] = _Count(value, arrival_of(info))
+        other = self._newest[1 - side]
+        apart = abs(count.arrival - other.arrival)
+        if apart <= self._window and apart < other.apart:
+            count.apart = other.apart = apart
+            left, right = self._newest
+            self._take(self._stamps.of(info), left.value, right.value)
+
+
+@dataclass(slots=True)
+class _Count:
+    """A count of one wheel, and how far in time its partner was."""
+
+    value: int = 0
+    arrival: int = -(10**18)
+    """[ns]"""
+    apart: float = math.inf
+    """[ns]; infinite while it has none."""
+
+    @property
+    def waits(self) -> bool:
+        return self.apart == math.inf and self.arrival > 0
 
 
 class Ticks:

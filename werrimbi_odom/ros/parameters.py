@@ -91,7 +91,11 @@ def checked(given: Mapping[str, object], node_name: str = "/odom_node") -> dict[
         values.update(dict.fromkeys(_TICKS, VIRTUAL_TICKS_PER_REVOLUTION))
         if values["encoder_bits"]:
             wrong.append("encoder_bits needs " + " and ".join(_TICKS))
-    missing = [item.name for item in table.PARAMETERS if item.name not in values | dict(given)]
+    missing = [
+        f"{item.name} ({item.unit})"
+        for item in table.PARAMETERS
+        if item.name not in values and item.name not in given
+    ]
     if missing:
         wrong.append(
             f"missing: {', '.join(missing)}; write them under ros__parameters of "
