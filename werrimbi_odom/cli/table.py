@@ -17,7 +17,12 @@ def print_figures(title: str, rows: Sequence[tuple[str, str]]) -> None:
         width = max(len(name) for name, _ in rows)
         print("\n".join([title, *(f"  {name:{width}}  {value}" for name, value in rows)]))
         return
+
+    class Piped(Console):
+        def on_broken_pipe(self) -> None:
+            raise BrokenPipeError  # rich would end the process; main() does that, with its own code
+
     table = Table(title=Text(title), title_justify="left", show_header=False)
     for name, value in rows:
         table.add_row(Text(name, style="bold"), Text(value))
-    Console().print(table)
+    Piped().print(table)

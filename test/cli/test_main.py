@@ -1,0 +1,170 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The command `werrimbi`: its exit codes, its one line for each mistake, its quick start."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from werrimbi_odom.cli import main as command
+from werrimbi_odom.errors import InputError
+
+ROOT = Path(__file__).parents[2]
+WERRIMBI = [sys.executable, "-m", "werrimbi_odom.cli.main"]
+ENVIRONMENT = {**os.environ, "PYTHONPATH": str(ROOT)}
+SQUARE = ROOT / "werrimbi_odom" / "recordings" / "square"
+
+
+def werrimbi(*words: str | Path) -> subprocess.CompletedProcess[str]:
+    """The real command in a process of its own."""
+    return subprocess.run(
+        [*WERRIMBI, *map(str, words)], capture_output=True, text=True, env=ENVIRONMENT, timeout=60
+    )
+
+
+def test_help_names_every_verb() -> None:
+    done = werrimbi("--help")
+    assert done.returncode == 0
+    assert done.stderr == ""
+    for verb in command.VERBS:
+        assert f"\n    {verb}" in done.stdout
+
+
+@pytest.mark.parametrize("verb", command.VERBS)
+def test_every_verb_has_help(verb: str) -> None:
+    done = werrimbi(verb, "--help")
+    assert done.returncode == 0
+    assert done.stdout.startswith(f"usage: werrimbi {verb}")
+
+
+def test_help_is_quick_and_imports_nothing_heavy() -> None:
+    script = (
+        "import sys; from werrimbi_odom.cli.main import main; code = main(['--help']);"
+        "heavy = {'numpy', 'scipy', 'rich', 'rosbags', 'mujoco', 'plotly', 'rclpy', 'ruamel.yaml'};"
+        "sys.exit(code or ', '.join(sorted(heavy & set(sys.modules))) or 0)"
+    )
+    done = subprocess.run(
+        [sys.executable, "-c", script], capture_output=True, text=True, env=ENVIRONMENT, timeout=60
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_version() -> None:
+    done = werrimbi("--version")
+    assert done.returncode == 0
+    assert done.stdout.startswith("werrimbi_odom ")
+
+
+@pytest.mark.parametrize(
+    ("words", "said"),
+    [
+        ((), "werrimbi: the following arguments are required: VERB (see werrimbi --help)"),
+        (("odm",), "werrimbi: argument VERB: invalid choice: 'odm'"),
+        (("--robot", "x"), "werrimbi: "),
+        (("odom",), "werrimbi odom: the following arguments are required: RUN, --robot, --out"),
+        (("odom", "--rob", "x"), "werrimbi odom: the following arguments are required"),
+        (("odom", "r", "--robot", "x", "--out", "y", "--nonsense"), "werrimbi: unrecognized argu"),
+        (
+            ("odom", "r", "--robot", "none.yaml", "--out", "y"),
+            "werrimbi odom: none.yaml: there is no such file",
+        ),
+    ],
+)
+def test_bad_use_is_one_line_and_exit_2(words: tuple[str, ...], said: str) -> None:
+    done = werrimbi(*words)
+    assert done.returncode == 2
+    assert done.stdout == ""
+    assert done.stderr.startswith(said)
+    assert done.stderr.count("\n") == 1
+
+
+def stand_in(monkeypatch: pytest.MonkeyPatch, error: BaseException | None) -> None:
+    """A verb that ends in an error."""
+
+    def run(arguments: Any) -> int:
+        if error is not None:
+            raise error
+        return 0
+
+    verb = SimpleNamespace(HELP="", add_arguments=lambda parser: None, run=run)
+    monkeypatch.setattr(command, "_module", lambda name: verb)
+
+
+@pytest.mark.parametrize(
+    ("error", "code", "said"),
+    [
+        (None, 0, ""),
+        (InputError("robot.yaml, line 3:\n  no"), 2, "werrimbi odom: robot.yaml, line 3: no\n"),
+        (OSError(28, "No space left on device"), 2, "werrimbi odom: [Errno 28] No space left"),
+        (MemoryError(), 2, "werrimbi odom: this needs more memory than there is"),
+        (KeyboardInterrupt(), 130, ""),
+        (SystemExit(3), 3, ""),
+    ],
+)
+def test_how_a_verb_may_end(
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+    error: BaseException | None,
+    code: int,
+    said: str,
+) -> None:
+    stand_in(monkeypatch, error)
+    assert command.main(["odom"]) == code
+    err = capsys.readouterr().err
+    assert err.startswith(said)
+    assert err.count("\n") == (1 if said else 0)
+
+
+def test_a_bug_is_not_hidden(monkeypatch: pytest.MonkeyPatch) -> None:
+    stand_in(monkeypatch, ZeroDivisionError("ours"))
+    with pytest.raises(ZeroDivisionError):
+        command.main(["odom"])
+
+
+def test_nobody_reads_what_it_prints(tmp_path: Path) -> None:
+    words = ["odom", "--robot", SQUARE / "robot.yaml", SQUARE, "--out", tmp_path / "odom.csv"]
+    read, write = os.pipe()
+    os.close(read)
+    done = subprocess.run(
+        [*WERRIMBI, *map(str, words)],
+        stdout=write,
+        stderr=subprocess.PIPE,
+        env=ENVIRONMENT,
+        timeout=60,
+    )
+    os.close(write)
+    assert (done.returncode, done.stderr) == (141, b"")
+    assert (tmp_path / "odom.csv").exists(), "what was asked for had been done by then"
+
+
+def test_interrupted_in_mid_work_it_leaves_nothing_half_written(tmp_path: Path) -> None:
+    run, out = tmp_path / "run", tmp_path / "out"
+    run.mkdir()
+    out.mkdir()
+    rows = "".join(f"{0.001 * i:.3f},{i},{i}\n" for i in range(400_000))
+    (run / "ticks.csv").write_text("t_s,left_ticks,right_ticks\n" + rows)
+    words = ["odom", "--robot", SQUARE / "robot.yaml", run, "--out", out / "odom.csv"]
+    working = subprocess.Popen(
+        [*WERRIMBI, *map(str, words)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        env=ENVIRONMENT,
+    )
+    limit = time.monotonic() + 60.0
+    while not list(out.glob(".*.part")) and time.monotonic() < limit:
+        assert working.poll() is None, "it ended before it could be interrupted"
+        time.sleep(0.002)
+    working.send_signal(signal.SIGINT)
+    said, err = working.communicate(timeout=60)
+    assert working.returncode == 130
+    assert (said, err) == (b"", b"")
+    assert list(out.iterdir()) == []

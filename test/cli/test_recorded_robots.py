@@ -1,0 +1,80 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi odom` on every recorded robot; the recordings are not ours, so they lie elsewhere."""
+
+from __future__ import annotations
+
+import csv
+import json
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.cli.main import main
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.model.covariance import path_noise
+
+ROOT = Path(__file__).parents[2]
+DATA = Path(os.environ.get("WERRIMBI_DATA", ROOT / ".." / "shared" / "data"))
+RUNS = sorted(path.parent for path in DATA.glob("robots/*/*/ticks.csv"))
+
+
+def columns(path: Path) -> dict[str, np.ndarray]:
+    with path.open() as file:
+        header, *rows = csv.reader(file)
+    table = np.array([[float(cell or "nan") for cell in row] for row in rows])
+    return dict(zip(header, table.T, strict=True))
+
+
+@pytest.mark.skipif(not RUNS, reason=f"no recorded robots in {DATA}/robots (WERRIMBI_DATA)")
+@pytest.mark.parametrize("run", RUNS, ids=[f"{run.parent.name}/{run.name}" for run in RUNS])
+def test_every_recorded_drive(
+    run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, figures = tmp_path / "odom.csv", tmp_path / "figures.json"
+    words = ["odom", "--robot", run.parent / "robot.yaml", run, "--out", out, "--json", figures]
+    assert main([str(word) for word in words]) == 0
+    said = capsys.readouterr()
+    assert said.err == ""
+
+    ticks, reference, rows = (
+        columns(run / "ticks.csv"),
+        columns(run / "reference.csv"),
+        columns(out),
+    )
+    np.testing.assert_array_equal(rows["t_s"], ticks["t_s"])
+    for name in ("x_m", "y_m"):
+        assert rows[name][0] == reference[name][0]
+    if np.isfinite(reference["yaw_rad"]).any():
+        apart = rows["yaw_rad"][0] - reference["yaw_rad"][0]
+        assert np.cos(apart) == pytest.approx(1.0)
+    else:
+        assert "least squares" in " ".join(said.out.replace("│", " ").split())
+    assert np.abs(rows["yaw_rad"]).max() <= np.pi
+
+    covariance = np.array(
+        [
+            [rows["xx"], rows["xy"], rows["xyaw"]],
+            [rows["xy"], rows["yy"], rows["yyaw"]],
+            [rows["xyaw"], rows["yyaw"], rows["yawyaw"]],
+        ]
+    ).transpose(2, 0, 1)
+    spread = np.linalg.eigvalsh(covariance)
+    assert (spread[:, 0] >= -1e-12 * spread[:, -1]).all(), "positive semi-definite at every row"
+    robot = read_robot_file(run.parent / "robot.yaml").robot
+    noise = path_noise(robot, robot.left_tick, robot.right_tick)
+    # An encoder that flickers back by a count within a piece takes that count's noise back.
+    assert (np.diff(rows["yawyaw"]) >= -1.001 * noise.b).all(), "dead reckoning never learns"
+
+    found = json.loads(figures.read_text())
+    assert found["rows"]["messages"] == ticks["t_s"].size
+    assert found["end_error_m"] is not None
+    assert found["distance_m"] > 0.0
+
+
+@pytest.mark.skipif(not RUNS, reason=f"no recorded robots in {DATA}/robots (WERRIMBI_DATA)")
+def test_there_are_four_robots() -> None:
+    """So that a glob that finds nothing does not pass for a test of all."""
+    assert len({run.parent.name for run in RUNS}) >= 4
