@@ -135,7 +135,7 @@ def test_turning_must_not_look_at_the_heading() -> None:
         pull = amount * 0.01 * drive.distance.change * drive.heading.start
         return motion._replace(turn=motion.turn + pull)
 
-    with pytest.raises(AssertionError, match="splitting|heading"):
+    with pytest.raises(AssertionError, match=r"splitting|heading"):
         check_effect(compass)
 
 

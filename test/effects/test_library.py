@@ -93,7 +93,9 @@ def test_mirror_pairs_say_the_same_of_both_sides(pair: str) -> None:
 
 def test_an_unknown_name_is_told_the_nearest() -> None:
     assert find("lateral_slip").name == "lateral_slip"
-    with pytest.raises(InputError, match="unknown effect lateral_slp; the nearest.* lateral_slip "):
+    with pytest.raises(
+        InputError, match=r"unknown effect lateral_slp; the nearest.* lateral_slip "
+    ):
         find("lateral_slp")
     with pytest.raises(InputError, match="nearest known one is"):
         find("")

@@ -23,8 +23,8 @@ def lateral_slip(
 ) -> BodyMotion[Number]:
     """In a curve tyres carry the centripetal force, and rubber does so only by creeping outwards.
 
-    A value beyond 0.1 s is no tyre's. Half a sampling interval, inwards or outwards, betrays a
-    reference that was itself integrated from wheel speeds by plain Euler steps.
+    A value beyond 0.1 s is no tyre's. Half a sampling interval betrays a reference that was itself
+    integrated from wheel speeds by plain Euler steps.
 
     Formula    sideways -= creep * speed * turn                      [m] = [s] * [m/s] * [rad]
     Signature  a sideways error that grows with speed times yaw rate; none on lines or on the spot

@@ -1,0 +1,268 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Each law says what physics says, and each ruler check gives the number that its page promises."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+
+from test.effects.tracks import RADIUS, REST, TRACK, Plan, line, plan, track, turn
+from werrimbi_odom.effects import find
+from werrimbi_odom.model.effect import View, Wiring, view_of, wiring_of
+
+TO_AND_FRO = plan(*line(1.0), *line(-1.0), *line(1.0), *line(-1.0))
+
+
+def circle(speed: float, radius: float, angle: float) -> Plan:
+    """Begun in full motion: what comes before it is not of interest."""
+    time = radius * angle / speed
+    return Plan(np.array([0.0, time]), np.full(2, speed), np.full(2, speed / radius))
+
+
+# -- geometry ---------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_ten_turns_fall_short_by_the_wider_base(sense: float) -> None:
+    end = track(plan(*turn(sense * 20 * math.pi)), find("track_width").using(multiplier=1.001))
+    missing = 20 * math.pi - sense * end.end[2]
+    assert missing == pytest.approx(20 * math.pi * 0.001, rel=2e-3)
+
+
+def test_a_larger_right_wheel_bends_the_way_to_the_left() -> None:
+    end = track(plan(*line(10.0)), find("unequal_wheel_radii").using(ratio=1.001)).end
+    assert 2 * TRACK * end[1] / 10.0**2 == pytest.approx(0.001, rel=1e-3)
+    back = track(plan(*line(10.0), *line(-10.0)), find("unequal_wheel_radii").using(ratio=1.001))
+    assert back.end == pytest.approx((0.0, 0.0, 0.0), abs=1e-9)
+
+
+def test_larger_wheels_go_farther() -> None:
+    end = track(plan(*line(5.0)), find("wheel_radius_scale").using(multiplier=1.02)).end
+    assert end[0] / 5.0 == pytest.approx(1.02)
+
+
+def test_a_spin_in_another_base_than_a_wide_curve() -> None:
+    law = find("turn_dependent_track").using(sharpness=0.01)
+    spin = 20 * math.pi - track(plan(*turn(20 * math.pi)), law).end[2]
+    curve = 20 * math.pi - track(circle(0.5, 2.0, 20 * math.pi), law).end[2]
+    assert spin == pytest.approx(20 * math.pi * 0.01, rel=0.02)
+    assert spin - curve == pytest.approx(20 * math.pi * 0.01, rel=0.1)
+
+
+def test_left_turns_in_another_base_than_right_ones() -> None:
+    law = find("turn_dependent_track").using(sense=0.01)
+    left = 20 * math.pi - track(plan(*turn(20 * math.pi)), law).end[2]
+    right = 20 * math.pi + track(plan(*turn(-20 * math.pi)), law).end[2]
+    assert left - right == pytest.approx(40 * math.pi * 0.01, rel=1e-3)
+    assert track(plan(*line(5.0)), law).end == pytest.approx((5.0, 0.0, 0.0), abs=1e-9)
+
+
+def test_radii_drift_from_the_beginning_to_the_end() -> None:
+    by_way = track(plan(*line(10.0)), find("radius_drift").using(per_metre=1e-3)).end[0]
+    assert by_way == pytest.approx(10.0 + 1e-3 * 10.0**2 / 2, rel=1e-9)
+    waited = plan((100.0, 0.0, 0.0), *line(10.0))  # half of the way is done after 110.75 s
+    law = find("radius_drift").using(per_second=1e-4)
+    assert track(waited, law).end[0] == pytest.approx(10.0 * (1 + 1e-4 * 110.75), rel=1e-6)
+    assert track(plan(*turn(9.0)), find("radius_drift").using(per_metre=1e-3)).end[2] == (
+        pytest.approx(9.0)
+    )
+
+
+# -- eccentric wheels -------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_an_eccentric_wheel_errs_nothing_over_whole_turns(side: str) -> None:
+    law = find(f"eccentric_{side}_wheel").using(amplitude=1e-3, phase=0.4)
+    once = 2 * math.pi * RADIUS
+    for turns in (1, 2, 7):
+        end = track(plan(*line(turns * once, 0.1)), law)
+        assert getattr(end, side)[-1] == pytest.approx(turns * once, abs=1e-12)
+    half = getattr(track(plan(*line(once / 2, 0.1)), law), side)[-1] - once / 2
+    assert half == pytest.approx(2e-3 * math.cos(0.4))
+
+
+def test_at_counter_zero_and_phase_zero_the_centre_is_ahead_and_going_down() -> None:
+    """Rolling on, the axle stands above the centre: it gains until it is ahead by a half turn."""
+    law = find("eccentric_left_wheel").using(amplitude=1e-3, phase=0.0)
+    for turned, gained in [(math.pi / 2, 1e-3), (math.pi, 2e-3), (3 * math.pi / 2, 1e-3)]:
+        way = track(plan(*line(turned * RADIUS, 0.05)), law).left[-1]
+        assert way - turned * RADIUS == pytest.approx(gained)
+
+
+def test_the_phase_belongs_to_the_counter() -> None:
+    way = plan(*line(0.1, 0.1))
+    turned = 0.7 / (2 * math.pi) * 2000.0
+    one = track(way, find("eccentric_left_wheel").using(amplitude=1e-3, phase=0.7)).left
+    other = track(
+        way,
+        find("eccentric_left_wheel").using(amplitude=1e-3, phase=0.0),
+        first_counts=(turned, 0.0),
+    ).left
+    np.testing.assert_allclose(one, other, atol=1e-12)
+
+
+@pytest.mark.parametrize("rate", [3.0, 10.0, 200.0])
+def test_results_do_not_depend_on_the_logging_rate(rate: float) -> None:
+    """An eccentric wheel turns half round in a step at 3 Hz, and nothing is lost."""
+    way = plan(*line(2.0, 0.5), *turn(2.0), *line(-1.0, 0.3))
+    law = find("eccentric_left_wheel").using(amplitude=1e-3, phase=0.4)
+    assert track(way, law, rate=rate).left[-1] == pytest.approx(
+        track(way, law, rate=50.0).left[-1], abs=1e-9
+    )
+
+
+# -- tyres ------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("sense", [1.0, -1.0])
+def test_slip_is_behind_at_speed_and_not_at_rest(sense: float) -> None:
+    c, v = 0.02, 0.8
+    law = find("longitudinal_slip").using(coefficient=c)
+    gone = track(plan(*line(sense * 4.0, v)), law, rate=200.0)
+    plain = track(plan(*line(sense * 4.0, v)), rate=200.0)
+    assert sense * (plain.at(3.0)[0] - gone.at(3.0)[0]) == pytest.approx(c * v**2 / 2)
+    assert gone.end[0] == pytest.approx(plain.end[0], abs=1e-9)
+
+
+def test_lateral_slip_vanishes_on_lines_and_spins() -> None:
+    law = find("lateral_slip").using(creep=0.05)
+    way = plan(*line(3.0), *turn(4.0), *line(-1.0))
+    assert track(way, law).end == pytest.approx(track(way).end, abs=1e-12)
+
+
+def test_fast_half_circles_end_farther_ahead_and_whole_ones_close() -> None:
+    creep, slow, fast = 0.01, 0.2, 0.8
+    law = find("lateral_slip").using(creep=creep)
+    halves = [track(circle(v, 1.0, math.pi), law, rate=200.0).end for v in (slow, fast)]
+    assert halves[1][0] - halves[0][0] == pytest.approx(2 * creep * (fast - slow), rel=1e-3)
+    assert halves[1][1] == pytest.approx(2.0, abs=1e-6)
+    whole = track(circle(fast, 1.0, 2 * math.pi), law, rate=200.0).end
+    assert whole == pytest.approx((0.0, 0.0, 2 * math.pi), abs=1e-6)
+
+
+# -- body and floor ---------------------------------------------------------------------------
+
+
+def test_a_crab_travels_at_an_angle_to_where_it_looks() -> None:
+    law = find("sideways_drift").using(angle=0.1)
+    assert track(plan(*line(5.0)), law).end == pytest.approx(
+        (5.0 * math.cos(0.1), 5.0 * math.sin(0.1), 0.0)
+    )
+    assert track(plan(*line(5.0), *line(-5.0)), law).end == pytest.approx((0, 0, 0), abs=1e-9)
+    assert track(plan(*turn(5.0)), law).end == pytest.approx((0.0, 0.0, 5.0), abs=1e-9)
+
+
+@pytest.mark.parametrize("rate", [5.0, 50.0])
+@pytest.mark.parametrize("start_yaw", [0.0, 2.0])
+def test_a_slope_carries_to_one_side_of_the_room(rate: float, start_yaw: float) -> None:
+    way = plan(*line(2.0), (0.5, 0.4, 1.5), (3.0, 0.4, 1.5), (0.5, 0.0, 0.0), REST, *line(-2.0))
+    law = find("floor_slope").using(x=0.01, y=-0.02, x_rate=1e-3)
+    there = track(way, law, rate=rate, start_yaw=start_yaw)
+    plain = track(way, rate=rate, start_yaw=start_yaw)
+    path = 4.0 + 0.4 * 3.5
+    assert there.end[0] - plain.end[0] == pytest.approx(0.01 * path + 1e-3 * plain.time[-1])
+    assert there.end[1] - plain.end[1] == pytest.approx(-0.02 * path)
+    assert there.end[2] == plain.end[2]
+
+
+@pytest.mark.parametrize(("values", "kicks"), [({"angle": 0.01}, 3), ({"alternating": 0.01}, -1)])
+def test_a_castor_kicks_at_reversals_alone(values: dict[str, float], kicks: int) -> None:
+    """Forwards, backwards, forwards, backwards: three reversals, two of them to backwards."""
+    law = find("castor_kick").using(**values)
+    there = track(TO_AND_FRO, law)
+    assert there.end[2] == pytest.approx(kicks * 0.01, rel=1e-6)
+    assert there.at(3.4)[2] == 0.0
+    back = np.flatnonzero(there.time > 3.5)[:50]  # from the first reversal on
+    gone = there.x.max() - there.x[back]
+    kick = math.copysign(0.01, values.get("angle", -1.0))
+    half_a_length = np.interp(0.02, gone, there.yaw[back])
+    assert half_a_length == pytest.approx(kick * (1 - math.exp(-0.5)), rel=0.02)
+
+
+def test_stop_and_go_is_no_reversal_and_neither_is_settling() -> None:
+    law = find("castor_kick").using(angle=0.01)
+    settling = [(0.05, -0.02, 0.0), (0.05, 0.0, 0.0), (0.5, 0.0, 0.0)]  # rolls back by 1 mm
+    assert track(plan(*line(1.0), *settling, *line(1.0), *settling), law).end[2] == 0.0
+    play = find("left_backlash").using(travel=5e-3)
+    gone = track(plan(*line(1.0), *settling, *line(1.0)), play)
+    assert gone.left[-1] == pytest.approx(2.0 - 0.001 - 0.0025)  # half of it in the first motion
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_play_is_lost_at_each_reversal(side: str) -> None:
+    law = find(f"{side}_backlash").using(travel=4e-3)
+    there, plain = track(TO_AND_FRO, law), track(TO_AND_FRO)
+    lost = getattr(there, side) - getattr(plain, side)
+    middles = [lost[np.searchsorted(there.time, t)] for t in (2.0, 5.0, 8.0, 11.0)]
+    assert middles == pytest.approx([-2e-3, 2e-3, -2e-3, 2e-3])
+    other = "right" if side == "left" else "left"
+    np.testing.assert_array_equal(getattr(there, other), getattr(plain, other))
+
+
+def test_spins_take_play_up_too() -> None:
+    law = find("left_backlash").using(travel=4e-3)
+    way = plan(*line(1.0), *turn(2.0), *line(1.0))
+    assert track(way, law).left[-1] - track(way).left[-1] == pytest.approx(-2e-3)
+
+
+# -- encoders ---------------------------------------------------------------------------------
+
+
+def test_ticks_are_missed_above_a_speed_and_not_below_it() -> None:
+    law = find("right_missed_ticks").using(fraction=0.05, above=0.3)
+    slow, fast = (track(plan((5.0, v, 0.0), (10.0, v, 0.0)), law) for v in (0.25, 0.5))
+    assert slow.right[-1] == pytest.approx(slow.left[-1])
+    late = slice(len(fast.right) // 2, None)
+    gained = np.ptp(fast.right[late]) / np.ptp(fast.left[late])
+    assert gained == pytest.approx(1 / 0.95)
+
+
+def test_skew_turns_the_robot_while_it_moves() -> None:
+    law = find("encoder_skew").using(delay=0.01)
+    there = track(plan(*line(3.0, 0.7)), law)
+    assert there.at(2.0)[2] == pytest.approx(-0.01 * 0.7 / TRACK)
+    assert there.end[2] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_a_record_that_begins_in_full_motion_is_not_turned_by_skew() -> None:
+    law = find("encoder_skew").using(delay=0.01)
+    way = Plan(np.array([0.0, 3.0]), np.full(2, 0.7), np.zeros(2))
+    assert track(way, law).end[2] == pytest.approx(0.0, abs=1e-12)
+
+
+# -- measurement and wiring -------------------------------------------------------------------
+
+
+def test_views_add_up() -> None:
+    seen = view_of(
+        (
+            find("reference_lever_arm").using(x=0.1, y=-0.2),
+            find("reference_yaw_offset").using(angle=0.3),
+            find("reference_delay").using(delay=0.04),
+            find("reference_heading_delay").using(delay=0.05),
+            find("reference_lever_arm").using(x=0.1),
+            find("reference_mirrored").using(),
+        )
+    )
+    assert seen == View(0.2, -0.2, 0.3, 0.04, 0.05, True)
+
+
+@pytest.mark.parametrize(
+    ("mistakes", "read"),
+    [
+        ((), (3.0, 7.0)),
+        (("wheels_swapped",), (7.0, 3.0)),
+        (("left_wheel_reversed",), (-3.0, 7.0)),
+        (("right_wheel_reversed",), (3.0, -7.0)),
+        (("left_wheel_reversed", "wheels_swapped"), (-7.0, 3.0)),
+        (("wheels_swapped", "wheels_swapped"), (3.0, 7.0)),
+    ],
+)
+def test_mistakes_of_wiring(mistakes: tuple[str, ...], read: tuple[float, float]) -> None:
+    wiring = wiring_of(tuple(find(name).using() for name in mistakes))
+    assert wiring.wheels(3.0, 7.0) == read
+    assert Wiring().wheels(3.0, 7.0) == (3.0, 7.0)
