@@ -12,10 +12,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.recorded_square import Record, recorded_square, squares_of
 from werrimbi_odom.inference.squares import e_max_syst
 from werrimbi_odom.inference.umbmark import recomputed, umbmark
+from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation import TrueRobot, figure_eight, record, square
 
@@ -178,6 +180,12 @@ def test_a_reference_that_cannot_be_used_is_refused(drives: list[Record]) -> Non
         recorded_square(replace(drive, reference_x=nothing), ROBOT, SIDE)
     with pytest.raises(InputError, match="do not overlap"):
         recorded_square(replace(drive, reference_time=drive.reference_time + 1e6), ROBOT, SIDE)
+
+
+def test_a_robot_with_effects_is_for_the_fit(drives: list[Record]) -> None:
+    drift = AppliedEffect(find("sideways_drift"))
+    with pytest.raises(InputError, match="sideways_drift: take `calibrate fit`"):
+        recorded_square(drives[0], replace(ROBOT, effects=(drift,)), SIDE)
 
 
 def optitrack(name: str) -> Record:

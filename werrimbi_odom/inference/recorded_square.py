@@ -103,8 +103,13 @@ def recorded_square(
     Raises
     ------
     InputError
-        When the drive is not one closed square of that side.
+        When the drive is not one closed square of that side, or the robot holds effects.
     """
+    if robot.effects:
+        raise InputError(
+            f"UMBmark knows base and radii alone, and the robot file holds "
+            f"{', '.join(applied.name for applied in robot.effects)}: take `calibrate fit`"
+        )
     rows = np.flatnonzero(np.isfinite(record.reference_x) & np.isfinite(record.reference_y))
     if rows.size < 2:
         raise InputError(
