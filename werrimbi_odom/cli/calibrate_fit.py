@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from werrimbi_odom.inference.calibration import Calibration
     from werrimbi_odom.inference.matching import MatchedRun
 
-_PARTS_OF_A_LEG = 4  # the fit uses shorter legs than are judged: they tell noise from drift
+PARTS_OF_A_LEG = 4  # the fit uses shorter legs than are judged: they tell noise from drift
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -52,8 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.inference.calibration import calibrate
 
     source = read_robot_file(arguments.robot)
-    short = arguments.leg / _PARTS_OF_A_LEG
-    runs = _matched(arguments.runs, source, short, arguments)
+    runs = _matched(arguments.runs, source, PARTS_OF_A_LEG, arguments)
     result = calibrate(
         runs,
         source.robot,
@@ -64,7 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
     _say(result)
     figures = _json(result)
     if arguments.holdout:
-        held_out = _matched(arguments.holdout, source, arguments.leg, arguments)
+        held_out = _matched(arguments.holdout, source, 1, arguments)
         figures["holdout"] = _judged(held_out, source, result)
     changes = {name: item.value for name, item in result.multipliers.items() if item.determined}
     for name in ("left_wheel_noise", "right_wheel_noise"):
@@ -75,11 +74,11 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _matched(
-    paths: Sequence[Path], source: RobotFile, leg: float, arguments: argparse.Namespace
+    paths: Sequence[Path], source: RobotFile, parts: int, arguments: argparse.Namespace
 ) -> list[MatchedRun]:
     from werrimbi_odom.cli.progress import with_progress
     from werrimbi_odom.files.reading import read_run
-    from werrimbi_odom.inference.matching import match
+    from werrimbi_odom.inference.matching import QUARTER_TURN, match
 
     return [
         match(
@@ -90,8 +89,9 @@ def _matched(
                 reference_topic=arguments.reference_topic,
             ),
             source.robot,
-            leg,
+            arguments.leg / parts,
             source.limits,
+            QUARTER_TURN / parts,
         )
         for path in with_progress(paths, "reading runs")
     ]

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from werrimbi_odom.files.run import Reference, Run
 
 QUARTER_TURN = 0.5 * np.pi
-"""Turning [rad] that counts as much as one leg length of path."""
+"""Turning [rad] that is worth a leg of path, whatever the leg's length."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +99,11 @@ class MatchedRun:
 
 
 def match(
-    run: Run, robot: Robot, leg: float = 1.0, limits: EncoderLimits | None = None
+    run: Run,
+    robot: Robot,
+    leg: float = 1.0,
+    limits: EncoderLimits | None = None,
+    turn: float = QUARTER_TURN,
 ) -> MatchedRun:
     """Split the steps of a run at its reference poses and cut it into legs.
 
@@ -108,8 +112,9 @@ def match(
     robot : Robot
         Its travel decides where legs end; they stay there whatever is fitted later.
     leg : float
-        Length of a leg [m]; a quarter turn on the spot counts as much. A leg is at least one
-        interval of the reference.
+        Length of a leg [m]. A leg is at least one interval of the reference.
+    turn : float
+        Turning on the spot that makes a leg too [rad]; path and turning add up.
 
     Raises
     ------
@@ -130,7 +135,7 @@ def match(
             f"(t_s {counters.time[0]:g}) and the last ({counters.time[-1]:g}); "
             "are both clocks the same?"
         )
-    chosen = _leg_ends(robot, counters, reference.time[usable], leg)
+    chosen = _leg_ends(robot, counters, reference.time[usable], leg, turn)
     rows = usable[chosen]
     measured = Measured(
         reference.time[rows], reference.x[rows], reference.y[rows], reference.yaw[rows]
@@ -216,15 +221,17 @@ def _usable(reference: Reference, first: float, last: float) -> NDArray[np.intp]
     return np.asarray(rows[later])
 
 
-def _leg_ends(robot: Robot, counters: Counters, at: Floats, leg: float) -> NDArray[np.intp]:
+def _leg_ends(
+    robot: Robot, counters: Counters, at: Floats, leg: float, turn: float
+) -> NDArray[np.intp]:
     """Indices into `at` at which legs end: every time a leg's worth of travel has gone by."""
     left, right = (
         np.diff(counters.left) * robot.left_tick,
         np.diff(counters.right) * robot.right_tick,
     )
-    along = 0.5 * (left + right) / leg
-    turned = (right - left) / robot.track / QUARTER_TURN
-    progress = np.interp(at, counters.time, _summed(np.hypot(along, turned)))
+    path = np.abs(0.5 * (left + right)) / leg
+    turned = np.abs(right - left) / robot.track / turn
+    progress = np.interp(at, counters.time, _summed(path + turned))
     progress -= progress[0]
     whole = np.arange(1.0, np.floor(progress[-1] * (1.0 + 1e-12)) + 1.0)
     chosen = np.searchsorted(progress, whole - 1e-12)

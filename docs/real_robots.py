@@ -1,0 +1,146 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Calibration judged on real robots: prints the table of docs/real_robots.md.
+
+Every figure is over legs of drives that took no part in the calibration.
+"""
+
+from __future__ import annotations
+
+import os
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+
+from werrimbi_odom.cli.calibrate_fit import PARTS_OF_A_LEG
+from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.inference.calibration import Calibration, calibrate
+from werrimbi_odom.inference.legs import LegErrors, joined, leg_errors, statistics
+from werrimbi_odom.inference.matching import QUARTER_TURN, match
+from werrimbi_odom.inference.recorded_square import Record, recorded_square, squares_of
+from werrimbi_odom.inference.umbmark import corrected, umbmark
+from werrimbi_odom.model.robot import Robot
+
+ROOT = Path(__file__).parents[1]
+ROBOTS = Path(os.environ.get("WERRIMBI_DATA", ROOT.parent / "shared" / "data")) / "robots"
+
+
+@dataclass(frozen=True, slots=True)
+class Case:
+    """A robot, the drives it is calibrated on, and those it is judged on."""
+
+    robot: str
+    told: str
+    train: str
+    holdout: str
+    leg: float
+    kind: Literal["absolute", "incremental"]
+
+
+CASES = (
+    Case("optitrack_robot", "OptiTrack robot", "square_*", "free_*", 0.5, "absolute"),
+    Case(
+        "khepera_laser_to_the_side",
+        "Khepera, laser to the side",
+        "part_[01]",
+        "part_2",
+        0.1,
+        "incremental",
+    ),
+    Case("khepera_laser_moved", "Khepera, laser moved", "part_[01]", "part_2", 0.1, "incremental"),
+)
+
+
+def umbmark_of_drives(case: Case) -> Robot:
+    """The paper's procedure on the recorded squares."""
+    robot_file = read_robot_file(ROBOTS / case.robot / "robot.yaml")
+    records = []
+    for path in sorted((ROBOTS / case.robot).glob(case.train)):
+        run = read_run(path, robot_file)
+        assert run.reference is not None
+        ticks, seen = run.ticks, run.reference
+        records.append(
+            recorded_square(
+                Record(
+                    run.name,
+                    ticks.time,
+                    ticks.left,
+                    ticks.right,
+                    seen.time,
+                    seen.x,
+                    seen.y,
+                    seen.yaw,
+                ),
+                robot_file.robot,
+                1.7,
+            )
+        )
+    result = umbmark(squares_of(records, 1.7), robot_file.robot)
+    return corrected(robot_file.robot, result.factors)
+
+
+def fitted(case: Case) -> Calibration:
+    """Maximum likelihood on the training drives."""
+    robot_file = read_robot_file(ROBOTS / case.robot / "robot.yaml")
+    paths = sorted((ROBOTS / case.robot).glob(case.train))
+    runs = [
+        match(
+            read_run(path, robot_file),
+            robot_file.robot,
+            case.leg / PARTS_OF_A_LEG,
+            turn=QUARTER_TURN / PARTS_OF_A_LEG,
+        )
+        for path in paths
+    ]
+    return calibrate(runs, robot_file.robot, case.kind)
+
+
+def judged(case: Case, robot: Robot, sigma_xy: float, sigma_yaw: float) -> LegErrors:
+    """Legs of the held-out drives, cut alike for every robot."""
+    robot_file = read_robot_file(ROBOTS / case.robot / "robot.yaml")
+    parts = []
+    for path in sorted((ROBOTS / case.robot).glob(case.holdout)):
+        run = match(read_run(path, robot_file), robot_file.robot, case.leg)
+        parts.append(leg_errors(robot, run, sigma_xy, sigma_yaw, case.kind))
+    return joined(parts)
+
+
+def row(told: str, method: str, legs: LegErrors, noise: str, verdict: str) -> str:
+    """One line of the table."""
+    figures = statistics(legs)
+    spread = np.percentile(legs.distance, 90)
+    return (
+        f"| {told} | {method} | {figures.count} | {1e3 * figures.median_position_m:.1f} "
+        f"| {1e3 * figures.rmse_position_m:.1f} | {1e3 * spread:.1f} "
+        f"| {figures.nees:.1f} | {figures.coverage_95:.0%} | {noise} | {verdict} |"
+    )
+
+
+def table() -> str:
+    """The whole table in Markdown."""
+    lines = [
+        "| robot | calibration | held-out legs | median (mm) | rms (mm) | 90 % (mm) | NEES "
+        "| inside 95 % | k_L, k_R (m^½) | what the tool says |",
+        "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |",
+    ]
+    for case in CASES:
+        result = fitted(case)
+        sigmas = [result.noises[f"reference_sigma_{name}"].value for name in ("xy", "yaw")]
+        given = read_robot_file(ROBOTS / case.robot / "robot.yaml").robot
+        methods: list[tuple[str, Robot, str]] = [("none", given, "")]
+        if case.robot == "optitrack_robot":
+            methods.append(("UMBmark, 6 squares", umbmark_of_drives(case), ""))
+        says = "explained" if result.trusted else "something else is missing"
+        methods.append(("maximum likelihood", result.robot, says))
+        for method, robot, verdict in methods:
+            noise = f"{robot.left_wheel_noise:.1e}, {robot.right_wheel_noise:.1e}"
+            legs = judged(case, robot, *sigmas)
+            lines.append(row(case.told, method, legs, noise, verdict))
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    print(table())

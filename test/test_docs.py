@@ -1,0 +1,80 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the docs show is what the tool does."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+DATA = Path(os.environ.get("WERRIMBI_DATA", ROOT.parent / "shared" / "data"))
+README = (ROOT / "README.md").read_text()
+
+
+def test_the_readme_is_short() -> None:
+    assert len(README.splitlines()) < 200
+
+
+def test_every_link_of_the_docs_leads_somewhere() -> None:
+    for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
+        for link in re.findall(r"\]\(([^)#:]+?)(?:#[^)]*)?\)", page.read_text()):
+            assert (page.parent / link).exists(), f"{page.name}: {link}"
+
+
+@pytest.mark.skipif(not DATA.exists(), reason=f"no recorded robots at {DATA} (WERRIMBI_DATA)")
+def test_the_table_of_real_robots_is_what_its_command_prints() -> None:
+    spec = importlib.util.spec_from_file_location("real_robots", ROOT / "docs" / "real_robots.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules["real_robots"] = module
+    spec.loader.exec_module(module)
+    shown = (ROOT / "docs" / "real_robots.md").read_text()
+    numbers = re.compile(r"[\d.]+(?:e-?\d+)?")
+    for printed in module.table().splitlines()[2:]:
+        robot, method = (cell.strip() for cell in printed.split("|")[1:3])
+        kept = next(line for line in shown.splitlines() if f"| {robot} | {method} |" in line)
+        pairs = zip(numbers.findall(kept), numbers.findall(printed), strict=True)
+        for before, now in pairs:
+            assert float(now) == pytest.approx(float(before), rel=0.02, abs=0.11)
+
+
+def werrimbi(*arguments: str, cwd: Path) -> None:
+    run = subprocess.run(
+        [sys.executable, "-m", "werrimbi_odom.cli.main", *arguments],
+        cwd=cwd,
+        capture_output=True,
+        text=True,
+        check=False,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+    )
+    assert run.returncode == 0, f"werrimbi {' '.join(arguments)}\n{run.stdout}{run.stderr}"
+
+
+def test_the_readmes_commands_run(tmp_path: Path) -> None:
+    """Each `werrimbi` command of the README, on the shipped recording and small tables."""
+    recording = ROOT / "werrimbi_odom" / "recordings" / "square"
+    (tmp_path / "my_robot.yaml").write_text((recording / "robot.yaml").read_text())
+    offsets = [("ccw", 0.097, -0.094), ("ccw", 0.095, -0.090), ("cw", 0.032, 0.031)]
+    offsets.append(("cw", 0.030, 0.034))
+    squares = "\n".join(f"{sense},{x},{y}" for sense, x, y in offsets)
+    (tmp_path / "UMBMARK.csv").write_text(f"sense,x_m,y_m\n{squares}\n")
+    noise = "\n".join(
+        f"{0.002 * (-1) ** i},{0.03 * (i % 5 - 2)},{0.004 * (i % 4 - 1.5)}" for i in range(20)
+    )
+    (tmp_path / "NOISE.csv").write_text(f"ex_m,ey_m,eyaw_rad\n{noise}\n")
+    commands = re.findall(r"`(werrimbi calibrate [^`]+)`", README)
+    commands += re.findall(r"^(werrimbi (?:odom|explain)[^#\n]*)", README, flags=re.M)
+    assert len(commands) >= 4
+    for number, command in enumerate(commands):
+        table = "UMBMARK.csv" if "umbmark" in command else "NOISE.csv"
+        words = command.replace("RESULTS.csv", table).replace("calibrated.yaml", f"{number}.yaml")
+        words = words.replace("RUN...", str(recording)).replace("RUN", str(recording))
+        werrimbi(*words.split()[1:], cwd=tmp_path)
