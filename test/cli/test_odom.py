@@ -7,6 +7,10 @@ from __future__ import annotations
 import csv
 import json
 import math
+import os
+import pty
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -209,6 +213,30 @@ def test_what_happened_to_the_counters_is_told(
     assert "4, 4 used, 1 gaps, 2 wraps" in unwrapped(capsys.readouterr().out)
 
 
+def test_a_clock_that_was_set_back(place: Path) -> None:
+    ticks(place, [(100, 0, 0), (101, 10, 10), (5, 20, 20), (6, 30, 30)])
+    reference(place, "100,0,0,0", f"6,{30 * TICK!r},0,0")
+    found = figures(place)
+    assert found["duration_s"] == 2.0
+    assert found["rows"]["clock_jumps"] == 1
+    assert found["end_error_m"] is None
+    assert found["final"]["x_m"] == pytest.approx(30 * TICK)
+
+
+@pytest.mark.xfail(raises=IndexError, reason="model.trajectory stumbles over a run without steps")
+@pytest.mark.parametrize("pose", ["0,1,2,3", "0,1,2,", None])
+def test_a_run_of_one_row(place: Path, pose: str | None) -> None:
+    ticks(place, [(0, 5, 5)])
+    if pose:
+        reference(place, pose)
+    found = figures(place)
+    assert found["distance_m"] == 0.0
+    assert found["end_error_m"] is None
+    assert table(place / "odom.csv").tolist() == [
+        [0.0, *((1.0, 2.0) if pose else (0.0, 0.0)), 3.0 if pose == "0,1,2,3" else 0.0, *[0.0] * 6]
+    ]
+
+
 def test_an_existing_file_is_replaced_and_parts_are_gone(place: Path) -> None:
     (place / "odom.csv").write_text("old")
     assert odom(place) == 0
@@ -278,6 +306,26 @@ def test_both_files_or_neither(place: Path, capsys: pytest.CaptureFixture[str]) 
     assert "--out and --json are the same file" in capsys.readouterr().err
 
 
+def test_on_a_terminal_a_bar_is_shown_and_taken_away(place: Path) -> None:
+    pytest.importorskip("rich", reason="without rich there is no bar")
+    words = ["odom", "--robot", place / "robot.yaml", place / "run", "--out", place / "odom.csv"]
+    screen, terminal = pty.openpty()
+    done = subprocess.run(
+        [sys.executable, "-m", "werrimbi_odom.cli.main", *map(str, words)],
+        stdout=subprocess.PIPE,
+        stderr=terminal,
+        env={**os.environ, "PYTHONPATH": str(ROOT), "TERM": "xterm"},
+        timeout=60,
+    )
+    os.close(terminal)
+    shown = os.read(screen, 65536).decode()
+    os.close(screen)
+    assert done.returncode == 0
+    assert "writing" in shown
+    assert shown.rstrip().endswith("\x1b[2K"), "the line is erased at the end"
+    assert b"distance" in done.stdout
+
+
 def test_a_device_is_written_to_and_stays_one(place: Path) -> None:
     assert odom(place, "--out", "/dev/null") == 0
     assert not Path("/dev/null").is_file()
@@ -286,8 +334,6 @@ def test_a_device_is_written_to_and_stays_one(place: Path) -> None:
 def test_without_rich_the_figures_are_plain_text(
     place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    import sys
-
     for name in ("rich.console", "rich.table", "rich.text"):
         monkeypatch.setitem(sys.modules, name, None)
     assert odom(place) == 0

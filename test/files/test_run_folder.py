@@ -144,6 +144,10 @@ def test_what_was_not_measured_is_nan(tmp_path: Path) -> None:
         (FINE + "0.2,5,", "ticks.csv, line 4, column right_ticks: it is empty"),
         (FINE + ",5,6\n", "ticks.csv, line 4, column t_s: it is empty; every row needs its time"),
         (FINE + "nan,5,6\n", "ticks.csv, line 4, column t_s: 'nan' is not a time"),
+        (
+            FINE + "1767225600229169585,5,6\n",
+            "ticks.csv, line 4, column t_s: '1767225600229169585' is not a time in seconds; is it",
+        ),
         (FINE + "-inf,5,6\n", "ticks.csv, line 4, column t_s: '-inf' is not a time"),
         (FINE + "0.2," + "y" * 999 + ",6\n", f"ticks.csv, line 4, column left_ticks: '{'y' * 40}."),
         (FINE.encode() + b"0.2,\xe9,6\n", "ticks.csv, line 4: byte 0xe9 is not UTF-8 text"),
@@ -202,7 +206,8 @@ def test_what_is_too_large_is_refused_before_it_is_read(
 
 INT64 = st.integers(-(2**63), 2**63 - 1)
 FINITE = st.floats(allow_nan=False, allow_infinity=False)
-ROWS = st.lists(st.tuples(FINITE, INT64, FINITE, st.one_of(st.none(), FINITE)), min_size=1)
+TIMES = st.floats(-1e11, 1e11)
+ROWS = st.lists(st.tuples(TIMES, INT64, FINITE, st.one_of(st.none(), FINITE)), min_size=1)
 
 
 @settings(

@@ -56,8 +56,8 @@ class Figures:
 
     @property
     def duration(self) -> float:
-        """From the first row to the last that could be used [s]."""
-        return float(self.driven.time[-1] - self.driven.time[0])
+        """From row to row that could be used, without the steps of a clock set back [s]."""
+        return float(np.sum(np.maximum(np.diff(self.driven.time), 0.0)))
 
     @property
     def final(self) -> Pose:

@@ -19,6 +19,8 @@ TICKS = "ticks.csv"
 TICKS_COLUMNS = ("t_s", "left_ticks", "right_ticks")
 REFERENCE = "reference.csv"
 REFERENCE_COLUMNS = ("t_s", "x_m", "y_m", "yaw_rad")
+LATEST = 1e12
+"""No time in seconds [s]; the time of day in milliseconds or nanoseconds lies beyond it."""
 SIGMA_COLUMNS = ("sigma_xy_m", "sigma_yaw_rad")
 
 
@@ -48,7 +50,7 @@ def _ticks(path: Path) -> Ticks:
 def _times(table: Table) -> Floats:
     """Stamps; a row without one cannot be placed, so that is an error."""
     times = table.column("t_s")
-    if not np.isfinite(times).all():
+    if not (np.abs(times) < LATEST).all():
         table.refuse_where("t_s", _not_a_time)
     return times
 
@@ -56,7 +58,10 @@ def _times(table: Table) -> Floats:
 def _not_a_time(text: str) -> str:
     if not text:
         return "it is empty; every row needs its time"
-    return "" if math.isfinite(float(text)) else f"{text!r} is not a time"
+    value = float(text)
+    if not math.isfinite(value):
+        return f"{text!r} is not a time"
+    return "" if abs(value) < LATEST else f"{text!r} is not a time in seconds; is it in ns, or ms?"
 
 
 def _counts(table: Table, name: str) -> Counts:
