@@ -38,7 +38,6 @@ def test_a_crab_is_a_marker_mounted_askew_whatever_else_acts() -> None:
     """A lever arm is then the same one, seen from the turned frame."""
     slip, base = find("lateral_slip").using(creep=0.02), find("track_width").using(multiplier=1.1)
     arm = 0.1 * np.exp(-0.2j)
-    arm_ahead = find("reference_lever_arm").using(x=0.1)
     crab = measured(
         slip,
         base,

@@ -49,6 +49,7 @@ def reference_heading_delay(view: View, delay: float) -> View:
     Signature  heading lags by yaw rate times delay; positions are good; lines are good
     Ruler      spin left, then right, at one rate past a chalk line: the reference's yaw in passing
                it differs by 2 * delay * yaw rate between left and right
-    Alike      lateral_slip, on a steady circle (creep = -delay): begin and end curves abruptly
+    Alike      lateral_slip, on a steady circle (creep = -delay): begin and end curves abruptly;
+               reference_delay, where positions are poor: drive lines with hard starts and stops
     """
     return view._replace(heading_delay=view.heading_delay + delay)

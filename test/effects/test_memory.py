@@ -1,0 +1,100 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What effects may look at is the same step by step and all at once, on any drive."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from werrimbi_odom.model.drive import ROLLBACK, Drive, DriveMemory, RawStep, Span, drive_of_run
+from werrimbi_odom.model.pose import Floats
+
+TRACK, RADIUS = 0.35, 0.05
+
+
+def steps(left: Floats, right: Floats, duration: Floats) -> list[RawStep]:
+    along, turn = 0.5 * (left + right), (right - left) / TRACK
+    table = (duration, left, right, along, turn, left / RADIUS, right / RADIUS)
+    return [RawStep(*row) for row in zip(*(part.tolist() for part in table), strict=True)]
+
+
+def flat(drive: Drive[Floats]) -> Floats:
+    """All features in columns."""
+    columns = []
+    for item in fields(drive):
+        value = getattr(drive, item.name)
+        if isinstance(value, Span):
+            columns += [value.start, value.end]
+        elif item.name != "channels":
+            columns.append(value)
+    return np.array(columns).T
+
+
+def both_ways(left: Floats, right: Floats, duration: Floats, flicker: float) -> None:
+    raw = steps(left, right, duration)
+    memory, heading, live = DriveMemory(flicker, 0.3, -0.4), 0.0, []
+    for step in raw:
+        live.append(flat(memory.step(step, heading)))
+        heading += step.turn
+    recorded = drive_of_run(
+        *(np.array(part) for part in zip(*raw, strict=True)),
+        flicker=flicker,
+        first_angles=(0.3, -0.4),
+    )
+    np.testing.assert_allclose(np.array(live), flat(recorded), rtol=1e-12, atol=1e-12)
+
+
+@settings(max_examples=150, deadline=None)
+@given(
+    seed=st.integers(0, 2**32 - 1),
+    count=st.integers(1, 700),
+    size=st.sampled_from([1e-4, 5e-4, 2e-3, 2e-2]),
+    memory=st.sampled_from([0.0, 0.9, 0.995]),
+    flicker=st.sampled_from([0.0, 2.4e-4, 3e-3]),
+)
+def test_live_memory_is_the_recorded_one(
+    seed: int, count: int, size: float, memory: float, flicker: float
+) -> None:
+    """Jitter, to and fro, long ways: wherever reversals are near their threshold."""
+    random = np.random.default_rng(seed)
+    travel = random.normal(0.0, size, (2, count))
+    for i in range(1, count):
+        travel[:, i] += memory * travel[:, i - 1]
+    travel[:, random.random(count) < 0.2] = 0.0
+    both_ways(*travel, random.uniform(0.005, 0.1, count), flicker)
+
+
+def test_a_wheel_at_rest_has_no_direction() -> None:
+    nothing = np.zeros(5)
+    both_ways(nothing, nothing, np.ones(5), 1e-4)
+    drive = drive_of_run(np.ones(5), *np.zeros((6, 5)), flicker=1e-4)
+    assert not drive.direction.any()
+    assert not drive.left_direction.any()
+    assert not drive.left_reversals.any()
+
+
+@pytest.mark.parametrize(("back", "reversals"), [(0.9 * ROLLBACK, 0), (1.1 * ROLLBACK, 1)])
+def test_rolling_back_a_little_is_no_reversal(back: float, reversals: int) -> None:
+    left = np.concatenate([np.full(20, 0.01), [-back / 2, -back / 2, 0.0]])
+    drive = drive_of_run(
+        np.ones(23), left, left, left, 0 * left, left / RADIUS, left / RADIUS, flicker=1e-4
+    )
+    assert drive.reversals[-1] == reversals
+    since = drive.since_reversal
+    assert since.end[-1] == pytest.approx(back if reversals else 0.2)
+    # What was rolled back before it was called a reversal belongs to that step: nothing is lost.
+    assert np.sum(since.end[20:] - since.start[20:]) == pytest.approx(back if reversals else 0.0)
+
+
+def test_a_drive_that_begins_in_motion_has_no_acceleration_at_first() -> None:
+    left = np.full(3, 0.01)
+    drive = drive_of_run(
+        np.full(3, 0.02), left, left, left, 0 * left, left / RADIUS, left / RADIUS, flicker=1e-4
+    )
+    np.testing.assert_allclose(drive.speed.start, 0.5)
+    np.testing.assert_allclose(drive.left_speed.change, 0.0)
