@@ -167,6 +167,9 @@ def test_installed_effects_and_broken_packages(
     found = all_effects()
     assert found.find("wobble").name == "wobble"
     assert find("wobble").name == "wobble"
+    own = all_effects([written(tmp_path, OWN)])
+    assert own.find("wobble") is not found.find("wobble")
+    assert "own.py: its wobble goes before the installed one" in own.warnings[-1]
     assert len(found.effects) == len(LIBRARY) + 1
     warnings = "\n".join(found.warnings)
     assert len(found.warnings) == 6

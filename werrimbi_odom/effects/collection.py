@@ -54,14 +54,16 @@ def all_effects(files: Sequence[Path] = ()) -> Collection:
     """The library, the effects of installed packages, and those of the user's own files.
 
     A broken package is reported among the warnings and left out: it must not stop the tool. A
-    broken file is an error: the user named it.
+    broken file is an error: the user named it. A file's effect goes before an installed one of the
+    same name, for whoever works on a package that is installed.
 
     Raises
     ------
     InputError
-        When a file cannot be used, or holds an effect whose name is taken.
+        When a file cannot be used, or holds an effect of a name that the library has.
     """
     effects = {effect.name: effect for effect in LIBRARY}
+    ours = set(effects)
     warnings = []
     for point in sorted(entry_points(group=GROUP), key=lambda point: point.name):
         place = f"effect {point.name} of {_package(point)} ({point.value})"
@@ -81,8 +83,10 @@ def all_effects(files: Sequence[Path] = ()) -> Collection:
             effects[found.name] = found
     for file in files:
         for found in load_file(file):
-            if found.name in effects:
+            if found.name in ours:
                 raise InputError(f"{file}: the name {found.name} is taken; give it another")
+            if found.name in effects:
+                warnings.append(f"{file}: its {found.name} goes before the installed one")
             effects[found.name] = found
     return Collection(tuple(effects.values()), tuple(warnings))
 
