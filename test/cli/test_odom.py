@@ -344,6 +344,7 @@ def test_without_rich_the_figures_are_plain_text(
 def test_the_shipped_drive_as_folder_and_as_bag(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    pytest.importorskip("rosbags.rosbag2", reason="rosbags is not installed")
     robot = RECORDINGS / "square" / "robot.yaml"
     tables = []
     for name in ("square", "square_bag"):
