@@ -12,6 +12,8 @@ from typing import TYPE_CHECKING, Any
 from werrimbi_odom.cli.calibration_files import add_file_arguments, write_all
 
 if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
     from werrimbi_odom.files.robot_file import RobotFile
     from werrimbi_odom.inference.calibration import Calibration
     from werrimbi_odom.inference.matching import MatchedRun
@@ -69,8 +71,26 @@ def run(arguments: argparse.Namespace) -> int:
     for name in ("left_wheel_noise", "right_wheel_noise"):
         if result.noises[name].determined:
             changes[name] = result.noises[name].value
-    write_all(arguments, source, changes, figures, None)
+    figure = _figure(runs, source, result) if arguments.report is not None else None
+    write_all(arguments, source, changes, figures, figure)
     return 0
+
+
+def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) -> go.Figure:
+    from werrimbi_odom.inference.calibration import errors_of_legs
+    from werrimbi_odom.report.fit_figure import leg_figure
+
+    model = result.fit.point.model
+    headings = [model.start_yaw(index) for index in range(len(runs))]
+    verdict = "the model explains these drives to their noise"
+    if not result.trusted:
+        verdict = "something else is missing: calibration does not explain these drives"
+    return leg_figure(
+        errors_of_legs(source.robot, runs, headings),
+        errors_of_legs(result.robot, runs, headings),
+        title="Errors of short legs, before and after calibration",
+        subtitle=verdict,
+    )
 
 
 def _matched(
@@ -153,12 +173,13 @@ def _judged(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) 
     """Errors over legs of runs that took no part, before and after; prints them."""
     import numpy as np
 
-    from werrimbi_odom.inference.calibration import leg_distances
+    from werrimbi_odom.inference.calibration import errors_of_legs
 
     headings: list[float | None] = [None] * len(runs)
     figures: dict[str, Any] = {}
     for word, robot in (("before", source.robot), ("after", result.robot)):
-        errors = leg_distances(robot, runs, headings)
+        legs = errors_of_legs(robot, runs, headings)
+        errors = np.hypot(legs[:, 0], legs[:, 1])
         errors = errors[np.isfinite(errors)]
         if errors.size == 0:
             print("held-out runs have no headings; legs cannot be judged one by one")

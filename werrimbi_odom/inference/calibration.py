@@ -121,12 +121,16 @@ def _strange(fit: ModelFit, noises: dict[str, NoiseEstimate]) -> tuple[str, ...]
     return tuple(said)
 
 
-def leg_distances(
+def errors_of_legs(
     robot: Robot, runs: Sequence[MatchedRun], headings: Sequence[float | None]
 ) -> Floats:
-    """Position errors of all legs, joined [m]; NaN where the reference gives no relative pose."""
-    parts = []
-    for run, heading in zip(runs, headings, strict=True):
-        error = relative_errors(run, predict(robot, run, heading))
-        parts.append(np.hypot(error[:, 0], error[:, 1]))
-    return np.concatenate(parts)
+    """Measured minus predicted (along, sideways, heading) of all legs, joined, shape (m, 3).
+
+    NaN where the reference gives no relative pose.
+    """
+    return np.concatenate(
+        [
+            relative_errors(run, predict(robot, run, heading))
+            for run, heading in zip(runs, headings, strict=True)
+        ]
+    )

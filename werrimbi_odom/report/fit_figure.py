@@ -1,0 +1,54 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Errors of the legs before and after a calibration, as the robot sees them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from werrimbi_odom.report.path_figure import BLUE, ORANGE, Floats
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+
+def leg_figure(before: Floats, after: Floats, *, title: str, subtitle: str) -> go.Figure:
+    """Measured minus predicted position at the end of each leg, along and sideways.
+
+    Parameters
+    ----------
+    before, after : ndarray, shape (m, 2) or (m, 3)
+        Errors in the frame of the robot at the leg's start [m]; NaN where not measured.
+    """
+    import plotly.graph_objects as go
+
+    figure = go.Figure()
+    for name, errors, colour, symbol in (
+        ("before", before, ORANGE, "circle-open"),
+        ("after", after, BLUE, "circle"),
+    ):
+        known = errors[np.isfinite(errors[:, :2]).all(axis=1)]
+        figure.add_scatter(
+            x=1e3 * known[:, 0],
+            y=1e3 * known[:, 1],
+            mode="markers",
+            name=f"{name}: median {1e3 * np.median(np.hypot(known[:, 0], known[:, 1])):.1f} mm",
+            marker={"color": colour, "symbol": symbol, "size": 7},
+            opacity=0.7,
+            hovertemplate=f"{name}<br>along %{{x:.1f}} mm<br>sideways %{{y:.1f}} mm<extra></extra>",
+        )
+    heading = f"<b>{title}</b><br><span style='font-size:14px'>{subtitle}</span>"
+    figure.update_layout(
+        title={"text": heading, "x": 0.02, "xanchor": "left", "y": 0.96, "yanchor": "top"},
+        template="plotly_white",
+        font={"size": 15},
+        margin={"l": 70, "r": 25, "t": 85, "b": 110},
+        legend={"orientation": "h", "x": 0.0, "y": -0.12, "yanchor": "top"},
+        width=900,
+        height=820,
+    )
+    figure.update_xaxes(title="error along [mm]", zeroline=True)
+    figure.update_yaxes(title="error sideways [mm]", zeroline=True, scaleanchor="x", scaleratio=1)
+    return figure
