@@ -223,7 +223,6 @@ def test_a_clock_that_was_set_back(place: Path) -> None:
     assert found["final"]["x_m"] == pytest.approx(30 * TICK)
 
 
-@pytest.mark.xfail(raises=IndexError, reason="model.trajectory stumbles over a run without steps")
 @pytest.mark.parametrize("pose", ["0,1,2,3", "0,1,2,", None])
 def test_a_run_of_one_row(place: Path, pose: str | None) -> None:
     ticks(place, [(0, 5, 5)])

@@ -65,6 +65,8 @@ class Parameter:
         number = "a whole number" if self.kind == "integer" else "a number"
         if isinstance(value, bool) or not isinstance(value, (int, float)):
             raise self._wrong(value, number)
+        if isinstance(value, int) and abs(value) > 2**63:
+            raise self._wrong(value, number)
         if not math.isfinite(value) or (self.kind == "integer" and value != int(value)):
             raise self._wrong(value, number)
         if self.above is not None and value <= self.above:

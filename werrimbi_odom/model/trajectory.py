@@ -150,6 +150,11 @@ def _blocks(count: int) -> Iterator[slice]:
     return (slice(first, min(first + _BLOCK, count)) for first in range(0, count, _BLOCK))
 
 
+def _ends(pieces: Cut, count: int) -> NDArray[np.intp]:
+    """First step after each piece; none where a single row left nothing to cut."""
+    return np.append(pieces.start[1:], count)[: pieces.start.size]
+
+
 def _chained(
     robot: Robot,
     pieces: Cut,
@@ -161,7 +166,7 @@ def _chained(
 ) -> list[Uncertainty[float]]:
     """Errors of the pose at the start of each piece, from one piece to the next."""
     begin = pieces.start
-    end = np.append(begin[1:], x.size - 1)
+    end = _ends(pieces, x.size - 1)
     whole = np.stack([part[end - 1] for part in (*pieces.travel, *pieces.motion)])
     rows = zip(
         (x[end] - x[begin]).tolist(),
@@ -245,7 +250,7 @@ def _as_values(
     yaw: Floats,
 ) -> tuple[Piece, ...]:
     begin = pieces.start
-    end = np.append(begin[1:], x.size - 1)
+    end = _ends(pieces, x.size - 1)
     starts = np.stack([part[begin] for part in (x, y, yaw)])
     travels = np.stack([part[end - 1] for part in pieces.travel])
     motions = np.stack([part[end - 1] for part in pieces.motion])
