@@ -65,7 +65,7 @@ def main() -> None:
             optitrack / "square_231220200029_04",
             "optitrack_square.png",
             "A real robot, not calibrated: odometry against motion capture",
-            "OptiTrack robot, square 04: the truth leaves the ellipses, so more than noise is wrong",
+            "OptiTrack robot, square 04: the truth leaves the ellipses; more than noise is wrong",
             1.0,
         )
 

@@ -31,9 +31,7 @@ def wrong_robot(tmp_path: Path) -> Path:
     """The shipped robot's file with base and left radius entered wrongly."""
     text = (RECORDING / "robot.yaml").read_text()
     text = text.replace("wheel_separation: 0.35 ", "wheel_separation: 0.36 ")
-    text = text.replace(
-        "left_wheel_radius_multiplier: 1.0 ", "left_wheel_radius_multiplier: 1.01 "
-    )
+    text = text.replace("left_wheel_radius_multiplier: 1.0 ", "left_wheel_radius_multiplier: 1.01 ")
     assert "0.36" in text
     assert "1.01" in text
     path = tmp_path / "wrong.yaml"

@@ -50,11 +50,13 @@ def first_order(pieces: Pieces) -> PoseCovariance[float]:
 def sampled(
     pieces: Pieces, count: int, start: np.ndarray | None = None, steps: int = 200
 ) -> np.ndarray:
-    """Errors (x, y, yaw) of `count` robots whose motion is noisy at every one of many small steps."""
+    """Errors (x, y, yaw) of `count` robots whose motion is noisy at every small step."""
     random = np.random.default_rng(20260101)
-    error = np.zeros((3, count)) if start is None else random.multivariate_normal(
-        np.zeros(3), start, count
-    ).T
+    error = (
+        np.zeros((3, count))
+        if start is None
+        else random.multivariate_normal(np.zeros(3), start, count).T
+    )
     position, heading = error[0] + 1j * error[1], error[2].copy()
     nominal, yaw = 0j, 0.0
     for motion, noise in pieces:
@@ -136,7 +138,7 @@ def test_small_errors_give_the_first_order_covariance(along: float, turning: flo
 
 
 def test_the_mean_falls_short_of_the_nominal_position() -> None:
-    """Heading noise makes paths curl, so the mean true position lags behind: e^(-b/2) for a spin."""
+    """Heading noise makes paths curl, so the mean position lags behind: e^(-b/2) for a spin."""
     spin_then_line: Pieces = [
         (BodyMotion(0.0, 0.0, 1.0), PathNoise(0.0, 0.5, 0.0)),
         (BodyMotion(2.0, 0.0, 0.0), PathNoise(0.0, 0.0, 0.0)),

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The package builds and tests with colcon as on a robot, with the ROS of this environment alone."""
+"""The package builds and tests with colcon as on a robot, with the ROS of the wheels alone."""
 
 from __future__ import annotations
 
