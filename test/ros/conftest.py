@@ -345,3 +345,39 @@ def node(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Launched]:
 def robot() -> dict[str, Any]:
     """Parameters of the node that `launch` and `node` start unless told otherwise."""
     return dict(ROBOT)
+
+
+@pytest.fixture
+def start_node(tmp_path: Path) -> Iterator[Callable[..., subprocess.Popen[str]]]:
+    """Start a bare node process, with no client."""
+    domain, lock = free_domain()
+    started: list[subprocess.Popen[str]] = []
+
+    def start(robot: dict[str, Any], *arguments: str) -> subprocess.Popen[str]:
+        process = subprocess.Popen(
+            command(tmp_path, robot, *arguments),
+            stderr=subprocess.PIPE,
+            text=True,
+            env=environment(domain, tmp_path),
+        )
+        started.append(process)
+        return process
+
+    yield start
+    for process in started:
+        process.kill()
+    lock.close()
+
+
+@pytest.fixture
+def run_node(
+    start_node: Callable[..., subprocess.Popen[str]],
+) -> Callable[..., subprocess.CompletedProcess[str]]:
+    """Run a bare node process to its end."""
+
+    def run(robot: dict[str, Any], *arguments: str) -> subprocess.CompletedProcess[str]:
+        process = start_node(robot, *arguments)
+        _, errors = process.communicate(timeout=20.0)
+        return subprocess.CompletedProcess(process.args, process.returncode, "", errors)
+
+    return run

@@ -15,7 +15,6 @@ from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from typing import Any, cast
 
-import rclpy
 from builtin_interfaces.msg import Time as Stamp
 from rclpy.clock import Clock
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -294,6 +293,4 @@ def qos_errors_of(topic: str) -> Iterator[None]:
     try:
         yield
     except (ParameterException, InvalidQosOverridesError, RuntimeError) as error:
-        if not rclpy.ok():  # told to stop while starting
-            raise
         raise InputError(f"QoS override of {topic}: {error}") from error

@@ -13,15 +13,12 @@ import sys
 from collections.abc import Callable
 from typing import Any
 
-import rclpy
 from builtin_interfaces.msg import Time as Stamp
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import PublisherEventCallbacks
-from rclpy.exceptions import ParameterException
-from rclpy.executors import ExternalShutdownException
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
@@ -35,6 +32,7 @@ from werrimbi_odom.ros import inputs, parameters
 from werrimbi_odom.ros.health import Health
 from werrimbi_odom.ros.markers import PieceTrail
 from werrimbi_odom.ros.messages import OdometryMessage, pose_from, transform_of
+from werrimbi_odom.ros.running import run
 from werrimbi_odom.ros.status import status_of
 from werrimbi_odom.ros.tracker import Finished, Tracker
 
@@ -234,39 +232,8 @@ def _transform_sender(node: Node) -> SendTransform:
 
 
 def main(args: list[str] | None = None) -> int:
-    """Run the node until it is told to stop.
-
-    Returns
-    -------
-    int
-        0 after SIGINT and SIGTERM, 2 when something that was given cannot be used.
-    """
-    try:
-        rclpy.init(args=args)
-    except KeyboardInterrupt:
-        return 0
-    except RuntimeError as error:
-        print(f"odom_node: {error}", file=sys.stderr)
-        return 2
-    node = None
-    try:
-        node = OdomNode()
-        rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
-    except (InputError, ParameterException) as error:
-        rclpy.logging.get_logger("odom_node").fatal(str(error))
-        return 2
-    except RuntimeError:
-        # SIGTERM shuts the context down at once, also in the midst of a callback: what that still
-        # wanted to publish fails, and that is no fault.
-        if rclpy.ok():
-            raise
-    finally:
-        if node is not None:
-            node.destroy_node()
-        rclpy.try_shutdown()
-    return 0
+    """Run the node until it is told to stop; returns the exit code."""
+    return run(OdomNode, "odom_node", args)
 
 
 if __name__ == "__main__":
