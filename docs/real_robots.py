@@ -8,7 +8,7 @@ Every figure is over legs of drives that took no part in the calibration.
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -17,12 +17,14 @@ import numpy as np
 from werrimbi_odom.cli.calibrate_fit import PARTS_OF_A_LEG
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration import Calibration, calibrate
 from werrimbi_odom.inference.legs import LegErrors, joined, leg_errors, statistics
 from werrimbi_odom.inference.matching import QUARTER_TURN, match
 from werrimbi_odom.inference.recorded_square import Record, recorded_square, squares_of
 from werrimbi_odom.inference.umbmark import corrected, umbmark
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.trajectory import trajectory
 
 ROOT = Path(__file__).parents[1]
 ROBOTS = Path(os.environ.get("WERRIMBI_DATA", ROOT.parent / "shared" / "data")) / "robots"
@@ -142,5 +144,53 @@ def table() -> str:
     return "\n".join(lines)
 
 
+def part_of(run: Run, begin: float, end: float) -> Run:
+    """A run between two times [s]."""
+    ticks, seen = run.ticks, run.reference
+    assert seen is not None
+    rows = (ticks.time >= begin) & (ticks.time <= end)
+    known = (seen.time >= begin) & (seen.time <= end)
+    return replace(
+        run,
+        ticks=replace(ticks, time=ticks.time[rows], left=ticks.left[rows], right=ticks.right[rows]),
+        reference=replace(
+            seen, time=seen.time[known], x=seen.x[known], y=seen.y[known], yaw=seen.yaw[known]
+        ),
+    )
+
+
+def whole_error(robot: Robot, run: Run) -> float:
+    """Root mean square of the position over a drive, its start pose fitted [m]."""
+    seen = run.reference
+    assert seen is not None
+    path = trajectory(robot, run.ticks.time, run.ticks.left, run.ticks.right)
+    there = np.interp(seen.time, path.time, path.x) + 1j * np.interp(seen.time, path.time, path.y)
+    measured = seen.x + 1j * seen.y
+    there, measured = there - there.mean(), measured - measured.mean()
+    turned = there * np.exp(1j * np.angle(np.sum(np.conj(there) * measured)))
+    return float(np.sqrt(np.mean(np.abs(measured - turned) ** 2)))
+
+
+def labyrinth() -> str:
+    """The robot whose reference has positions alone: first 20 s to fit, the rest to judge."""
+    robot_file = read_robot_file(ROBOTS / "labyrinth" / "robot.yaml")
+    run = read_run(ROBOTS / "labyrinth" / "drive", robot_file)
+    begin, end = float(run.ticks.time[0]), float(run.ticks.time[-1])
+    cut = begin + 20.0
+    train = match(part_of(run, begin, cut), robot_file.robot, 0.25, turn=0.25 * QUARTER_TURN)
+    result = calibrate([train], robot_file.robot)
+    rest = part_of(run, cut, end)
+    before, after = (whole_error(robot, rest) for robot in (robot_file.robot, result.robot))
+    says = "explained" if result.trusted else "something else is missing"
+    return (
+        f"| Labyrinth robot | {end - cut:.0f} s | {1e3 * before:.0f} | {1e3 * after:.0f} "
+        f"| {result.robot.wheel_separation_multiplier:.3f} | {says} |"
+    )
+
+
 if __name__ == "__main__":
     print(table())
+    print()
+    print("| robot | held out | rms before (mm) | rms after (mm) | base × | what the tool says |")
+    print("| --- | --- | --- | --- | --- | --- |")
+    print(labyrinth())

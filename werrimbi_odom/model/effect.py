@@ -27,7 +27,6 @@ from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 Stage = Literal["wiring", "wheels", "body", "reference"]
 
 
-
 @dataclass(frozen=True, slots=True)
 class Parameter:
     """A parameter of an effect, declared once.
@@ -96,7 +95,11 @@ class Wiring(NamedTuple):
         """Counts of the true left and right wheel from what is recorded as left and right."""
         if self.swapped:
             left, right = right, left
-        return self.left_sign * left, self.right_sign * right
+        # No product with 1.0: it would round counters beyond 2^53.
+        return (
+            left if self.left_sign > 0.0 else -left,
+            right if self.right_sign > 0.0 else -right,
+        )
 
 
 Apply = Callable[..., Any]
