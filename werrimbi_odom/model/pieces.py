@@ -107,7 +107,7 @@ class PieceRule:
     """The conditions in metres of wheel travel, for one robot and tolerance."""
 
     quantum: float
-    """One count of each encoder [m]."""
+    """One count of each wheel [m]; of the coarser one, which on a tight arc may count for both."""
     lead: float
     """How far a wheel may lead or lag its share of the travel, beyond the quantum."""
     path: float
@@ -115,20 +115,25 @@ class PieceRule:
     flicker: float
     """How far a wheel may go back without having reversed: one count, which may flicker."""
     path_per_travel: float
-    """A count more or less swings all of the path that follows: distance per metre of u."""
+    """A count swings all of the path that follows: distance of the arc's end per metre of u.
+
+    The heading read from the counters lies up to one count of a wheel beside the true one for all
+    of a piece, and its change over the piece up to two; half the travel times one count over the
+    track is the most that both together can do.
+    """
     settled: float
     """Travel u after which the full tolerance holds; before it, its share of that travel."""
 
     @staticmethod
     def of(robot: Robot, tolerance: PieceTolerance) -> PieceRule:
         """The rule for a robot's track and encoders."""
-        quantum = robot.left_tick + robot.right_tick
+        quantum = 2.0 * max(robot.left_tick, robot.right_tick)
         return PieceRule(
             quantum=quantum,
             lead=min(tolerance.heading * robot.track, 2.0 * tolerance.path),
             path=tolerance.path,
             flicker=0.75 * quantum,
-            path_per_travel=0.125 * quantum / robot.track,
+            path_per_travel=0.25 * quantum / robot.track,
             settled=SETTLED * robot.track,
         )
 
