@@ -12,42 +12,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.encoder import EncoderLimits, wheel_steps
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
-if TYPE_CHECKING:
-    from werrimbi_odom.files.run import Reference, Run
-
 QUARTER_TURN = 0.5 * np.pi
 """Turning [rad] that is worth a leg of path, whatever the leg's length."""
-
-
-@dataclass(frozen=True, slots=True)
-class Measured:
-    """Reference poses at the legs' ends, shape (m + 1,); NaN where not measured."""
-
-    time: Floats
-    x: Floats
-    y: Floats
-    yaw: Floats
-
-    @property
-    def has_position(self) -> NDArray[np.bool_]:
-        """Where the position was measured."""
-        return np.isfinite(self.x) & np.isfinite(self.y)
-
-    @property
-    def has_yaw(self) -> NDArray[np.bool_]:
-        """Where the heading was measured."""
-        return np.isfinite(self.yaw)
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,7 +49,8 @@ class MatchedRun:
 
     name: str
     counters: Counters
-    measured: Measured
+    measured: Reference
+    """Reference poses at the legs' ends, shape (m + 1,)."""
     intervals: Floats
     """Reference intervals in each leg, shape (m,): an incremental reference errs at each."""
     sigma_xy: float | None
@@ -137,7 +115,7 @@ def match(
         )
     chosen = _leg_ends(robot, counters, reference.time[usable], leg, turn)
     rows = usable[chosen]
-    measured = Measured(
+    measured = Reference(
         reference.time[rows], reference.x[rows], reference.y[rows], reference.yaw[rows]
     )
     time, left, right, ends, channels = _nodes(counters, measured.time)

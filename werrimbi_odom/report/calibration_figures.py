@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.report.path_figure import BLUE, GREY, ORANGE, ellipse
+from werrimbi_odom.report.path_figure import ellipse
+from werrimbi_odom.report.style import BLUE, GREY, ORANGE
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from werrimbi_odom.report.path_figure import BLUE, ORANGE, Floats
+from werrimbi_odom.report.path_figure import Floats
+from werrimbi_odom.report.style import BLUE, ORANGE, styled
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -39,16 +40,6 @@ def leg_figure(before: Floats, after: Floats, *, title: str, subtitle: str) -> g
             opacity=0.7,
             hovertemplate=f"{name}<br>along %{{x:.1f}} mm<br>sideways %{{y:.1f}} mm<extra></extra>",
         )
-    heading = f"<b>{title}</b><br><span style='font-size:14px'>{subtitle}</span>"
-    figure.update_layout(
-        title={"text": heading, "x": 0.02, "xanchor": "left", "y": 0.96, "yanchor": "top"},
-        template="plotly_white",
-        font={"size": 15},
-        margin={"l": 70, "r": 25, "t": 85, "b": 110},
-        legend={"orientation": "h", "x": 0.0, "y": -0.12, "yanchor": "top"},
-        width=900,
-        height=820,
-    )
     figure.update_xaxes(title="error along [mm]", zeroline=True)
-    figure.update_yaxes(title="error sideways [mm]", zeroline=True, scaleanchor="x", scaleratio=1)
-    return figure
+    figure.update_yaxes(title="error sideways [mm]", zeroline=True)
+    return styled(figure, title, subtitle, width=900, height=820)

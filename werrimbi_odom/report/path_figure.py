@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, styled
+
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
@@ -17,9 +19,6 @@ Floats = NDArray[np.float64]
 
 CHI2_95_OF_2 = 5.991464547107979
 """95 % quantile of chi-squared with two degrees of freedom: the ellipse's squared radius in σ."""
-
-# Okabe and Ito's palette: told apart by the colour-blind.
-BLUE, ORANGE, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#6B6B6B"
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,21 +114,9 @@ def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> go.Figure:
     if drawing.reference_x is not None and drawing.reference_y is not None:
         last_x, last_y = _last_known(drawing.reference_x, drawing.reference_y)
         _mark(figure, last_x, last_y, "measured end", "x", "black")
-    heading = f"<b>{drawing.title}</b>"
-    if drawing.subtitle:
-        heading += f"<br><span style='font-size:14px'>{drawing.subtitle}</span>"
-    figure.update_layout(
-        title={"text": heading, "x": 0.02, "xanchor": "left", "y": 0.96, "yanchor": "top"},
-        template="plotly_white",
-        font={"size": 15},
-        margin={"l": 70, "r": 25, "t": 85, "b": 110},
-        legend={"orientation": "h", "x": 0.0, "y": -0.1, "yanchor": "top"},
-        width=1000,
-        height=860,
-    )
     figure.update_xaxes(title="x [m]", zeroline=False)
-    figure.update_yaxes(title="y [m]", zeroline=False, scaleanchor="x", scaleratio=1)
-    return figure
+    figure.update_yaxes(title="y [m]", zeroline=False)
+    return styled(figure, drawing.title, drawing.subtitle, width=1000, height=860)
 
 
 def _mark(figure: go.Figure, x: float, y: float, name: str, symbol: str, colour: str) -> None:
