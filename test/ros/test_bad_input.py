@@ -20,39 +20,54 @@ NAMES = ["left_wheel_joint", "right_wheel_joint"]
 TICK = 2.0 * math.pi * 0.05 / 2000.0
 
 BAD = {
-    "nan": (NAMES, [math.nan, 0.0], "refused_position_not_finite"),
-    "infinite": (NAMES, [0.0, -math.inf], "refused_position_not_finite"),
+    "nan": (NAMES, [math.nan, 0.0], "position not finite"),
+    "infinite": (NAMES, [0.0, -math.inf], "position not finite"),
     "missing_joint": (
         ["left_wheel_joint", "castor"],
         [0, 0],
-        "refused_joint_right_wheel_joint_missing",
+        "joint right_wheel_joint missing",
     ),
-    "no_joint": ([], [], "refused_joint_left_wheel_joint_missing"),
-    "too_few": (NAMES, [0.0], "refused_wrong_array_length"),
-    "too_many": (NAMES, [0.0, 0.0, 0.0], "refused_wrong_array_length"),
-    "empty": (NAMES, [], "refused_empty_position"),
+    "no_joint": ([], [], "joint left_wheel_joint missing"),
+    "too_few": (NAMES, [0.0], "wrong array length"),
+    "too_many": (NAMES, [0.0, 0.0, 0.0], "wrong array length"),
+    "empty": (NAMES, [], "empty position"),
 }
 
 
+@pytest.fixture(scope="module")
+def counts_after_all(node: Any) -> dict[str, int]:
+    """Counts once every message above has been sent, with some driving after each.
+
+    The next good message holds the motion of the one that was refused.
+    """
+    for names, positions, _ in BAD.values():
+        node.reset()
+        published = len(node.odometry)
+        node.drive([(100, 50)] * 2)
+        node.raw_joints(names, positions)
+        message = node.drive([(200, 100)] * 2)
+        assert len(node.odometry) == published + 4
+        assert message.pose.pose.position.x == pytest.approx(600 * TICK, abs=1e-9)
+        assert all(math.isfinite(value) for value in message.pose.covariance)
+    node.counted(Counter(), refused=len(BAD))
+    return node.counts()
+
+
 @pytest.mark.parametrize("case", BAD)
-def test_a_message_that_cannot_be_used(node: Any, case: str) -> None:
-    """It is refused and counted with its cause; the next good one holds its motion."""
-    names, positions, cause = BAD[case]
-    node.reset()
-    node.drive([(100, 50)] * 2)
-    before, published = node.counts(), len(node.odometry)
-    node.raw_joints(names, positions)
-    level, words = node.counted(before, refused=1, **{cause: 1})
-    assert level in (DiagnosticStatus.WARN, DiagnosticStatus.ERROR)
-    assert "(1)" in words
-    message = node.drive([(200, 100)] * 2)
-    assert len(node.odometry) == published + 2
-    assert message.pose.pose.position.x == pytest.approx(600 * TICK, abs=1e-9)
-    assert all(math.isfinite(value) for value in message.pose.covariance)
+def test_a_message_that_cannot_be_used(
+    node: Any, counts_after_all: dict[str, int], case: str
+) -> None:
+    """It is refused, counted with its cause, said once; nothing else comes of it."""
+    cause = BAD[case][2]
+    assert counts_after_all[f"refused: {cause}"] == sum(
+        cause == other for *_, other in BAD.values()
+    )
+    assert node.stderr().count(f"input refused: {cause}: ") == 1
 
 
 def test_nothing_but_messages_that_cannot_be_used(node: Any) -> None:
     before = len(node.diagnostics)
+    node.drive([(0, 0)])
     while len(node.diagnostics) < before + 2:
         node.raw_joints(NAMES, [])
         node.rest(0.05)
@@ -67,7 +82,8 @@ def test_time_goes_back(node: Any) -> None:
     before, published = node.counts(), len(node.odometry)
     node.ticks(node.left + 100, node.right + 50, node.now - 0.3)
     level, words = node.counted(before, out_of_order=1)
-    assert (level, words) == (DiagnosticStatus.WARN, "in the last second: out of order (1)")
+    assert level == DiagnosticStatus.WARN
+    assert "out of order (1)" in words
     message = node.drive([(100, 50)])
     assert len(node.odometry) == published + 1
     assert message.pose.pose.position.x == pytest.approx(300 * TICK, abs=1e-9)
@@ -81,7 +97,8 @@ def test_the_clock_is_set_back(node: Any) -> None:
     message = node.drive([(100, 50)] * 3)
     assert message.pose.pose.position.x == pytest.approx(400 * TICK, abs=1e-9)
     level, words = node.counted(before, clock_jumps=1)
-    assert (level, words) == (DiagnosticStatus.WARN, "in the last second: clock jumps (1)")
+    assert level == DiagnosticStatus.WARN
+    assert "clock jumps (1)" in words
 
 
 def test_a_message_comes_twice(node: Any) -> None:
@@ -101,7 +118,8 @@ def test_a_gap_loses_no_motion(node: Any) -> None:
     assert message.pose.pose.position.x == pytest.approx(20_500 * TICK, abs=1e-9)
     assert message.twist.twist.linear.x == pytest.approx(20_000 * TICK / 10.02, rel=1e-6)
     level, words = node.counted(before, gaps=1)
-    assert (level, words) == (DiagnosticStatus.WARN, "in the last second: gaps (1)")
+    assert level == DiagnosticStatus.WARN
+    assert "gaps (1)" in words
 
 
 def test_the_counters_are_reset_in_mid_drive(node: Any) -> None:
@@ -115,7 +133,8 @@ def test_the_counters_are_reset_in_mid_drive(node: Any) -> None:
     message = node.drive([(100, 50)])
     assert message.pose.pose.position.x == pytest.approx(6100 * TICK, abs=1e-9)
     level, words = node.counted(before, resets=1)
-    assert (level, words) == (DiagnosticStatus.WARN, "in the last second: resets (1)")
+    assert level == DiagnosticStatus.WARN
+    assert "resets (1)" in words
 
 
 @pytest.mark.parametrize("bits", [8, 16, 32])

@@ -18,7 +18,7 @@ from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
-from rclpy.event_handler import PublisherEventCallbacks
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
@@ -73,7 +73,13 @@ class OdomNode(Node):  # type: ignore[misc]
         self._diagnostics = self._publisher(DiagnosticArray, "/diagnostics", 10)
         self._send_transform = _transform_sender(self) if values["enable_odom_tf"] else None
         self._input = inputs.subscribed(inputs.Wiring(self, values, self._take, self._health))
-        self.create_subscription(PoseWithCovarianceStamped, "set_pose", self._on_set_pose, 10)
+        self.create_subscription(
+            PoseWithCovarianceStamped,
+            "set_pose",
+            self._on_set_pose,
+            10,
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+        )
         self.create_service(Trigger, "~/reset", self._on_reset)
         self.add_pre_set_parameters_callback(parameters.with_floats)
         self.add_on_set_parameters_callback(parameters.judged)

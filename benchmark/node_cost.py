@@ -1,0 +1,160 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""CPU time a message: `odom_node` against an empty relay, side by side in one run.
+
+The relay takes a JointState and publishes an Odometry with nothing computed; it is what rclpy and
+DDS cost. Node and relay run at the same time, each in a process of its own, and hear the same
+messages from one publisher, so that whatever else the machine does weighs on both alike.
+
+    python benchmark/node_cost.py [--rate HZ] [--seconds S]
+"""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import rclpy
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from rclpy.qos import QoSProfile, qos_profile_sensor_data
+from sensor_msgs.msg import JointState
+
+ROOT = Path(__file__).resolve().parents[1]
+DOMAIN = 101
+ROBOT = {
+    "wheel_separation": 0.35,
+    "wheel_radius": 0.05,
+    "left_ticks_per_revolution": 2000.0,
+    "right_ticks_per_revolution": 2000.0,
+}
+
+
+def relay() -> None:
+    """The empty relay, as a ROS tutorial would write it."""
+    rclpy.init()
+    node = Node("relay")
+    publisher = node.create_publisher(Odometry, "relayed", QoSProfile(depth=100))
+    odometry = Odometry()
+
+    def arrived(message: JointState) -> None:
+        odometry.header.stamp = message.header.stamp
+        publisher.publish(odometry)
+
+    node.create_subscription(JointState, "joint_states", arrived, qos_profile_sensor_data)
+    with contextlib.suppress(KeyboardInterrupt):
+        rclpy.spin(node)
+
+
+def main() -> None:
+    """Measure, and print."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--rate", type=float, default=1000.0, help="messages a second")
+    parser.add_argument("--seconds", type=float, default=15.0)
+    arguments = parser.parse_args()
+    with tempfile.TemporaryDirectory() as folder:
+        file = Path(folder) / "robot.yaml"
+        file.write_text(json.dumps({"/**": {"ros__parameters": ROBOT}}), encoding="utf-8")
+        os.environ |= {
+            "ROS_DOMAIN_ID": str(DOMAIN),
+            "ROS_LOG_DIR": folder,
+            "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
+            "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]),
+        }
+        ours = [sys.executable, "-m", "werrimbi_odom.ros.odom_node"]
+        processes = [
+            subprocess.Popen([*ours, "--ros-args", "--params-file", str(file)]),
+            subprocess.Popen([sys.executable, __file__, "--relay"]),
+        ]
+        try:
+            report(processes, arguments.rate, arguments.seconds)
+        finally:
+            for process in processes:
+                process.send_signal(signal.SIGINT)
+            for process in processes:
+                process.wait(10.0)
+
+
+def report(processes: list[subprocess.Popen[bytes]], rate: float, seconds: float) -> None:
+    """Feed both, and print what a message cost each."""
+    rclpy.init()
+    node = Node("feeder")
+    publisher = node.create_publisher(JointState, "joint_states", QoSProfile(depth=1000))
+    heard = {"odom": 0, "relayed": 0}
+
+    def listener(topic: str) -> None:
+        def arrived(_: Odometry) -> None:
+            heard[topic] += 1
+
+        node.create_subscription(Odometry, topic, arrived, QoSProfile(depth=1000))
+
+    for topic in heard:
+        listener(topic)
+    while publisher.get_subscription_count() < 2:
+        rclpy.spin_once(node, timeout_sec=0.05)
+    feed(node, publisher, rate, 1.0)
+    drain(node)
+    before = [cpu_time(process.pid) for process in processes]
+    heard.update(odom=0, relayed=0)
+    count = feed(node, publisher, rate, seconds)
+    drain(node)
+    node_cost, relay_cost = (
+        1e6 * (cpu_time(process.pid) - start) / answered
+        for process, start, answered in zip(processes, before, heard.values(), strict=True)
+    )
+    print(f"{count} JointState messages at {rate:.0f} Hz to both at once")
+    print(f"{'':12} answered  CPU a message")
+    print(f"{'odom_node':12} {heard['odom']:8}  {node_cost:6.0f} us")
+    print(f"{'empty relay':12} {heard['relayed']:8}  {relay_cost:6.0f} us   (rclpy and DDS)")
+    share = 1.0 - relay_cost / node_cost
+    print(f"ours: {node_cost - relay_cost:.0f} us, {share:.0%} of the node's cost")
+    rclpy.try_shutdown()
+
+
+def drain(node: Node) -> None:
+    """Listen until all answers have come."""
+    end = time.perf_counter() + 1.0
+    while time.perf_counter() < end:
+        rclpy.spin_once(node, timeout_sec=0.05)
+
+
+_row = 0
+
+
+def feed(node: Node, publisher: rclpy.publisher.Publisher, rate: float, seconds: float) -> int:
+    """Publish a drive along arcs at a steady rate; returns how many messages."""
+    global _row
+    message = JointState(name=["left_wheel_joint", "right_wheel_joint"])
+    count = round(rate * seconds)
+    begin = time.perf_counter()
+    for due in range(count):
+        while time.perf_counter() < begin + due / rate:
+            rclpy.spin_once(node, timeout_sec=0.0)
+        _row += 1
+        stamp = 10**9 + round(1e9 * _row / rate)
+        message.header.stamp.sec, message.header.stamp.nanosec = divmod(stamp, 10**9)
+        bend = 0.2 if _row // 1000 % 2 else -0.1
+        message.position = [6.0 * _row / rate, 6.0 * _row / rate * (1.0 + bend)]
+        publisher.publish(message)
+    return count
+
+
+def cpu_time(process: int) -> float:
+    """User and system time of a process [s]."""
+    fields = Path(f"/proc/{process}/stat").read_text().rpartition(") ")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
+
+if __name__ == "__main__":
+    if "--relay" in sys.argv:
+        relay()
+    else:
+        main()

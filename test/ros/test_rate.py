@@ -1,0 +1,110 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A thousand messages a second: none lost, every tick in the pose, no memory eaten."""
+
+from __future__ import annotations
+
+import math
+import os
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rclpy")
+
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.trajectory import trajectory
+
+RATE = 1000.0
+
+
+def test_ten_seconds(launch: Callable[..., Any], robot: dict[str, Any], tmp_path: Path) -> None:
+    soak(launch(robot), tmp_path, 10.0)
+
+
+@pytest.mark.evidence
+def test_a_minute(launch: Callable[..., Any], robot: dict[str, Any], tmp_path: Path) -> None:
+    soak(launch(robot), tmp_path, 60.0)
+
+
+def soak(node: Any, folder: Path, seconds: float) -> None:
+    out = folder / "sent.npy"
+    script = Path(__file__).with_name("feeder.py")
+    feeder = subprocess.Popen(
+        [sys.executable, str(script), str(RATE), str(seconds), str(out)],
+        stdin=subprocess.PIPE,
+        stdout=subprocess.PIPE,
+        text=True,
+        env=node.environment,
+    )
+    try:
+        received, last, memory, cpu = listened(node, round(RATE * seconds))
+        rate = feeder.stdout.readline().strip()
+    finally:
+        feeder.communicate("", timeout=10.0)
+    stamps, left, right = np.load(out)
+    model = trajectory(Robot(0.35, 0.05, 2000.0, 1000.0), 1e-9 * (stamps - stamps[0]), left, right)
+    counts = node.counts()
+    print(
+        f"\n{stamps.size} messages sent at {rate}; {counts['messages']} arrived, "
+        f"{counts['lost by DDS']} lost by DDS; {received} odometry messages received; "
+        f"{cpu / stamps.size * 1e6:.0f} us of CPU a message; resident memory "
+        f"{memory[0] / 1e6:.1f} MB after a second, {memory[-1] / 1e6:.1f} MB at the end"
+    )
+    assert counts["messages"] + counts["lost by DDS"] == stamps.size
+    assert counts["published"] == counts["messages"] - 1
+    assert received == counts["published"]
+    position, orientation = last.pose.pose.position, last.pose.pose.orientation
+    assert position.x == pytest.approx(model.x[-1], abs=1e-9)
+    assert position.y == pytest.approx(model.y[-1], abs=1e-9)
+    yaw = 2.0 * math.atan2(orientation.z, orientation.w)
+    assert math.remainder(yaw - model.yaw[-1], 2.0 * math.pi) == pytest.approx(0.0, abs=1e-9)
+    covariance = np.asarray(last.pose.covariance).reshape(6, 6)[np.ix_((0, 1, 5), (0, 1, 5))]
+    np.testing.assert_allclose(covariance, model.covariance.matrix()[-1], rtol=1e-8)
+    assert memory[-1] - memory[0] < 2e6
+
+
+def listened(node: Any, expected: int) -> tuple[int, Any, list[int], float]:
+    """Odometry messages until the last, that one, resident memory each second, CPU time [s]."""
+    last_stamp = 1_000_000 + (expected - 1) / RATE
+    received, last, memory = 0, None, []
+    node.until(lambda: bool(node.odometry), "odometry")
+    begin = cpu_time(node.process.pid)
+    while last is None or abs(stamp_of(last) - last_stamp) > 1e-6:
+        seen = len(node.diagnostics)
+        node.until(
+            lambda seen=seen: len(node.diagnostics) > seen or arrived(node, last_stamp), "report"
+        )
+        memory.append(resident_memory(node.process.pid))
+        if node.odometry:
+            last = node.odometry[-1]
+        received += len(node.odometry)
+        node.odometry.clear()
+    node.report()
+    node.report()
+    return received, last, memory, cpu_time(node.process.pid) - begin
+
+
+def arrived(node: Any, last_stamp: float) -> bool:
+    return bool(node.odometry) and abs(stamp_of(node.odometry[-1]) - last_stamp) < 1e-6
+
+
+def stamp_of(message: Any) -> float:
+    return float(message.header.stamp.sec) + 1e-9 * float(message.header.stamp.nanosec)
+
+
+def resident_memory(process: int) -> int:
+    """Resident set size [bytes]."""
+    pages = int(Path(f"/proc/{process}/statm").read_text().split()[1])
+    return pages * os.sysconf("SC_PAGE_SIZE")
+
+
+def cpu_time(process: int) -> float:
+    """User and system time [s]."""
+    fields = Path(f"/proc/{process}/stat").read_text().rpartition(") ")[2].split()
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

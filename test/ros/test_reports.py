@@ -1,0 +1,169 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""~/status, ~/pieces and /diagnostics, as a person or RViz sees them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from itertools import pairwise
+from typing import Any
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+from diagnostic_msgs.msg import DiagnosticStatus
+from visualization_msgs.msg import Marker
+
+TICK = 2.0 * math.pi * 0.05 / 2000.0
+LINE = [(100, 50)] * 60
+SPIN = [(-35, 17.5)] * 50  # 90 degrees
+ARC = [(100, 40)] * 60
+
+
+@pytest.fixture(scope="module")
+def status(node: Any) -> list[Any]:
+    return node.keep(DiagnosticStatus, "odom_node/status")
+
+
+def test_status_is_plain_to_read(node: Any, status: list[Any]) -> None:
+    node.reset()
+    node.drive(LINE)
+    node.rest(0.5)
+    values = {item.key: item.value for item in status[-1].values}
+    assert status[-1].name == "odom_node: estimate"
+    assert status[-1].message == (
+        "line 0.94 m; 0.94 m driven; 1 sigma 0.3 mm along, 1.1 mm across, 0.11 deg"
+    )
+    assert values["piece"] == "line"
+    assert values["piece length"] == values["distance"] == values["x"] == "0.942 m"
+    assert values["piece turn"] == values["heading"] == "0.0 deg"
+    assert values["piece radius"] == "straight"
+    node.drive(SPIN)
+    node.rest(0.5)
+    values = {item.key: item.value for item in status[-1].values}
+    assert status[-1].message.startswith("spin 90.0 deg to the left; 0.94 m driven; 1 sigma ")
+    assert values["piece"] == "spin"
+    assert values["piece turn"] == values["heading"] == "90.0 deg"
+    # The robot has turned: what was across the path is now along its heading.
+    assert values["1 sigma along"] == "1.1 mm"
+    assert values["1 sigma across"] == "0.4 mm"
+
+
+def test_status_comes_five_times_a_second(node: Any, status: list[Any]) -> None:
+    before = len(status)
+    node.rest(1.0)
+    assert 4 <= len(status) - before <= 6
+
+
+def test_diagnostics_say_the_rates(node: Any) -> None:
+    """Over an interval in which messages come at 50 Hz."""
+    node.report()
+    reports = len(node.diagnostics)
+    while len(node.diagnostics) == reports:
+        node.step(10, 5)
+        node.rest(0.02)
+    status = node.diagnostics[-1]
+    assert status.level == DiagnosticStatus.OK
+    rates = {item.key: float(item.value.split()[0]) for item in status.values if "rate" in item.key}
+    assert 25.0 < rates["input rate"] <= 50.0
+    assert rates["output rate"] == rates["input rate"]
+    assert status.message == f"{rates['input rate']} Hz in, {rates['output rate']} Hz out"
+
+
+@pytest.fixture(scope="module")
+def driven(node: Any) -> dict[tuple[str, int], Any]:
+    """Markers on display after a line, a spin and an arc, all of them finished."""
+    display: dict[tuple[str, int], Any] = {}
+    node.reset()
+    arrays = node.pieces()
+    node.rest(0.5)
+    node.drive(LINE + SPIN + ARC + [(-100, -40)] * 10)
+    node.rest(1.2)
+    show(display, arrays)
+    return display
+
+
+def show(display: dict[tuple[str, int], Any], arrays: list[Any]) -> None:
+    """What RViz does with marker arrays."""
+    for array in arrays:
+        for marker in array.markers:
+            if marker.action == Marker.DELETEALL:
+                display.clear()
+            elif marker.action == Marker.DELETE:
+                del display[(marker.ns, marker.id)]
+            else:
+                display[(marker.ns, marker.id)] = marker
+
+
+def longest(display: dict[tuple[str, int], Any], kind: str) -> Any:
+    """The path marker of a kind with the most to it."""
+    return max(
+        (marker for (namespace, _), marker in display.items() if namespace == kind),
+        key=lambda marker: path_length(marker.points),
+    )
+
+
+def path_length(points: list[Any]) -> float:
+    return sum(math.dist((a.x, a.y), (b.x, b.y)) for a, b in pairwise(points))
+
+
+def test_each_kind_has_its_colour_and_its_true_path(driven: dict[tuple[str, int], Any]) -> None:
+    line, arc, spin = (longest(driven, kind) for kind in ("line", "arc", "spin"))
+    colours = {(m.color.r, m.color.g, m.color.b) for m in (line, arc, spin)}
+    assert len(colours) == 3
+    assert all(m.type == Marker.LINE_STRIP for m in (line, arc, spin))
+    assert all(m.header.frame_id == "odom" for m in (line, arc, spin))
+    assert path_length(line.points) == pytest.approx(6000 * TICK, rel=0.03)
+    way, turn = 0.5 * (6000 + 4800) * TICK, (4800 - 6000) * TICK / 0.35
+    assert path_length(arc.points) == pytest.approx(way, rel=0.03)
+    assert len(arc.points) >= abs(turn) / 0.1
+    centre = (line.points[-1].x, line.points[-1].y)
+    radii = [math.dist(centre, (point.x, point.y)) for point in spin.points]
+    assert radii == pytest.approx([0.175] * len(radii), abs=0.01)
+
+
+def test_each_piece_ends_in_its_ellipse(driven: dict[tuple[str, int], Any]) -> None:
+    line = longest(driven, "line")
+    ellipse = driven[("line ellipse", line.id)]
+    assert ellipse.type == Marker.CYLINDER
+    end = line.points[-1]
+    assert (ellipse.pose.position.x, ellipse.pose.position.y) == pytest.approx((end.x, end.y))
+    # 95 % of a normal vector lies within 2.448 sigma; across a line sigma is 1.1 mm here.
+    assert ellipse.scale.x == pytest.approx(2 * 2.448 * 1.095e-3, rel=0.05)
+    assert ellipse.scale.y < ellipse.scale.x
+    across = 2.0 * math.atan2(ellipse.pose.orientation.z, ellipse.pose.orientation.w)
+    assert abs(math.sin(across)) == pytest.approx(1.0, abs=0.05)
+
+
+def test_the_open_piece_is_shown_too(driven: dict[tuple[str, int], Any]) -> None:
+    path = driven[("open", 0)]
+    assert path_length(path.points) == pytest.approx(900 * TICK, rel=0.2)
+    assert ("open ellipse", 0) in driven
+
+
+def test_the_number_of_markers_is_bounded_and_a_late_viewer_sees_them_all(
+    launch: Callable[..., Any], robot: dict[str, Any]
+) -> None:
+    node = launch(robot).begin()
+    early = node.pieces()
+    node.rest(0.5)
+    node.drive([(100, 50), (200, 100), (-100, -50), (-200, -100)] * 130)  # 260 reversals
+    node.rest(0.5)
+    display: dict[tuple[str, int], Any] = {}
+    show(display, early)
+    paths = {key: marker for key, marker in display.items() if key[0] in ("line", "arc", "spin")}
+    assert len(paths) == 200
+    assert len(display) <= 2 * 201
+    newest = max(number for _, number in paths)
+    assert newest == 258
+    late = node.keep(type(early[0]), "odom_node/pieces")
+    node.rest(1.0)
+    again: dict[tuple[str, int], Any] = {}
+    show(again, late)
+    assert {key for key in again if key[0] != "open"} >= set(paths)
+    node.reset()
+    node.rest(0.3)
+    show(again, late)
+    assert not [key for key in again if key[0] in ("line", "arc", "spin")]
