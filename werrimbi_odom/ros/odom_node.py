@@ -175,7 +175,14 @@ class OdomNode(Node):  # type: ignore[misc]
     def _publish_status(self) -> None:
         tracker, name = self._tracker, f"{self.get_name()}: estimate"
         self._status.publish(
-            status_of(name, tracker.pose, tracker.covariance, tracker.piece, tracker.distance)
+            status_of(
+                name,
+                tracker.pose,
+                tracker.covariance,
+                tracker.piece,
+                tracker.distance,
+                tracker.mean_shift,
+            )
         )
 
     def _publish_diagnostics(self) -> None:

@@ -14,7 +14,12 @@ from werrimbi_odom.model.pose import Pose, wrap
 
 
 def status_of(
-    name: str, pose: Pose, covariance: PoseCovariance[float], piece: Piece, distance: float
+    name: str,
+    pose: Pose,
+    covariance: PoseCovariance[float],
+    piece: Piece,
+    distance: float,
+    mean_shift: tuple[float, float] | None = None,
 ) -> DiagnosticStatus:
     """The estimate in words.
 
@@ -28,6 +33,8 @@ def status_of(
         The piece being driven.
     distance : float
         Travel since the start [m].
+    mean_shift : (float, float), optional
+        Mean of the true position less the pose, where exact moments are carried [m].
     """
     along, across = sigmas_of_robot(covariance, pose.yaw)
     heading = math.degrees(math.sqrt(covariance.yawyaw))
@@ -44,6 +51,9 @@ def status_of(
         "1 sigma across": length_in_words(across),
         "1 sigma heading": f"{heading:.2f} deg",
     }
+    if mean_shift is not None:
+        x, y = mean_shift
+        values["mean shift"] = f"x {1e3 * x:+.1f} mm, y {1e3 * y:+.1f} mm (not applied)"
     return DiagnosticStatus(
         level=DiagnosticStatus.OK,
         name=name,

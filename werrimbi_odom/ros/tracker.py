@@ -65,6 +65,11 @@ class Tracker:
         """Of the present pose."""
         return self._odometer.covariance()
 
+    @property
+    def mean_shift(self) -> tuple[float, float] | None:
+        """Mean of the true position less the pose (x, y) [m]; known by exact moments alone."""
+        return self._odometer.errors().mean_shift
+
     def take(self, stamp: Stamp, left: float, right: float) -> Estimate | None:
         """The estimate after a reading; None for the first and for one that is refused."""
         # Seconds since the first stamp: as seconds since 1970 a float resolves but 0.2 µs.
