@@ -28,7 +28,6 @@ from werrimbi_odom.model.pieces import Piece, kind_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
-
 HEADING_OF_A_COUNT = (4.0e-4**2 + 5.8e-4**2) * 2.0 * math.pi * 0.05 / 2000 / 0.35**2
 """Variance of the heading once both wheels of `ROBOT` have gone one count [rad²]."""
 

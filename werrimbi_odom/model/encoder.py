@@ -221,7 +221,7 @@ class Encoder:
         per_left, per_right = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
         usual = min(duration, self._period or duration)
         if reading.left == 0 and reading.right == 0:
-            far = max(abs(last.left) / per_left, abs(last.right) / per_right)
+            far = max(abs(left) / per_left, abs(right) / per_right)
             if far > self._reach(usual):
                 return True
         reach = self._reach(duration)
