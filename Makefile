@@ -36,6 +36,7 @@ lint: setup
 
 bench: setup  ## how fast, as ratios measured side by side
 	$(BIN)/python benchmark/core_speed.py
+	$(BIN)/python benchmark/piece_tolerance.py
 	$(BIN)/python benchmark/node_cost.py
 
 evidence: setup  ## the long tests: many seeds, soaks
