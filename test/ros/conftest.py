@@ -119,6 +119,7 @@ class Launched:
         self.executor = SingleThreadedExecutor(context=self.context)
         self.executor.add_node(self.node)
         self._publishers: dict[str, Any] = {}
+        self._clients: dict[str, Any] = {}
         self.odometry: list[Odometry] = []
         self.diagnostics: list[DiagnosticStatus] = []
         self._listen(Odometry, "odom", self.odometry.append)
@@ -214,11 +215,12 @@ class Launched:
 
     def call(self, kind: type, service: str, request: Any) -> Any:
         """Call a service of the node."""
-        client = self.node.create_client(kind, service)
-        assert client.wait_for_service(10.0), f"no service {service}; {self.stderr()}"
+        if service not in self._clients:
+            self._clients[service] = self.node.create_client(kind, service)
+        client = self._clients[service]
+        self.until(client.service_is_ready, f"service {service}")
         future = client.call_async(request)
         self.until(future.done, f"answer of {service}")
-        self.node.destroy_client(client)
         return future.result()
 
     def set_parameters(self, **values: Any) -> Any:

@@ -24,6 +24,7 @@ ROBOTS = {
     "one_sure_wheel": Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=0.0),
     "no_noise": Robot(0.35, 0.05, 2e6, 2e6, left_wheel_noise=0.0, right_wheel_noise=0.0),
     "noisy": Robot(0.2, 0.05, 500.0, 500.0, left_wheel_noise=0.1, right_wheel_noise=0.1),
+    "exact": Robot(0.35, 0.05, 2000.0, 2000.0, covariance_order="exact"),
     "wide": Robot(20.0, 2.0, 500.0, 500.0),
 }
 

@@ -16,7 +16,7 @@ from werrimbi_odom.model.encoder import EncoderTally
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
 
-_WORTH_A_WARNING = ("resets", "jumps", "implausible", "clock_jumps", "out_of_order", "gaps")
+_WORTH_A_WARNING = ("resets", "jumps", "implausible", "clock jumps", "out of order", "gaps")
 
 
 class Health:
@@ -106,7 +106,11 @@ class Health:
             "without stamp": self.unstamped,
             **inputs,
             "published": self.published,
-            **{key: n for key, n in tally.as_dict().items() if key not in ("messages", "accepted")},
+            **{
+                event.replace("_", " "): count
+                for event, count in tally.as_dict().items()
+                if event not in ("messages", "accepted")
+            },
             "refused": self._refused.total(),
             **{f"refused: {cause}": n for cause, n in self._refused.items()},
             "refused set_pose": self._refused_poses.total(),
@@ -130,9 +134,7 @@ class Health:
             for cause, n in new.items()
             if n > 0 and cause.startswith(("refused: ", "refused set_pose: "))
         ]
-        events = [
-            f"{key.replace('_', ' ')} ({new[key]})" for key in _WORTH_A_WARNING if new[key] > 0
-        ]
+        events = [f"{key} ({new[key]})" for key in _WORTH_A_WARNING if new[key] > 0]
         if causes and not new["published"]:
             return ERROR, f"no odometry, all input is refused: {', '.join(causes + events)}"
         if causes or events:

@@ -113,7 +113,9 @@ class JointStates:
         _subscribe(wiring, JointState, "joint_states", self._arrived)
 
     def tally(self) -> dict[str, int]:
-        """What happened to single wheels of a side."""
+        """What happened to single wheels, where a side has several."""
+        if all(len(names) == 1 for names in self._wanted):
+            return {}
         return {
             "wraps of single wheels": sum(side.wraps for side in self._sides),
             "resets of single wheels": sum(side.resets for side in self._sides),

@@ -1,0 +1,36 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""docs/node.md and config/robot.yaml say what the code does."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+from werrimbi_odom.files.parameters import PARAMETERS
+from werrimbi_odom.ros.parameters import CHANGEABLE
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs" / "node.md").read_text(encoding="utf-8")
+
+
+def between(first: str, last: str) -> str:
+    return PAGE.partition(f"<!-- {first} -->\n")[2].partition(f"<!-- {last} -->")[0]
+
+
+def test_the_table_of_parameters_is_what_the_command_prints() -> None:
+    command = [sys.executable, "-m", "werrimbi_odom.files.parameter_table"]
+    printed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout
+    assert between("parameters", "end of parameters") == printed
+    assert printed.count("\n") == 2 + len(PARAMETERS)
+
+
+def test_what_may_change_at_run_time_is_listed() -> None:
+    listed = between("changeable", "end of changeable").strip().rstrip(".").replace("\n", " ")
+    assert listed.split(", ") == [f"`{p.name}`" for p in PARAMETERS if p.name in CHANGEABLE]
+    assert len(CHANGEABLE) == len(listed.split(", "))
