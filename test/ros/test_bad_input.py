@@ -27,7 +27,6 @@ BAD = {
         [0, 0],
         "joint right_wheel_joint missing",
     ),
-    "no_joint": ([], [], "joint left_wheel_joint missing"),
     "too_few": (NAMES, [0.0], "wrong array length"),
     "too_many": (NAMES, [0.0, 0.0, 0.0], "wrong array length"),
     "empty": (NAMES, [], "empty position"),
@@ -74,6 +73,34 @@ def test_nothing_but_messages_that_cannot_be_used(node: Any) -> None:
     status = node.diagnostics[-1]
     assert status.level == DiagnosticStatus.ERROR
     assert status.message.startswith("no odometry, all input is refused: empty position (")
+
+
+def test_messages_of_another_driver_on_the_topic_are_not_for_us(node: Any) -> None:
+    """Many robots have the joints of an arm and of the wheels on one topic."""
+    node.reset()
+    node.drive([(0, 0)])
+    before, published = node.counts(), len(node.odometry)
+    for _ in range(3):
+        node.raw_joints(["shoulder", "elbow"], [0.1, math.nan])
+        node.step(100, 50)
+        node.last()
+    level, _ = node.counted(before, refused=0, messages_of_other_joints=3)
+    assert level == DiagnosticStatus.OK
+    assert len(node.odometry) == published + 3
+
+
+def test_nothing_but_other_joints_is_no_input(
+    launch: Callable[..., Any], robot: dict[str, Any]
+) -> None:
+    """As where the wheels' names are wrong in the robot file."""
+    node = launch(robot | {"left_wheel_names": ["left"], "right_wheel_names": ["right"]})
+    while len(node.diagnostics) < 2:
+        node.step(0, 0)
+        node.rest(0.1)
+    status = node.diagnostics[-1]
+    assert status.level == DiagnosticStatus.STALE
+    assert status.message.startswith("no input: /joint_states never heard; ")
+    assert status.message.endswith(" messages of other joints came")
 
 
 def test_time_goes_back(node: Any) -> None:

@@ -36,6 +36,7 @@ class Health:
         self.silent_after = silent_after
         self.published = 0
         self.unstamped = 0
+        self.foreign = 0
         self._logger = logger
         self._topics = topics
         self._heard = [0] * len(topics)
@@ -102,6 +103,7 @@ class Health:
         return {
             "messages": sum(self._heard),
             **(heard if len(heard) > 1 else {}),
+            "messages of other joints": self.foreign,
             "lost by DDS": self._lost,
             "without stamp": self.unstamped,
             **inputs,
@@ -126,7 +128,9 @@ class Health:
             if silence > self.silent_after
         ]
         if len(silent) == len(silences):
-            return STALE, f"no input: {', '.join(silent)}"
+            foreign = new["messages of other joints"]
+            but = f"; {foreign} messages of other joints came" if foreign else ""
+            return STALE, f"no input: {', '.join(silent)}{but}"
         if silent:
             return ERROR, f"no odometry without both wheels: {silent[0]}"
         causes = [

@@ -98,7 +98,10 @@ def subscribed(wiring: Wiring) -> JointStates | Pair | Ticks:
 
 
 class JointStates:
-    """Wheel angles, or counts, among any other joints and in any order (sensor_msgs/JointState)."""
+    """Wheel angles, or counts, among any other joints and in any order (sensor_msgs/JointState).
+
+    Messages without any of our joints are not for us.
+    """
 
     def __init__(self, wiring: Wiring) -> None:
         values = wiring.values
@@ -109,7 +112,7 @@ class JointStates:
         self._clock = wiring.node.get_clock()
         self._names: list[str] | None = None
         self._places: tuple[list[int], list[int]] = ([], [])
-        self._absent = ""
+        self._absent: list[str] = []
         _subscribe(wiring, JointState, "joint_states", self._arrived)
 
     def tally(self) -> dict[str, int]:
@@ -122,11 +125,14 @@ class JointStates:
         }
 
     def _arrived(self, message: Any) -> None:
-        self._health.hear(0)
         if message.name != self._names:
             self._find(message.name)
+        if len(self._absent) == sum(map(len, self._wanted)):
+            self._health.foreign += 1  # from the driver of an arm, say, on the same topic
+            return
+        self._health.hear(0)
         if self._absent:
-            self._health.refuse(f"joint {self._absent} missing", f"it has {self._names}")
+            self._health.refuse(f"joint {self._absent[0]} missing", f"it has {self._names}")
             return
         positions = message.position
         if len(positions) != len(message.name):
@@ -151,8 +157,7 @@ class JointStates:
     def _find(self, names: list[str]) -> None:
         """Where our wheels stand in a message; looked up anew only when its names change."""
         self._names = list(names)
-        wanted = [name for side in self._wanted for name in side]
-        self._absent = next((name for name in wanted if name not in names), "")
+        self._absent = [name for side in self._wanted for name in side if name not in names]
         if not self._absent:
             left, right = ([names.index(name) for name in side] for side in self._wanted)
             self._places = left, right
