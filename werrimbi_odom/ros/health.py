@@ -133,16 +133,17 @@ class Health:
             return STALE, f"no input: {', '.join(silent)}{but}"
         if silent:
             return ERROR, f"no odometry without both wheels: {silent[0]}"
-        causes = [
-            f"{cause.removeprefix('refused: ')} ({n})"
-            for cause, n in new.items()
-            if n > 0 and cause.startswith(("refused: ", "refused set_pose: "))
+        refusals = [
+            f"{key.removeprefix('refused: ')} ({n})"
+            for key, n in new.items()
+            if n > 0 and key.startswith(("refused: ", "refused set_pose: "))
         ]
         events = [f"{key} ({new[key]})" for key in _WORTH_A_WARNING if new[key] > 0]
-        if causes and not new["published"]:
-            return ERROR, f"no odometry, all input is refused: {', '.join(causes + events)}"
-        if causes or events:
-            return WARN, f"in the last second: {', '.join(causes + events)}"
+        happened = ", ".join(refusals + events)
+        if new["refused"] and not new["published"]:
+            return ERROR, f"no odometry, all input is refused: {happened}"
+        if happened:
+            return WARN, f"in the last second: {happened}"
         return OK, ""
 
     def _note(self, tally: Counter[str], words: str, cause: str, detail: str) -> None:
