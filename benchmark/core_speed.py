@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Speed of the numeric core: closed form over pieces against plain propagation tick by tick.
 
-Ratios are between figures of the same run on the same machine; the plain one is measured on a slice
-and scaled, as it grows in proportion to the ticks.
+Both are timed by turns in one run, so their ratio holds whatever else the machine does. What goes
+tick by tick is timed on a slice and scaled: it grows in proportion to the ticks.
 
     python benchmark/core_speed.py
 """
@@ -13,8 +13,10 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
+import numpy as np
 from rich.console import Console
 from rich.table import Table
 
@@ -25,17 +27,83 @@ from test.plain_twin import plain_run
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.trajectory import trajectory
 
-SLICE = 20_000
-"""Ticks on which the slow ones are measured."""
+RECORDING = Path(__file__).resolve().parents[1] / "werrimbi_odom" / "recordings" / "square"
+MILLION = 1_000_000
+SLICE = 10_000
+"""Ticks on which is timed what goes tick by tick."""
+ROUNDS = 4
 
 
-def seconds(work: Callable[[], object], repeats: int = 3) -> float:
-    """Shortest of a few runs: what the machine can do when left alone."""
-    best = float("inf")
-    for _ in range(repeats):
-        begin = time.perf_counter()
-        work()
-        best = min(best, time.perf_counter() - begin)
+def main() -> None:
+    """Print the tables."""
+    console = Console(width=110)
+    drives = {
+        "squares at 50 Hz": square(rate=50.0, laps=480),
+        "squares at 200 Hz": square(rate=200.0, laps=120),
+        "the recorded square, again and again": recorded(),
+        "wandering without rest": random_drive(0, duration=20_000.0),
+    }
+    console.print(race({name: first(drive, MILLION) for name, drive in drives.items()}))
+    console.print(growth(first(drives["squares at 50 Hz"], MILLION)))
+
+
+def race(drives: dict[str, Ticks]) -> Table:
+    """All ways to odometry on the same ticks."""
+    table = titled("A million ticks: pose and covariance at each (odometer, plain: scaled)")
+    for heading in ("drive", "pieces", "trajectory", "odometer", "plain numpy", "plain/trajectory"):
+        table.add_column(heading, justify="left" if heading == "drive" else "right")
+    for name, ticks in drives.items():
+        part, scale = first(ticks, SLICE), ticks.time.size / SLICE
+        whole, live, plain = shortest(
+            partial(trajectory, ROBOT, *ticks),
+            partial(streamed, part),
+            partial(plain_run, ROBOT, part.left, part.right),
+        )
+        table.add_row(
+            name,
+            f"{len(trajectory(ROBOT, *ticks).pieces):,}",
+            f"{whole:.2f} s",
+            f"{live * scale:.1f} s",
+            f"{plain * scale:.1f} s",
+            f"{plain * scale / whole:.0f} ×",
+        )
+    return table
+
+
+def growth(ticks: Ticks) -> Table:
+    """Cost of a tick as the record grows; the odometer goes through all of it once."""
+    table = titled("Cost of a tick as the record grows (squares at 50 Hz)")
+    for heading in ("ticks", "trajectory", "of it per tick", "odometer, per message there"):
+        table.add_column(heading, justify="right")
+    messages = list(zip(*(part.tolist() for part in ticks), strict=True))
+    odometer, fed = Odometer(ROBOT), 0
+    for count in (1_000, 10_000, 100_000, MILLION):
+        (whole,) = shortest(partial(trajectory, ROBOT, *first(ticks, count)))
+        for message in messages[fed : count - 1_000]:
+            odometer.update(*message)
+        last = []
+        for message in messages[count - 1_000 : count]:
+            begin = time.perf_counter()
+            odometer.update(*message)
+            last.append(time.perf_counter() - begin)
+        fed = count
+        table.add_row(
+            f"{count:,}",
+            f"{1e3 * whole:.1f} ms",
+            f"{1e9 * whole / count:.0f} ns",
+            f"{1e6 * float(np.median(last)):.1f} µs",
+        )
+    return table
+
+
+def shortest(*works: Callable[[], object]) -> list[float]:
+    """Shortest time of each [s], taken by turns: what the machine can do when left alone."""
+    best = [float("inf")] * len(works)
+    for _ in range(ROUNDS):
+        for at, work in enumerate(works):
+            begin = time.perf_counter()
+            work()
+            best[at] = min(best[at], time.perf_counter() - begin)
     return best
 
 
@@ -44,65 +112,23 @@ def first(ticks: Ticks, count: int) -> Ticks:
     return Ticks(*(part[:count] for part in ticks))
 
 
+def recorded() -> Ticks:
+    """The square that ships with the package, driven until there are a million ticks."""
+    table = np.loadtxt(RECORDING / "ticks.csv", delimiter=",", skiprows=1, usecols=(0, 1, 2))
+    steps = np.diff(table.T, axis=1)
+    laps = np.cumsum(np.tile(steps, MILLION // steps.shape[1] + 1), axis=1)
+    return Ticks(laps[0], np.rint(laps[1]).astype(np.int64), np.rint(laps[2]).astype(np.int64))
+
+
 def streamed(ticks: Ticks) -> None:
     """The record through the odometer, message by message."""
     odometer = Odometer(ROBOT)
-    for reading in zip(*(part.tolist() for part in ticks), strict=True):
-        odometer.update(*reading)
+    for message in zip(*(part.tolist() for part in ticks), strict=True):
+        odometer.update(*message)
 
 
-def main() -> None:
-    """Print the tables."""
-    console = Console()
-    drives = {
-        "squares, 100 Hz": square(rate=100.0, laps=240),
-        "wandering, 50 Hz": random_drive(0, duration=20_000.0),
-    }
-    table = Table(title="A million ticks, poses and covariances at every one")
-    for heading in (
-        "drive",
-        "pieces",
-        "trajectory",
-        "odometer",
-        "plain numpy",
-        "plain / trajectory",
-    ):
-        table.add_column(heading, justify="left" if heading == "drive" else "right")
-    for name, drive in drives.items():
-        ticks = first(drive, 1_000_000)
-        part = first(ticks, SLICE)
-        scale = ticks.time.size / SLICE
-        whole = seconds(lambda ticks=ticks: trajectory(ROBOT, *ticks))  # type: ignore[misc]
-        live = seconds(lambda part=part: streamed(part)) * scale  # type: ignore[misc]
-        plain = (
-            seconds(lambda part=part: plain_run(ROBOT, part.left, part.right), 1) * scale  # type: ignore[misc]
-        )
-        pieces = len(trajectory(ROBOT, *ticks).pieces)
-        table.add_row(
-            name,
-            f"{pieces:,}",
-            f"{whole:.2f} s",
-            f"{live:.1f} s",
-            f"{plain:.1f} s",
-            f"{plain / whole:.0f} ×",
-        )
-    console.print(table)
-    growth = Table(title="Growth with the length of the record (squares)")
-    for heading in ("ticks", "trajectory", "per tick", "odometer, per message"):
-        growth.add_column(heading, justify="right")
-    whole_drive = drives["squares, 100 Hz"]
-    for count in (1_000, 10_000, 100_000, 1_000_000):
-        ticks = first(whole_drive, count)
-        offline = seconds(lambda ticks=ticks: trajectory(ROBOT, *ticks))  # type: ignore[misc]
-        part = Ticks(*(values[-SLICE:] for values in ticks))
-        live = seconds(lambda part=part: streamed(part), 1) / part.time.size  # type: ignore[misc]
-        growth.add_row(
-            f"{count:,}",
-            f"{1e3 * offline:.1f} ms",
-            f"{1e9 * offline / count:.0f} ns",
-            f"{1e6 * live:.1f} µs",
-        )
-    console.print(growth)
+def titled(title: str) -> Table:
+    return Table(title=title, title_justify="left")
 
 
 if __name__ == "__main__":
