@@ -20,9 +20,9 @@ from werrimbi_odom.model.encoder import (
     EncoderLimits,
     EncoderTally,
     WheelStep,
-    wheel_steps,
     wrapped,
 )
+from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
 
 TICK = ROBOT.left_tick

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 
 from test.model.drives import ROBOT, Ticks, random_drive, square, then
 from test.model.records import Record, records
-from werrimbi_odom.model import cutting, encoder
+from werrimbi_odom.model import cutting, recorded_counts
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.odometer import Odometer
@@ -131,8 +131,8 @@ def rows_together(count: int | None) -> Iterator[None]:
         yield
         return
     sizes = [
-        (encoder, "_STRETCH", count),
-        (encoder, "_BLOCK", 2 * count),
+        (recorded_counts, "_STRETCH", count),
+        (recorded_counts, "_BLOCK", 2 * count),
         (cutting, "_FEW", count),
         (cutting, "_MANY", 3 * count),
         (trajectory_module, "_BLOCK", count),

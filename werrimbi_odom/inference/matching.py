@@ -19,8 +19,9 @@ from numpy.typing import NDArray
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.model.drive import Span
-from werrimbi_odom.model.encoder import EncoderLimits, wheel_steps
+from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
 
 QUARTER_TURN = 0.5 * np.pi

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.squares import Driven, Squares
-from werrimbi_odom.model.encoder import Counts, EncoderLimits, wheel_steps
+from werrimbi_odom.model.encoder import Counts, EncoderLimits
 from werrimbi_odom.model.motion import WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
 
 TURN_TOLERANCE = 0.6

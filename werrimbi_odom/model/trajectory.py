@@ -20,16 +20,12 @@ from werrimbi_odom.model.covariance import (
 from werrimbi_odom.model.cutting import Cut, cut
 from werrimbi_odom.model.driving import Driven, acts, driven, features
 from werrimbi_odom.model.effect import wiring_of
-from werrimbi_odom.model.encoder import (
-    Counts,
-    EncoderLimits,
-    EncoderTally,
-    wheel_steps,
-)
+from werrimbi_odom.model.encoder import Counts, EncoderLimits, EncoderTally
 from werrimbi_odom.model.moments import PathMoments
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pieces import Piece, PieceRule, PieceTolerance, kind_of
 from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known
 

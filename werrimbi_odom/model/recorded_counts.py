@@ -1,0 +1,220 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Counters of a whole record to wheel travel: what `Encoder` does row by row, in arrays."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.model.encoder import (
+    LEARNED_FLOOR,
+    LEARNED_MARGIN,
+    Counts,
+    Encoder,
+    EncoderLimits,
+    EncoderTally,
+    Reading,
+    WheelStep,
+    fell_to_zero,
+    reach_rate,
+)
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+_BLOCK = 8192  # rows of a record taken together: their arrays stay in the cache
+_STRETCH = 256  # rows taken one by one where one was in doubt
+_LARGEST_COUNT = 1 << 61  # integer counts from which rows are taken one by one
+
+
+@dataclass(frozen=True, slots=True)
+class WheelSteps:
+    """The accepted steps of a recorded run; arrays of shape (n,), as in `WheelStep`.
+
+    `row` is the row of the record at which each step ends; `first_row` the one at which the first
+    begins (-1 when no row was accepted).
+    """
+
+    first_row: int
+    row: NDArray[np.intp]
+    time: Floats
+    duration: Floats
+    left: Floats
+    right: Floats
+    left_lost: Floats
+    right_lost: Floats
+    tally: EncoderTally
+
+
+def wheel_steps(
+    robot: Robot,
+    time: Floats,
+    left: Counts,
+    right: Counts,
+    limits: EncoderLimits | None = None,
+) -> WheelSteps:
+    """All steps of a record at once; the same as feeding its rows to an `Encoder`.
+
+    Rows that leave no doubt are taken together, in array operations; from one that does, the
+    `Encoder` goes on by itself for a stretch.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,), [s]
+    left, right : ndarray, shape (n,)
+        Cumulative signed counts, integer or float.
+    """
+    encoder = Encoder(robot, limits or EncoderLimits())
+    record = _Record(np.asarray(time, dtype=np.float64), _as_counts(left), _as_counts(right))
+    parts: list[_Part] = []
+    row = 0
+    while row < record.rows:
+        part, row = _judged_steps(encoder, record, row)
+        parts.append(part)
+        quiet = row < record.rows
+        while quiet:
+            part = _quiet_steps(encoder, record, row)
+            parts.append(part)
+            row += part.row.size
+            quiet = part.row.size == _BLOCK
+    return WheelSteps(record.first_row(), *_joined(parts), encoder.tally)
+
+
+class _Record(NamedTuple):
+    time: Floats
+    left: Counts
+    right: Counts
+
+    @property
+    def rows(self) -> int:
+        return self.time.size
+
+    def reading(self, row: int) -> Reading:
+        """One row in Python's numbers, whose integers are exact at any size."""
+        return Reading(self.time[row].item(), self.left[row].item(), self.right[row].item())
+
+    def first_row(self) -> int:
+        """The first row of finite numbers, -1 when there is none."""
+        rows = range(self.rows)
+        return next((row for row in rows if all(map(math.isfinite, self.reading(row)))), -1)
+
+
+class _Part(NamedTuple):
+    """Some steps of a record: the arrays of `WheelSteps`."""
+
+    row: NDArray[np.intp]
+    time: Floats
+    duration: Floats
+    left: Floats
+    right: Floats
+    left_lost: Floats
+    right_lost: Floats
+
+
+def _joined(parts: list[_Part]) -> _Part:
+    none = np.empty(0)
+    rows = [np.empty(0, dtype=np.intp), *(part.row for part in parts)]
+    columns = zip(*((none,) * 6, *(part[1:] for part in parts)), strict=True)
+    return _Part(np.concatenate(rows), *(np.concatenate(column) for column in columns))
+
+
+def _judged_steps(encoder: Encoder, record: _Record, row: int) -> tuple[_Part, int]:
+    """A stretch from `row` on, one by one; and the row after it, which follows an accepted one."""
+    rows: list[int] = []
+    steps: list[WheelStep] = []
+    least = row + _STRETCH
+    accepted = False
+    while row < record.rows and not (accepted and row >= least):
+        before = encoder.tally.accepted
+        step = encoder.step(*record.reading(row))
+        accepted = encoder.tally.accepted > before
+        if step is not None:
+            rows.append(row)
+            steps.append(step)
+        row += 1
+    columns = np.array(steps, dtype=np.float64).reshape(-1, len(WheelStep._fields)).T
+    return _Part(np.array(rows, dtype=np.intp), *columns), row
+
+
+def _quiet_steps(encoder: Encoder, record: _Record, row: int) -> _Part:
+    """Steps to the rows from `row` on that leave no doubt, a block at the most.
+
+    The row before must be the last one that `encoder` accepted; afterwards it stands as if it had
+    taken these steps itself.
+    """
+    robot, limits = encoder.robot, encoder.limits
+    rows = slice(row - 1, row + _BLOCK)
+    time, left, right = record.time[rows], record.left[rows], record.right[rows]
+    if _is_huge(left) or _is_huge(right):
+        return _joined([])
+    per_left, per_right = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
+    limit = limits.max_wheel_speed
+    with np.errstate(all="ignore"):  # numbers that are not finite are in doubt, and so not used
+        duration = np.diff(time)
+        left_count, left_wraps = _differences(left, robot.encoder_bits)
+        right_count, right_wraps = _differences(right, robot.encoder_bits)
+        left_turns, right_turns = left_count / per_left, right_count / per_right
+        rate = np.maximum(np.abs(left_turns), np.abs(right_turns)) / duration
+        fastest = np.maximum.accumulate(np.concatenate([[encoder.fastest], rate]))
+        if limit > 0.0:
+            reach = duration * reach_rate(robot, limits, 0.0)
+        else:
+            reach = duration * np.maximum(LEARNED_FLOOR, LEARNED_MARGIN * fastest[:-1])
+        left_travel, right_travel = left_count * robot.left_tick, right_count * robot.right_tick
+        doubt = ~((duration > 0.0) & (duration < np.inf) & (rate < np.inf))
+        doubt |= (left[1:] == 0) & (right[1:] == 0) & (rate > 0.0)
+        for turns, steps in ((left / per_left, left_turns), (right / per_right, right_turns)):
+            doubt |= fell_to_zero(turns[1:], turns[:-1], steps, reach)
+        if limit > 0.0:
+            doubt |= np.maximum(np.abs(left_travel), np.abs(right_travel)) > limit * duration
+    count = int(doubt.argmax()) if doubt.any() else doubt.size
+    part = _Part(
+        np.arange(row, row + count),
+        time[1 : count + 1],
+        duration[:count],
+        left_travel[:count],
+        right_travel[:count],
+        np.zeros(count),
+        np.zeros(count),
+    )
+    if count:
+        encoder.tally.wraps += int(np.count_nonzero(left_wraps[:count]))
+        encoder.tally.wraps += int(np.count_nonzero(right_wraps[:count]))
+        encoder.have_taken(
+            part.duration,
+            float(part.left[-1]),
+            float(part.right[-1]),
+            record.reading(row + count - 1),
+            float(fastest[count]),
+        )
+    return part
+
+
+def _differences(counts: Counts, bits: int) -> tuple[Floats, NDArray[np.bool_]]:
+    """`wrapped` differences of consecutive counts, and where they wrapped."""
+    steps = np.diff(counts)
+    wraps = np.zeros(steps.shape, dtype=np.bool_)
+    if bits > 0:
+        half = 1 << (bits - 1)
+        wraps = (steps < -half) | (steps >= half)
+        if wraps.any():
+            steps[wraps] = (steps[wraps] + half) % (2 * half) - half
+    return steps.astype(np.float64, copy=False), wraps
+
+
+def _is_huge(counts: Counts) -> bool:
+    """Whether differences of integer counts could leave their 64 bits."""
+    return counts.dtype.kind == "i" and bool(
+        counts.max() >= _LARGEST_COUNT or counts.min() <= -_LARGEST_COUNT
+    )
+
+
+def _as_counts(counts: Counts) -> Counts:
+    """Integers of any kind as 64 bits, everything else as floats."""
+    if counts.dtype.kind in "iub":
+        return counts.astype(np.int64, copy=False)
+    return counts.astype(np.float64, copy=False)
