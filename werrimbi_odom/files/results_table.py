@@ -13,9 +13,8 @@ from pathlib import Path
 import numpy as np
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.text import read_small_text
 from werrimbi_odom.model.pose import Floats
-
-MAX_BYTES = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -83,24 +82,9 @@ def read_results(
 
 def _text(path: Path) -> str:
     """The whole of a small text file."""
-    try:
-        with path.open("rb") as file:
-            raw = file.read(MAX_BYTES + 1)
-    except IsADirectoryError:
-        raise InputError(f"{path} is a folder; it must be a CSV file") from None
-    except FileNotFoundError:
-        raise InputError(f"{path}: there is no such file") from None
-    except (OSError, ValueError) as error:  # ValueError: a NUL byte in the name
-        why = getattr(error, "strerror", None) or str(error)
-        raise InputError(f"{path} cannot be read: {why}") from error
-    if len(raw) > MAX_BYTES:
-        raise InputError(f"{path} is larger than {MAX_BYTES:,} bytes; that was not typed by hand")
-    try:
-        return raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = raw.count(b"\n", 0, error.start) + 1
-        byte = raw[error.start]
-        raise InputError(f"{path}, line {line}: byte 0x{byte:02x} is not UTF-8 text") from None
+    return read_small_text(
+        path, wanted="it must be a CSV file", too_large="that was not typed by hand"
+    )
 
 
 def _lines(path: Path) -> list[tuple[int, list[str]]]:

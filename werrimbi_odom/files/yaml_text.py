@@ -22,8 +22,8 @@ from ruamel.yaml.events import (
 from ruamel.yaml.scalarbool import ScalarBoolean
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.text import read_small_text
 
-MAX_BYTES = 1_000_000
 MAX_DEPTH = 8
 _ERRORS_OF_SCALARS = (ValueError, ArithmeticError, LookupError, TypeError, AttributeError)
 _TAGS = ("!", *("tag:yaml.org,2002:" + kind for kind in ("str", "int", "float", "bool", "null")))
@@ -35,29 +35,11 @@ def read_text(path: Path) -> str:
     Raises
     ------
     InputError
-        When it cannot be opened, is larger than `MAX_BYTES`, or is not UTF-8 (with the line).
+        When it cannot be opened, is larger than a robot file can be, or is not UTF-8.
     """
-    try:
-        with path.open("rb") as file:
-            raw = file.read(MAX_BYTES + 1)
-    except IsADirectoryError:
-        raise InputError(f"{path} is a folder; give the YAML file in it") from None
-    except FileNotFoundError:
-        raise InputError(f"{path}: there is no such file") from None
-    except (OSError, ValueError) as error:  # ValueError: a NUL byte in the name
-        why = getattr(error, "strerror", None) or str(error)
-        raise InputError(f"{path} cannot be read: {why}") from error
-    if len(raw) > MAX_BYTES:
-        raise InputError(f"{path} is larger than {MAX_BYTES:,} bytes; it is not a robot file")
-    try:
-        text = raw.decode("utf-8-sig")
-    except UnicodeDecodeError as error:
-        line = raw.count(b"\n", 0, error.start) + 1
-        raise InputError(
-            f"{path}, line {line}: byte 0x{raw[error.start]:02x} is not UTF-8; "
-            "save the file as UTF-8 text"
-        ) from None
-    return text.replace("\r\n", "\n").replace("\r", "\n")
+    return read_small_text(
+        path, wanted="give the YAML file in it", too_large="it is not a robot file"
+    )
 
 
 def round_trip() -> YAML:
