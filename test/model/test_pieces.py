@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from importlib.resources import files
 
 import numpy as np
 import pytest
@@ -57,6 +58,16 @@ def test_a_square_takes_twenty_times_fewer_pieces_than_messages_and_loses_nothin
     ticks = square(rate=rate)
     pieces = trajectory(ROBOT, *ticks).pieces
     assert len(ticks.time) >= 20 * len(pieces)
+    assert worst_eigenvalue_error(ROBOT, ticks) < 0.01
+
+
+def test_the_recorded_square_loses_nothing_either() -> None:
+    """Wheels of a physics engine, which slip, settle and shudder when they start and stop."""
+    path = files("werrimbi_odom") / "recordings" / "square" / "ticks.csv"
+    with path.open() as table:
+        time, left, right = np.loadtxt(table, delimiter=",", skiprows=1, usecols=(0, 1, 2)).T
+    ticks = Ticks(time, left, right)
+    assert len(ticks.time) >= 20 * len(trajectory(ROBOT, *ticks).pieces)
     assert worst_eigenvalue_error(ROBOT, ticks) < 0.01
 
 
