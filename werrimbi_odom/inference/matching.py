@@ -100,20 +100,7 @@ def match(
     InputError
         When the run has no reference, or none while the ticks were recorded.
     """
-    reference = run.reference
-    if reference is None:
-        raise InputError(
-            f"{run.path}: there is no reference to compare with "
-            "(reference.csv: t_s,x_m,y_m,yaw_rad)"
-        )
-    counters = _counters(run, robot, limits)
-    usable = _usable(reference, float(counters.time[0]), float(counters.time[-1]))
-    if usable.size < 2:
-        raise InputError(
-            f"{run.path}: fewer than two reference poses between the first tick "
-            f"(t_s {counters.time[0]:g}) and the last ({counters.time[-1]:g}); "
-            "are both clocks the same?"
-        )
+    counters, usable, reference = _common(run, robot, limits)
     chosen = _leg_ends(robot, counters, reference.time[usable], leg, turn)
     rows = usable[chosen]
     measured = Reference(
@@ -136,6 +123,56 @@ def match(
     )
 
 
+def every_pose(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> MatchedRun:
+    """A run with a leg from each usable reference pose to the next, to be `cut` to any length.
+
+    Raises
+    ------
+    InputError
+        As `match`.
+    """
+    counters, usable, reference = _common(run, robot, limits)
+    measured = Reference(
+        reference.time[usable], reference.x[usable], reference.y[usable], reference.yaw[usable]
+    )
+    time, left, right, ends, channels = _nodes(counters, measured.time)
+    return MatchedRun(
+        run.name,
+        counters,
+        measured,
+        np.ones(usable.size - 1),
+        _typical(reference.sigma_xy),
+        _typical(reference.sigma_yaw),
+        0.0,
+        time,
+        left,
+        right,
+        ends,
+        channels,
+    )
+
+
+def cut(
+    every: MatchedRun, robot: Robot, leg: float = 1.0, turn: float = QUARTER_TURN
+) -> MatchedRun:
+    """The same run in legs of a length; `match` does both at once."""
+    measured = every.measured
+    chosen = _leg_ends(robot, every.counters, measured.time, leg, turn)
+    time, left, right, ends, channels = _nodes(every.counters, measured.time[chosen])
+    return replace(
+        every,
+        measured=Reference(
+            measured.time[chosen], measured.x[chosen], measured.y[chosen], measured.yaw[chosen]
+        ),
+        intervals=np.diff(chosen).astype(np.float64),
+        time=time,
+        left=left,
+        right=right,
+        ends=ends,
+        channels=channels,
+    )
+
+
 def delayed(run: MatchedRun, delay: float) -> MatchedRun:
     """The same legs, when the reference saw at t - `delay` [s] what it stamps t."""
     if delay == run.delay:
@@ -146,6 +183,27 @@ def delayed(run: MatchedRun, delay: float) -> MatchedRun:
     return replace(
         run, delay=delay, time=time, left=left, right=right, ends=ends, channels=channels
     )
+
+
+def _common(
+    run: Run, robot: Robot, limits: EncoderLimits | None
+) -> tuple[Counters, NDArray[np.intp], Reference]:
+    """What the encoders counted, and the rows of the reference within that time."""
+    reference = run.reference
+    if reference is None:
+        raise InputError(
+            f"{run.path}: there is no reference to compare with "
+            "(reference.csv: t_s,x_m,y_m,yaw_rad)"
+        )
+    counters = _counters(run, robot, limits)
+    usable = _usable(reference, float(counters.time[0]), float(counters.time[-1]))
+    if usable.size < 2:
+        raise InputError(
+            f"{run.path}: fewer than two reference poses between the first tick "
+            f"(t_s {counters.time[0]:g}) and the last ({counters.time[-1]:g}); "
+            "are both clocks the same?"
+        )
+    return counters, usable, reference
 
 
 def _counters(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counters:
