@@ -15,11 +15,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.fit import ModelFit, stacked, unexpected
+from werrimbi_odom.inference.design import stacked, unexpected
+from werrimbi_odom.inference.fit import ModelFit
 from werrimbi_odom.inference.knobs import Knob
 from werrimbi_odom.inference.likelihood import ReferenceKind
 from werrimbi_odom.inference.matching import MatchedRun
-from werrimbi_odom.inference.prediction import Prediction, predict
+from werrimbi_odom.inference.prediction import Prediction, predict_all
+from werrimbi_odom.inference.together import Together, together
 from werrimbi_odom.model.pose import Floats
 
 CHANNELS = ("along", "sideways", "heading")
@@ -48,24 +50,19 @@ def dependences(
     """
     from scipy.stats import chi2
 
-    point = fit.point
+    point, laid = fit.point, together(runs)
     plain = [knob for knob in knobs if knob.per_run or knob in fit.free]
-    white, slopes, _ = stacked(runs, point, kind, plain)
-    basis = slopes.reshape(-1, slopes.shape[-1])
-    names: list[str] = []
-    blocks = []
-    for index, run in enumerate(runs):
-        prediction = predict(point.model.of_run(index), run, point.model.start_yaw(index))
-        variables = leg_variables(run, prediction)
-        names = list(variables)
-        marks = np.zeros((run.legs, 3, 3 * len(variables)))
-        for column, of_legs in enumerate(variables.values()):
-            for channel in range(3):
-                marks[:, channel, 3 * column + channel] = of_legs
-        pattern = unexpected(run, index, point, kind, marks).whitened()[1]
-        blocks.append(pattern[..., : marks.shape[-1]].reshape(-1, marks.shape[-1]))
-    patterns = np.concatenate(blocks)
-    unexplained = _less(white.reshape(-1, 1), basis)[:, 0]
+    white, basis = stacked(laid, point, kind, plain).flat()
+    prediction = predict_all(point.model, laid)
+    variables = leg_variables(laid, prediction)
+    names = list(variables)
+    marks = np.zeros((laid.count, 3, 3 * len(variables)))
+    for column, of_legs in enumerate(variables.values()):
+        for channel in range(3):
+            marks[:, channel, 3 * column + channel] = of_legs
+    patterns = unexpected(laid, point, kind, marks, prediction).whitened()[1]
+    patterns = patterns[..., :-1].reshape(-1, marks.shape[-1])
+    unexplained = _less(white[:, None], basis)[:, 0]
     marks = _less(patterns, basis)
     strength = np.sum(marks**2, axis=0)
     usable = strength > 1e-9 * np.sum(patterns**2, axis=0)
@@ -84,11 +81,12 @@ def dependences(
     return tuple(sorted(cells, key=lambda cell: cell.p_value))
 
 
-def leg_variables(run: MatchedRun, prediction: Prediction) -> dict[str, Floats]:
+def leg_variables(runs: Together, prediction: Prediction) -> dict[str, Floats]:
     """What a leg's error may go with; arrays of shape (m,), named with their units."""
-    duration = np.diff(run.time[run.ends])
-    elapsed = run.time[run.ends[:-1]] - run.time[run.ends[0]]
-    heading = np.nan_to_num(run.measured.yaw[:-1])
+    duration = runs.duration
+    ends = np.cumsum(duration)
+    elapsed = ends - duration - (ends - duration)[runs.legs[:-1]][runs.run_of_leg]
+    heading = np.nan_to_num(runs.start[:, 2])
     travel, turn = prediction.along, prediction.turn
     return {
         "travel [m]": travel,

@@ -15,23 +15,19 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference.design import Design, Point, stacked, unexpected
 from werrimbi_odom.inference.knobs import (
     CALIBRATION,
-    HEADING_AT_START,
     START_YAW,
+    YAW_DRIFT,
     Knob,
     Model,
 )
-from werrimbi_odom.inference.likelihood import (
-    Innovations,
-    ReferenceKind,
-    Variances,
-    innovations,
-)
+from werrimbi_odom.inference.likelihood import Innovations, ReferenceKind, Variances, innovations
 from werrimbi_odom.inference.matching import MatchedRun
 from werrimbi_odom.inference.noise import held_variances, likeliest
-from werrimbi_odom.inference.prediction import Prediction, predict, relative_poses, seen
-from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.inference.prediction import Prediction, legs_shown, predict, predict_all
+from werrimbi_odom.inference.together import Together, together
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -40,15 +36,6 @@ JUMP = 40.0
 
 _MEDIAN_CHI2_3 = 2.366
 _TAIL = 4.0  # degrees of freedom of the Student-t that weighs legs until the jumps are known
-
-
-@dataclass(frozen=True, slots=True)
-class Point:
-    """Where a fit stands: the model, its noise, and the legs on which the reference jumped."""
-
-    model: Model
-    variances: Variances
-    excluded: tuple[NDArray[np.bool_], ...]
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,31 +60,29 @@ class ModelFit:
 
 
 def start_point(
-    runs: Sequence[MatchedRun],
+    runs: Sequence[MatchedRun] | Together,
     robot: Robot,
     sigma_xy: float | None = None,
     sigma_yaw: float | None = None,
 ) -> Point:
     """Where a fit begins: the robot as given, no leg excluded, headings from the first legs."""
+    laid = _laid(runs)
     guess = (
         max(robot.left_wheel_noise, 1e-5),
         max(robot.right_wheel_noise, 1e-5),
         sigma_xy or 1e-3,
         sigma_yaw or 2e-3,
     )
-    own = []
-    for run in runs:
-        heading = _first_heading(robot, run)
-        own.append({} if heading is None else {START_YAW: heading})
+    own = tuple(_nuisances(robot, run) for run in laid.runs)
     return Point(
-        Model(robot, tuple(own)),
+        Model(robot, own),
         Variances(*(np.array([value**2]) for value in guess)),
-        tuple(np.zeros(run.legs, dtype=np.bool_) for run in runs),
+        tuple(np.zeros(run.legs, dtype=np.bool_) for run in laid.runs),
     )
 
 
 def fit_model(
-    runs: Sequence[MatchedRun],
+    runs: Sequence[MatchedRun] | Together,
     point: Point,
     kind: ReferenceKind = "absolute",
     knobs: Sequence[Knob] = CALIBRATION,
@@ -119,19 +104,22 @@ def fit_model(
         Find the legs on which the reference jumped. Once for a set of runs: what is compared with
         this fit later must leave the same legs out.
     """
+    laid = _laid(runs)
     given = point.model
     if find_jumps:
-        point = _robustly(runs, point, kind, knobs)
+        point = _robustly(laid, point, kind, knobs)
     point = replace(point, variances=held_variances(point.variances, sigma_xy, sigma_yaw))
     held = (sigma_xy is not None, sigma_yaw is not None)
     free, covariance = _shared(knobs), np.zeros((0, 0))
     for _ in range(rounds):
-        point = replace(point, variances=likeliest(Costs(runs, point, kind), point.variances, held))
-        free, covariance = _determined(runs, point, kind, knobs)
+        point = replace(point, variances=likeliest(Costs(laid, point, kind), point.variances, held))
+        free, covariance = _determined(stacked(laid, point, kind, knobs))
         mute = {knob.name: given.value(knob) for knob in _shared(knobs) if knob not in free}
-        point = replace(point, model=point.model.turned(mute, [{}] * len(runs)))
-        point = _gauss_newton(runs, point, kind, [*free, *_own(knobs)])
-    costs = Costs(runs, point, kind)
+        point = replace(point, model=point.model.turned(mute, [{}] * len(laid.runs)))
+        point, moved = _gauss_newton(laid, point, kind, [*free, *_own(knobs)])
+        if not moved:
+            break
+    costs = Costs(laid, point, kind)
     return ModelFit(
         point,
         tuple(free),
@@ -142,11 +130,16 @@ def fit_model(
     )
 
 
+def _laid(runs: Sequence[MatchedRun] | Together) -> Together:
+    return runs if isinstance(runs, Together) else together(runs)
+
+
 def _shared(knobs: Sequence[Knob]) -> list[Knob]:
     return [knob for knob in knobs if not knob.per_run]
 
 
 def _own(knobs: Sequence[Knob]) -> list[Knob]:
+    """Knobs of the runs' own; their nuisances are always among them."""
     return [knob for knob in knobs if knob.per_run]
 
 
@@ -156,50 +149,62 @@ def _at_bound(value: float, knob: Knob) -> bool:
     return value <= low + margin or value >= high - margin
 
 
-def _robustly(
-    runs: Sequence[MatchedRun], point: Point, kind: ReferenceKind, knobs: Sequence[Knob]
-) -> Point:
+def _robustly(runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob]) -> Point:
     """Come near the answer whatever the reference's jumps, then find these."""
     for _ in range(12):
-        white, slopes, columns = stacked(runs, point, kind, knobs)
-        deviation = np.sum(white**2, axis=-1)
+        design = stacked(runs, point, kind, knobs)
+        deviation = np.sum(design.white**2, axis=-1)
         counted = deviation > 0.0
         scale = float(np.median(deviation[counted])) / _MEDIAN_CHI2_3 if counted.any() else 1.0
         point = replace(point, variances=_scaled(point.variances, max(scale, 1e-6)))
         weight = (_TAIL + 3.0) / (_TAIL + deviation / scale)
-        step = _solve(white / np.sqrt(scale), slopes / np.sqrt(scale), weight)
-        point = replace(point, model=_moved(point.model, columns, step))
-        if _small(columns, step):
+        step = solved(design, weight)
+        point = replace(point, model=moved(point.model, design, step))
+        if _small(design, step):
             break
     return replace(point, excluded=_jumps(runs, point, kind))
 
 
-def _jumps(
-    runs: Sequence[MatchedRun], point: Point, kind: ReferenceKind
-) -> tuple[NDArray[np.bool_], ...]:
+def _jumps(runs: Together, point: Point, kind: ReferenceKind) -> tuple[NDArray[np.bool_], ...]:
+    white, _ = unexpected(runs, point, kind).whitened()
+    deviation = np.sum(white**2, axis=-1)
     found = []
-    for index, run in enumerate(runs):
-        white, _ = unexpected(run, index, point, kind, np.zeros((run.legs, 3, 0))).whitened()
-        deviation = np.sum(white**2, axis=-1)
-        usual = max(float(np.median(deviation)) / _MEDIAN_CHI2_3, 1.0)
-        found.append(deviation > JUMP * usual)
+    for first, last in zip(runs.legs[:-1], runs.legs[1:], strict=True):
+        own = deviation[first:last]
+        usual = max(float(np.median(own)) / _MEDIAN_CHI2_3, 1.0)
+        found.append(own > JUMP * usual)
     return tuple(found)
 
 
 def _gauss_newton(
-    runs: Sequence[MatchedRun], point: Point, kind: ReferenceKind, knobs: Sequence[Knob]
-) -> Point:
-    for _ in range(6):
-        white, slopes, columns = stacked(runs, point, kind, knobs)
-        step = _solve(white, slopes, np.ones(white.shape[0]))
-        point = replace(point, model=_moved(point.model, columns, step))
-        if _small(columns, step):
-            break
-    return point
+    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob]
+) -> tuple[Point, bool]:
+    """The point of least squares near a point, and whether it is another one."""
+    prediction = predict_all(point.model, runs)
+    best = np.inf
+    for number in range(6):
+        design = stacked(runs, point, kind, knobs, prediction)
+        best = min(best, float(np.sum(design.white**2)))
+        step = solved(design, np.ones(runs.count))
+        if _small(design, step):
+            return point, number > 0
+        for _ in range(5):
+            tried = replace(point, model=moved(point.model, design, step))
+            ahead = replace(prediction, relative=legs_shown(tried.model, runs))
+            cost = float(np.sum(unexpected(runs, tried, kind, None, ahead).whitened()[0] ** 2))
+            if cost < best:
+                break
+            step = 0.3 * step
+        else:
+            return point, number > 0
+        point, prediction, gained = tried, ahead, best - cost
+        if gained < 1e-3:
+            return point, number > 0
+    return point, True
 
 
-def _small(columns: Sequence[tuple[Knob, int]], step: Floats) -> bool:
-    scales = np.array([knob.scale for knob, _ in columns])
+def _small(design: Design, step: Floats) -> bool:
+    scales = np.array([knob.scale for knob, _ in design.columns])
     return bool(np.all(np.abs(step) < 1e-4 * scales))
 
 
@@ -207,117 +212,48 @@ def _small(columns: Sequence[tuple[Knob, int]], step: Floats) -> bool:
 class Costs:
     """Minus two log-likelihood of sets of variances, the model being given."""
 
-    runs: Sequence[MatchedRun]
+    runs: Sequence[MatchedRun] | Together
     point: Point
     kind: ReferenceKind
 
-    def predictions(self) -> list[Prediction]:
+    def prediction(self) -> Prediction:
         """Of all runs."""
+        return predict_all(self.point.model, _laid(self.runs))
+
+    def innovations(self, sets: Variances, prediction: Prediction) -> Innovations:
+        """For each set."""
         model = self.point.model
-        return [
-            predict(model.of_run(index), run, model.start_yaw(index))
-            for index, run in enumerate(self.runs)
-        ]
+        return innovations(
+            model.robot,
+            _laid(self.runs),
+            prediction,
+            sets,
+            self.kind,
+            excluded=self.point.skip,
+            start_yaws=model.start_yaws,
+        )
 
-    def __call__(self, sets: Variances, predictions: list[Prediction] | None = None) -> Floats:
+    def __call__(self, sets: Variances, prediction: Prediction | None = None) -> Floats:
         """Cost of each set."""
-        model, total = self.point.model, np.zeros(sets.left.size)
-        for index, prediction in enumerate(predictions or self.predictions()):
-            robot = model.of_run(index)
-            total += innovations(
-                robot,
-                seen(self.runs[index], view_of(robot.effects)),
-                prediction,
-                sets,
-                self.kind,
-                excluded=self.point.excluded[index],
-                start_yaw=model.start_yaw(index),
-            ).minus_two_log_likelihood()
-        return total
+        found = self.innovations(sets, prediction or self.prediction())
+        return found.minus_two_log_likelihood()
 
 
-def unexpected(
-    run: MatchedRun, index: int, point: Point, kind: ReferenceKind, change: Floats
-) -> Innovations:
-    """Innovations of one run, and their derivatives for changes of its relative poses."""
-    robot = point.model.of_run(index)
-    heading = point.model.start_yaw(index)
-    return innovations(
-        robot,
-        seen(run, view_of(robot.effects)),
-        predict(robot, run, heading),
-        point.variances,
-        kind,
-        change=change,
-        excluded=point.excluded[index],
-        start_yaw=heading,
-    )
-
-
-def slopes_of_run(run: MatchedRun, index: int, model: Model, knobs: Sequence[Knob]) -> Floats:
-    """Derivatives of a run's relative poses in knobs, shape (m, 3, p), by central differences."""
-    heading = model.start_yaw(index)
-    nothing: list[dict[str, float]] = [{} for _ in model.own]
-    columns = []
-    for knob in knobs:
-        now = model.value(knob, index)
-        low, high = knob.bounds
-        ahead, behind = min(now + knob.scale, high), max(now - knob.scale, low)
-        poses = []
-        for value in (ahead, behind):
-            if knob.per_run:
-                own = [*nothing[:index], {knob.name: value}, *nothing[index + 1 :]]
-                tried = model.turned({}, own)
-            else:
-                tried = model.turned({knob.name: value}, nothing)
-            poses.append(relative_poses(tried.of_run(index), run, heading))
-        columns.append((poses[0] - poses[1]) / (ahead - behind))
-    return np.stack(columns, axis=-1) if columns else np.zeros((run.legs, 3, 0))
-
-
-def stacked(
-    runs: Sequence[MatchedRun], point: Point, kind: ReferenceKind, knobs: Sequence[Knob]
-) -> tuple[Floats, Floats, list[tuple[Knob, int]]]:
-    """Whitened innovations of all legs (M, 3), derivatives (M, 3, p), and what the p are.
-
-    A shared knob has one column, a knob of the runs' own one for each run (with the run's index).
-    """
-    shared, own = _shared(knobs), [knob for knob in _own(knobs) if knob.name != START_YAW]
-    columns: list[tuple[Knob, int]] = [(knob, -1) for knob in shared]
-    values, blocks = [], []
-    for index, run in enumerate(runs):
-        mine = [knob for knob in own if knob.name in point.model.own[index]]
-        change = slopes_of_run(run, index, point.model, [*shared, *mine])
-        white, slope = unexpected(run, index, point, kind, change).whitened()
-        values.append(white)
-        blocks.append((slope, len(columns)))
-        columns += [(knob, index) for knob in mine]
-        if point.model.start_yaw(index) is not None:
-            columns.append((HEADING_AT_START, index))
-    wide = np.zeros((sum(block.shape[0] for block, _ in blocks), 3, len(columns)))
-    row = 0
-    for block, first in blocks:
-        rows = slice(row, row + block.shape[0])
-        wide[rows, :, : len(shared)] = block[..., : len(shared)]
-        rest = block[..., len(shared) :]
-        wide[rows, :, first : first + rest.shape[-1]] = rest
-        row += block.shape[0]
-    return np.concatenate(values), wide, columns
-
-
-def _solve(white: Floats, slopes: Floats, weight: Floats) -> Floats:
+def solved(design: Design, weight: Floats) -> Floats:
     """Weighted least squares step; directions that nothing excites are not moved."""
     root = np.sqrt(weight)[:, None]
-    design = (slopes * root[..., None]).reshape(-1, slopes.shape[-1])
-    size = np.sqrt(np.sum(design**2, axis=0))
+    matrix = (design.slopes * root[..., None]).reshape(-1, design.slopes.shape[-1])
+    size = np.sqrt(np.sum(matrix**2, axis=0))
     size = np.where(size > 0.0, size, 1.0)
-    return -np.linalg.lstsq(design / size, (white * root).ravel(), rcond=1e-9)[0] / size
+    target = (design.white * root).ravel()
+    return -np.linalg.lstsq(matrix / size, target, rcond=1e-9)[0] / size
 
 
-def _moved(model: Model, columns: Sequence[tuple[Knob, int]], step: Floats) -> Model:
+def moved(model: Model, design: Design, step: Floats) -> Model:
+    """The model after a step in the design's columns."""
     shared: dict[str, float] = {}
     own: list[dict[str, float]] = [{} for _ in model.own]
-    for (knob, index), move in zip(columns, step.tolist(), strict=True):
+    for (knob, index), move in zip(design.columns, step.tolist(), strict=True):
         target = shared if index < 0 else own[index]
         target[knob.name] = float(np.clip(model.value(knob, max(index, 0)) + move, *knob.bounds))
     return model.turned(shared, own)
@@ -332,12 +268,10 @@ def _scaled(variances: Variances, factor: float) -> Variances:
     )
 
 
-def _determined(
-    runs: Sequence[MatchedRun], point: Point, kind: ReferenceKind, knobs: Sequence[Knob]
-) -> tuple[list[Knob], Floats]:
+def _determined(design: Design) -> tuple[list[Knob], Floats]:
     """Shared knobs that the driving determines, and their covariance."""
-    _, slopes, columns = stacked(runs, point, kind, knobs)
-    flat = slopes.reshape(-1, slopes.shape[-1])
+    columns = design.columns
+    flat = design.flat()[1]
     kept = list(range(len(columns)))
     while True:
         size = np.sqrt(np.sum(flat[:, kept] ** 2, axis=0))
@@ -356,12 +290,21 @@ def _determined(
         kept.pop(int(np.argmax(excess)))
 
 
+def _nuisances(robot: Robot, run: MatchedRun) -> dict[str, float]:
+    """What has to be fitted for a run because its reference does not measure it."""
+    heading = _first_heading(robot, run)
+    own = {} if heading is None else {START_YAW: heading}
+    if not run.measured.has_position.any():
+        own[YAW_DRIFT] = 0.0  # a heading alone is a gyro's, and gyros drift
+    return own
+
+
 def _first_heading(robot: Robot, run: MatchedRun) -> float | None:
     """Start heading that turns the first legs onto the measured positions; None where measured."""
     if run.measured.has_yaw[0]:
         return None
     heading, pose, predicted = 0.0, 0j, [0j]
-    for x, y, turn in relative_poses(robot, run, 0.0):
+    for x, y, turn in predict(robot, run, 0.0).relative:
         pose += np.exp(1j * heading) * complex(x, y)
         heading += turn
         predicted.append(pose)

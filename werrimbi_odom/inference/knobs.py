@@ -6,8 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
-from werrimbi_odom.model.effect import AppliedEffect, Effect
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 MULTIPLIERS = (
@@ -18,6 +23,15 @@ MULTIPLIERS = (
 
 START_YAW = "start_yaw"
 """Name of a run's heading at its first reference pose, where that was not measured [rad]."""
+
+YAW_DRIFT = "yaw_drift"
+"""Name of a run's drift of the reference's heading, where that is a gyro's alone [rad/s]."""
+
+NUISANCES = (START_YAW, YAW_DRIFT)
+
+STEP = 0.2
+"""Share of a parameter's usual size over which its derivative is taken: less than what bends a law,
+more than what a reference delay needs to feel beyond one interval of the ticks."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,16 +65,26 @@ CALIBRATION = tuple(Knob(name, "", 1e-4, (0.5, 2.0), 0.05) for name in MULTIPLIE
 HEADING_AT_START = Knob(START_YAW, "rad", 1e-4, (-1e9, 1e9), float("inf"), per_run=True)
 
 
-def knobs_of(effect: Effect) -> tuple[Knob, ...]:
-    """The parameters of an effect as knobs."""
+DRIFT_OF_YAW = Knob(YAW_DRIFT, "rad/s", 1e-4, (-10.0, 10.0), float("inf"), per_run=True)
+
+
+def knobs_of(effect: Effect, shared: Sequence[str] = ()) -> tuple[Knob, ...]:
+    """The parameters of an effect as knobs.
+
+    Parameters
+    ----------
+    shared
+        Parameters that are the same in all runs, although each run could have its own (a phase,
+        where counters keep their zero).
+    """
     return tuple(
         Knob(
             f"{effect.name}.{name}",
             item.unit,
-            0.01 * abs(item.typical),
+            STEP * item.scale,
             item.bounds,
             0.5 * (item.bounds[1] - item.bounds[0]),
-            item.per_run,
+            item.per_run and name not in shared,
         )
         for name, item in effect.parameters.items()
     )
@@ -68,19 +92,38 @@ def knobs_of(effect: Effect) -> tuple[Knob, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A robot, and what each run has of its own (`START_YAW`, phases ...)."""
+    """A robot, and what each run has of its own (`NUISANCES`, phases ...)."""
 
     robot: Robot
     own: tuple[Mapping[str, float], ...]
 
     def of_run(self, index: int) -> Robot:
         """The robot with the run's own values in its effects."""
-        values = {name: value for name, value in self.own[index].items() if name != START_YAW}
-        return changed(self.robot, values)
+        own = self.own[index]
+        return changed(self.robot, {name: own[name] for name in own if name not in NUISANCES})
 
     def start_yaw(self, index: int) -> float | None:
         """Fitted heading at the first reference pose of a run, if it was not measured [rad]."""
         return self.own[index].get(START_YAW)
+
+    @property
+    def start_yaws(self) -> list[float | None]:
+        """The same for all runs."""
+        return [own.get(START_YAW) for own in self.own]
+
+    @property
+    def drifts(self) -> Floats:
+        """Drift of the reference's heading in each run [rad/s]."""
+        return np.array([own.get(YAW_DRIFT, 0.0) for own in self.own])
+
+    def laid_out(self, run_of_step: NDArray[np.intp]) -> Robot:
+        """The robot with the runs' own values as arrays over the steps of all runs, (n,)."""
+        first = self.own[0] if self.own else {}
+        names = [name for name in first if name not in NUISANCES]
+        if not names:
+            return self.robot
+        values = {name: np.array([own[name] for own in self.own])[run_of_step] for name in names}
+        return changed(self.robot, cast("Mapping[str, float]", values))
 
     def value(self, knob: Knob, index: int = 0) -> float:
         """Where a knob stands."""
@@ -90,6 +133,20 @@ class Model:
         """The model with shared values and the runs' own values changed."""
         merged = tuple({**before, **after} for before, after in zip(self.own, own, strict=True))
         return Model(changed(self.robot, changes), merged)
+
+    def moved_by(self, knob: Knob, move: float) -> Model:
+        """One knob moved, a run's own in all runs that have it; bounds are kept."""
+        low, high = knob.bounds
+        if not knob.per_run:
+            now = value_of(self.robot, knob.name)
+            return Model(
+                changed(self.robot, {knob.name: min(max(now + move, low), high)}), self.own
+            )
+        own = tuple(
+            {**mine, knob.name: mine[knob.name] + move} if knob.name in mine else mine
+            for mine in self.own
+        )
+        return Model(self.robot, own)
 
 
 def value_of(robot: Robot, name: str) -> float:
@@ -111,7 +168,11 @@ def changed(robot: Robot, changes: Mapping[str, float]) -> Robot:
         effect, _, parameter = name.rpartition(".")
         if effect:
             effects = tuple(
-                AppliedEffect(item.effect, {**item.values, parameter: value})
+                replace(
+                    item,
+                    values={**item.values, parameter: value},
+                    unknown=tuple(name for name in item.unknown if name != parameter),
+                )
                 if item.name == effect
                 else item
                 for item in effects

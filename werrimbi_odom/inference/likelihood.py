@@ -10,23 +10,24 @@ alone, two poses in a drive. So likelihood, fits and tests for all of them rest 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference.filtering import UNMEASURED, Legs, filtered
 from werrimbi_odom.inference.matching import MatchedRun
-from werrimbi_odom.inference.prediction import Prediction
+from werrimbi_odom.inference.prediction import Prediction, right_handed
+from werrimbi_odom.inference.together import Together
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
+from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
 ReferenceKind = Literal["absolute", "incremental"]
-
-_UNMEASURED = 1e6
-"""Variance [m², rad²] that stands for a coordinate that was not measured."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,65 +82,86 @@ class Innovations:
 
 def innovations(
     robot: Robot,
-    run: MatchedRun,
+    runs: Together,
     prediction: Prediction,
     variances: Variances,
     kind: ReferenceKind,
     *,
     change: Floats | None = None,
     excluded: NDArray[np.bool_] | None = None,
-    start_yaw: float | None = None,
+    start_yaws: Sequence[float | None] | None = None,
 ) -> Innovations:
-    """Filter a run and keep what was unexpected.
+    """Filter all runs and keep what was unexpected.
 
     Parameters
     ----------
     change : ndarray, shape (m, 3, p), optional
-        Derivatives of the legs' relative poses (`prediction.sensitivity`).
+        Derivatives of the legs' relative poses. In the result one more column follows: the
+        derivative in the run's heading at its first reference pose, zero where that was measured.
     excluded : ndarray of bool, shape (m,), optional
         Legs on which the reference jumped: not counted, and the pose starts anew after them.
-    start_yaw : float, optional
-        Heading at the first reference pose, where that was not measured [rad]. Its derivative is
-        then the last column of `change` in the result.
+    start_yaws : sequence of float or None, optional
+        For each run the heading at the first reference pose, where that was not measured [rad].
     """
-    count = run.legs
+    count = runs.count
     slopes = np.zeros((count, 3, 0)) if change is None else change
     skip = np.zeros(count, dtype=np.bool_) if excluded is None else excluded
+    view = view_of(robot.effects)
+    start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
     if kind == "incremental":
-        return _of_increments(robot, run, prediction, variances, slopes, skip)
-    return _of_poses(robot, run, prediction, variances, slopes, skip, start_yaw)
+        return _of_increments(robot, runs, (start, finish), prediction, variances, slopes, skip)
+    begins = np.zeros(count, dtype=np.bool_)
+    begins[runs.legs[:-1]] = True
+    heading = np.full(count, np.nan)
+    for index, given in enumerate(start_yaws or []):
+        if given is not None:
+            heading[runs.legs[index]] = given
+            start[runs.legs[index], 2] = np.nan
+    found = filtered(
+        Legs(
+            prediction.relative,
+            _wheel_part(prediction, variances),
+            slopes,
+            start,
+            finish,
+            _reading(robot, variances),
+            begins,
+            skip,
+            heading,
+        )
+    )
+    known = np.isfinite(finish) & ~skip[:, None]
+    return Innovations(found.value, found.covariance, found.change, known)
 
 
 def _of_increments(
     robot: Robot,
-    run: MatchedRun,
+    runs: Together,
+    measured: tuple[Floats, Floats],
     prediction: Prediction,
     variances: Variances,
     slopes: Floats,
     skip: NDArray[np.bool_],
 ) -> Innovations:
     """Legs are independent: the noise of each interval of the reference is its own."""
-    value = relative_errors(run, prediction)
+    value = errors_between(*measured, prediction)
     known = np.isfinite(value) & ~skip[:, None]
-    leg = BodyMotion(prediction.along, np.zeros(run.legs), prediction.turn)
-    swing = piece_covariance(
-        leg, PathNoise(np.zeros(run.legs), run.intervals, np.zeros(run.legs)), np.zeros(run.legs)
-    ).matrix()
-    reading = reading_noise(robot)
+    none = np.zeros(runs.count)
+    leg = BodyMotion(prediction.along, none, prediction.turn)
+    swing = piece_covariance(leg, PathNoise(none, runs.intervals, none), none).matrix()
     covariance = (
         _wheel_part(prediction, variances)
         + variances.yaw[:, None, None, None] * swing
         + variances.xy[:, None, None, None]
-        * run.intervals[:, None, None]
+        * runs.intervals[:, None, None]
         * np.diag([1.0, 1.0, 0.0])
-        + 2.0 * np.diag(reading)
+        + 2.0 * np.diag(reading_noise(robot))
     )
-    covariance = covariance + _UNMEASURED * _diagonal(~np.isfinite(value))
+    covariance = covariance + UNMEASURED * _diagonal(~np.isfinite(value))
     value = np.where(known, value, 0.0)
+    change = np.concatenate([-slopes, np.zeros((runs.count, 3, 1))], axis=-1)
     sets = variances.left.size
-    return Innovations(
-        np.broadcast_to(value, (sets, *value.shape)), covariance, slopes * -1.0, known
-    )
+    return Innovations(np.broadcast_to(value, (sets, *value.shape)), covariance, change, known)
 
 
 def relative_errors(run: MatchedRun, prediction: Prediction) -> Floats:
@@ -147,80 +169,29 @@ def relative_errors(run: MatchedRun, prediction: Prediction) -> Floats:
 
     In the frame of the robot at the leg's start, as the reference gives it.
     """
-    measured = run.measured
-    dx, dy = np.diff(measured.x), np.diff(measured.y)
-    cos, sin = np.cos(measured.yaw[:-1]), np.sin(measured.yaw[:-1])
-    relative = np.stack([cos * dx + sin * dy, cos * dy - sin * dx, np.diff(measured.yaw)], axis=-1)
+    measured = np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1)
+    return errors_between(measured[:-1], measured[1:], prediction)
+
+
+def errors_between(start: Floats, finish: Floats, prediction: Prediction) -> Floats:
+    """The same for measured poses (m, 3) at the legs' starts and ends."""
+    step = finish - start
+    cos, sin = np.cos(start[:, 2]), np.sin(start[:, 2])
+    relative = np.stack(
+        [cos * step[:, 0] + sin * step[:, 1], cos * step[:, 1] - sin * step[:, 0], step[:, 2]],
+        axis=-1,
+    )
     error = relative - prediction.relative
     error[:, 2] = wrap_all(error[:, 2])
     return np.asarray(error)
 
 
-def _of_poses(
-    robot: Robot,
-    run: MatchedRun,
-    prediction: Prediction,
-    variances: Variances,
-    slopes: Floats,
-    skip: NDArray[np.bool_],
-    start_yaw: float | None,
-) -> Innovations:
-    sets, count = variances.left.size, run.legs
-    measured = np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1)
-    finite = np.isfinite(measured)
-    known = finite[1:] & ~skip[:, None]
-    reading = np.zeros((sets, 3, 3))
+def _reading(robot: Robot, variances: Variances) -> Floats:
+    """Covariance of a measured pose, and of the counters' reading with it; (g, 3, 3)."""
+    reading = np.zeros((variances.left.size, 3, 3))
     reading[:, 0, 0] = reading[:, 1, 1] = variances.xy
     reading[:, 2, 2] = variances.yaw
-    reading += np.diag(reading_noise(robot))
-    missing = _UNMEASURED * _diagonal(~finite)
-    wheel = _wheel_part(prediction, variances)
-    values = np.zeros((sets, count, 3))
-    covariances = np.empty((sets, count, 3, 3))
-    turns = np.empty((sets, count, 3, 3))
-    width = slopes.shape[-1] + (start_yaw is not None)
-    changes = np.zeros((count, 3, width))
-    state = np.zeros((sets, 3)) + np.where(finite[0], measured[0], 0.0)
-    spread = reading * (finite[0][:, None] & finite[0][None, :])
-    slope = np.zeros((3, width))
-    if start_yaw is not None:
-        state[:, 2], slope[2, -1] = start_yaw, 1.0
-    identity = np.eye(3)
-    turn = np.zeros((sets, 3, 3))
-    turn[:, 2, 2] = 1.0
-    lever = np.zeros((sets, 3, 3)) + identity
-    for leg in range(count):
-        cos, sin = np.cos(state[:, 2]), np.sin(state[:, 2])
-        turn[:, 0, 0] = turn[:, 1, 1] = cos
-        turn[:, 0, 1], turn[:, 1, 0] = -sin, sin
-        turns[:, leg] = turn
-        move = turn @ prediction.relative[leg]
-        lever[:, 0, 2], lever[:, 1, 2] = -move[:, 1], move[:, 0]
-        state = state + move
-        spread = lever @ spread @ lever.transpose(0, 2, 1)
-        spread = spread + turn @ wheel[:, leg] @ turn.transpose(0, 2, 1)
-        slope = lever[0] @ slope
-        slope[:, : slopes.shape[-1]] += turn[0] @ slopes[leg]
-        total = spread + reading + missing[leg + 1]
-        covariances[:, leg] = total
-        if skip[leg]:
-            state = np.where(finite[leg + 1], measured[leg + 1], state)
-            spread = reading * (finite[leg + 1][:, None] & finite[leg + 1][None, :])
-            slope = np.where(finite[leg + 1][:, None], 0.0, slope)
-            continue
-        unexpected = np.where(finite[leg + 1], measured[leg + 1] - state, 0.0)
-        unexpected[:, 2] = wrap_all(unexpected[:, 2])
-        values[:, leg] = unexpected
-        changes[leg] = np.where(finite[leg + 1][:, None], -slope, 0.0)
-        gain = spread @ np.linalg.inv(total)
-        state = state + (gain @ unexpected[..., None])[..., 0]
-        spread = spread - gain @ spread
-        spread = 0.5 * (spread + spread.transpose(0, 2, 1))
-        slope = slope + gain[0] @ changes[leg]
-    back = turns.transpose(0, 1, 3, 2)
-    return Innovations(
-        (back @ values[..., None])[..., 0], back @ covariances @ turns, back[0] @ changes, known
-    )
+    return np.asarray(reading + np.diag(reading_noise(robot)))
 
 
 def _wheel_part(prediction: Prediction, variances: Variances) -> Floats:

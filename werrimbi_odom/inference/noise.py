@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from werrimbi_odom.inference.likelihood import Variances
+from werrimbi_odom.inference.prediction import Prediction
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -50,21 +51,52 @@ def held_variances(
 
 
 def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Variances:
-    """Variances of greatest likelihood, the model being given."""
-    from scipy.optimize import minimize
+    """Variances of greatest likelihood, the model being given; by Fisher's scoring.
 
-    function = _in_logs(costs, start, held)
+    The innovations' derivatives in the logarithms of the variances come from one pass of the filter
+    over all sets; expected curvature is positive, so every step goes downhill.
+    """
+    prediction = costs.prediction()
     moving = _moving(held)
-    begin = np.clip(np.log(_row(start)[moving]), _LOWEST, _HIGHEST)
-    found = minimize(
-        lambda logs: _with_gradient(function, logs),
-        begin,
-        jac=True,
-        method="L-BFGS-B",
-        bounds=[(_LOWEST, _HIGHEST)] * begin.size,
-        options={"maxiter": 40, "ftol": 1e-9},
+    logs = np.clip(np.log(_row(start)[moving]), _LOWEST, _HIGHEST)
+    damping = 1e-6
+    cost, gradient, curvature = _scored(costs, prediction, start, held, logs)
+    for _ in range(25):
+        scale = np.diag(curvature)
+        step = -np.linalg.solve(
+            curvature + np.diag(damping * scale + 1e-9 * scale.max(initial=1e-12) + 1e-12), gradient
+        )
+        tried = np.clip(logs + np.clip(step, -2.0, 2.0), _LOWEST, _HIGHEST)
+        ahead = _scored(costs, prediction, start, held, tried)
+        if ahead[0] > cost + 1e-9 * abs(cost):
+            if damping > 1e4:
+                break
+            damping = max(10.0 * damping, 1e-2)
+            continue
+        gained, moved = cost - ahead[0], np.max(np.abs(tried - logs), initial=0.0)
+        logs, (cost, gradient, curvature), damping = tried, ahead, 0.1 * damping
+        if gained < 1e-3 or moved < 1e-4:
+            break
+    return _variances(start, held, logs[None, :])
+
+
+def _scored(
+    costs: Costs, prediction: Prediction, base: Variances, held: tuple[bool, bool], logs: Floats
+) -> tuple[float, Floats, Floats]:
+    """Cost at the logarithms of the variances, its gradient, and its expected curvature."""
+    step = 1e-4
+    found = costs.innovations(
+        _variances(base, held, np.concatenate([logs[None], logs + step * np.eye(logs.size)])),
+        prediction,
     )
-    return _variances(start, held, found.x[None, :])
+    cost = found.minus_two_log_likelihood()
+    counted = found.known.any(axis=-1)
+    root = np.linalg.inv(np.linalg.cholesky(found.covariance[0, counted]))
+    of_covariance = (found.covariance[1:, counted] - found.covariance[0, counted]) / step
+    of_value = (found.value[1:, counted] - found.value[0, counted]) / step
+    spread = (root @ of_covariance @ root.swapaxes(-1, -2)).reshape(logs.size, -1)
+    shift = (root @ of_value[..., None]).reshape(logs.size, -1)
+    return float(cost[0]), (cost[1:] - cost[0]) / step, spread @ spread.T + 2.0 * shift @ shift.T
 
 
 def noise_estimates(
@@ -100,8 +132,8 @@ def _variances(base: Variances, held: tuple[bool, bool], logs: Floats) -> Varian
 
 
 def _in_logs(costs: Costs, base: Variances, held: tuple[bool, bool]) -> Callable[[Floats], Floats]:
-    predictions = costs.predictions()
-    return lambda logs: costs(_variances(base, held, logs), predictions)
+    prediction = costs.prediction()
+    return lambda logs: costs(_variances(base, held, logs), prediction)
 
 
 def _with_gradient(function: Callable[[Floats], Floats], logs: Floats) -> tuple[float, Floats]:

@@ -4,21 +4,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
-from werrimbi_odom.inference.matching import MatchedRun, delayed
+from werrimbi_odom.inference.knobs import START_YAW, Model
+from werrimbi_odom.inference.matching import MatchedRun
+from werrimbi_odom.inference.together import Together, together
 from werrimbi_odom.model.covariance import (
     PoseCovariance,
     carried,
     noise_of_wheel_variances,
     piece_covariance,
 )
-from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.driving import acts, driven, features
-from werrimbi_odom.model.effect import View, view_of, wiring_of
-from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
+from werrimbi_odom.model.driving import acts, after_effects
+from werrimbi_odom.model.effect import View, view_of
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -46,63 +49,53 @@ class Prediction:
 
 @dataclass(frozen=True, slots=True)
 class _Path:
-    """Poses of the nodes, heading zero at the first."""
+    """Poses of the nodes of all runs, one after the other; only differences mean anything."""
 
     motion: BodyMotion[Floats]
     travel: WheelTravel[Floats]
-    x: Floats
-    y: Floats
+    position: NDArray[np.complex128]
     yaw: Floats
 
 
-def raw_drive(robot: Robot, run: MatchedRun) -> tuple[WheelTravel[Floats], Drive[Floats]]:
-    """Travel of the wheels before any effect, and what effects may look at."""
-    wheels = wiring_of(robot.effects).wheels
-    left, right = wheels(run.left, run.right)
-    first_counts = wheels(run.counters.first_left, run.counters.first_right)
-    raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
-    return raw, features(robot, np.diff(run.time), raw, first_counts, run.channels)
-
-
-def _driven(robot: Robot, run: MatchedRun, first_heading: float) -> _Path:
-    raw, drive = raw_drive(robot, run)
-    travel, motion = driven(robot, raw, drive, 0.0)
-    yaw = np.concatenate([[0.0], np.cumsum(motion.turn)])
-    if acts(robot):
-        # The heading at the first leg is known in the reference's frame; effects may look at it.
-        travel, motion = driven(robot, raw, drive, first_heading - float(yaw[run.ends[0]]))
-    dx, dy = displacement(motion, yaw[:-1])
-    x, y = np.concatenate([[0.0], np.cumsum(dx)]), np.concatenate([[0.0], np.cumsum(dy)])
-    return _Path(motion, travel, x, y, yaw)
-
-
-def relative_poses(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Floats:
-    """Relative pose of every leg as the reference shows it, shape (m, 3) [m, m, rad].
+def predict(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Prediction:
+    """What a robot predicts for the legs of one run.
 
     Parameters
     ----------
     start_yaw : float, optional
         Heading at the first reference pose where that was not measured [rad].
     """
-    view = view_of(robot.effects)
-    run = delayed(run, view.delay)
-    return _shown(_driven(robot, run, _first_heading(run, view, start_yaw)), run, view)
+    own = {} if start_yaw is None else {START_YAW: start_yaw}
+    return predict_all(Model(robot, (own,)), together([run]))
 
 
-def predict(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Prediction:
-    """Relative pose of every leg, and the noise that it has for unit noise of each wheel."""
-    view = view_of(robot.effects)
-    run = delayed(run, view.delay)
-    path = _driven(robot, run, _first_heading(run, view, start_yaw))
-    first, last = run.ends[0], run.ends[-1]
-    along = path.motion.along[first:last]
+def relative_poses(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Floats:
+    """Relative pose of every leg of one run as the reference shows it, (m, 3) [m, m, rad]."""
+    own = {} if start_yaw is None else {START_YAW: start_yaw}
+    return legs_shown(Model(robot, (own,)), together([run]))
+
+
+def legs_shown(model: Model, runs: Together) -> Floats:
+    """Relative pose of every leg as the reference shows it, shape (m, 3) [m, m, rad]."""
+    view = view_of(model.robot.effects)
+    runs = runs.delayed(view.delay)
+    robot = model.laid_out(runs.run_of_step)
+    return _shown(_path(robot, runs, view, model.start_yaws), runs, view, model.drifts)
+
+
+def predict_all(model: Model, runs: Together) -> Prediction:
+    """The same, with the noise that it has for unit noise of each wheel."""
+    view = view_of(model.robot.effects)
+    runs = runs.delayed(view.delay)
+    robot = model.laid_out(runs.run_of_step)
+    path = _path(robot, runs, view, model.start_yaws)
     return Prediction(
-        _shown(path, run, view),
-        _noise_of_legs(path, run, robot.track, view, left=1.0, right=0.0),
-        _noise_of_legs(path, run, robot.track, view, left=0.0, right=1.0),
-        _per_leg(np.abs(along), run),
-        _per_leg(along, run),
-        np.diff(path.yaw[run.ends]),
+        _shown(path, runs, view, model.drifts),
+        _noise_of_legs(path, runs, robot.track, view, left=1.0, right=0.0),
+        _noise_of_legs(path, runs, robot.track, view, left=0.0, right=1.0),
+        runs.per_leg(np.abs(path.motion.along)),
+        runs.per_leg(path.motion.along),
+        path.yaw[runs.end] - path.yaw[runs.begin],
     )
 
 
@@ -114,52 +107,87 @@ def seen(run: MatchedRun, view: View) -> MatchedRun:
     return replace(run, measured=replace(measured, y=-measured.y, yaw=-measured.yaw))
 
 
-def _first_heading(run: MatchedRun, view: View, start_yaw: float | None) -> float:
-    """Heading of the robot at the first reference pose, in the reference's frame [rad]."""
-    measured = seen(run, view).measured.yaw[0] if start_yaw is None else start_yaw
-    return float(measured - view.yaw) if np.isfinite(measured) else 0.0
+def right_handed(poses: Floats, view: View) -> Floats:
+    """Measured poses (m, 3) with the reference's frame made right-handed."""
+    return poses * np.array([1.0, -1.0, -1.0]) if view.mirrored else poses
 
 
-def _shown(path: _Path, run: MatchedRun, view: View) -> Floats:
+def _path(robot: Robot, runs: Together, view: View, start_yaws: Sequence[float | None]) -> _Path:
+    raw, drive = runs.raw_drive(robot)
+    if acts(robot):
+        own_turn = drive.heading.end - drive.heading.start
+        # The heading contains the effects, and an effect may look at it; but no effect's turn
+        # depends on it, so a pass with the heading of the first pass is the answer.
+        _, motion = after_effects(robot, raw, drive)
+        yaw = _summed(motion.turn)
+        first_headings = _first_headings(runs, view, start_yaws)
+        heading = yaw[:-1] + (first_headings - yaw[runs.begin[runs.legs[:-1]]])[runs.run_of_step]
+        travel, motion = after_effects(robot, raw, drive.with_heading(heading, own_turn))
+    else:
+        travel, motion = raw, wheels_to_body(raw, robot.track)
+        yaw = _summed(motion.turn)
+    dx, dy = displacement(motion, yaw[:-1])
+    return _Path(motion, travel, _summed(dx) + 1j * _summed(dy), yaw)
+
+
+def _first_headings(runs: Together, view: View, start_yaws: Sequence[float | None]) -> Floats:
+    """Heading of the robot at each run's first reference pose, in the reference's frame [rad]."""
+    headings = right_handed(runs.start[runs.legs[:-1]], view)[:, 2]
+    for index, given in enumerate(start_yaws):
+        if given is not None:
+            headings[index] = given
+    return np.nan_to_num(headings - view.yaw)
+
+
+def _summed(steps: Floats) -> Floats:
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def _shown(path: _Path, runs: Together, view: View, drifts: Floats) -> Floats:
     """The legs' relative poses, seen at the reference's point, axis and times."""
-    begin, end = run.ends[:-1], run.ends[1:]
-    position = path.x + 1j * path.y
+    begin, end = runs.begin, runs.end
     turn = path.yaw[end] - path.yaw[begin]
-    moved = np.exp(-1j * path.yaw[begin]) * (position[end] - position[begin])
+    moved = np.exp(-1j * path.yaw[begin]) * (path.position[end] - path.position[begin])
     point = complex(view.ahead, view.left)
-    axis = np.full(run.ends.size, view.yaw)
+    first, last = np.full(runs.count, view.yaw), np.full(runs.count, view.yaw)
     if view.heading_delay != 0.0:
-        late = np.interp(run.time[run.ends] - view.heading_delay, run.time, path.yaw)
-        axis = axis + late - path.yaw[run.ends]
-    shown = np.exp(-1j * axis[:-1]) * (moved + (np.exp(1j * turn) - 1.0) * point)
-    return np.stack([shown.real, shown.imag, turn + np.diff(axis)], axis=-1)
+        first += _late(path, runs, begin, view.heading_delay)
+        last += _late(path, runs, end, view.heading_delay)
+    shown = np.exp(-1j * first) * (moved + (np.exp(1j * turn) - 1.0) * point)
+    drift = drifts[runs.run_of_leg] * runs.duration
+    return np.stack([shown.real, shown.imag, turn + last - first + drift], axis=-1)
+
+
+def _late(path: _Path, runs: Together, nodes: NDArray[np.intp], delay: float) -> Floats:
+    """How far a heading that is `delay` late [s] is behind, at each leg's node [rad]."""
+    behind = np.empty(runs.count)
+    for index, run in enumerate(runs.runs):
+        own = slice(runs.legs[index], runs.legs[index + 1])
+        steps = slice(runs.steps[index], runs.steps[index + 1] + 1)
+        here = nodes[own]
+        asked = run.time[here - runs.steps[index]] - delay
+        behind[own] = np.interp(asked, run.time, path.yaw[steps]) - path.yaw[here]
+    return behind
 
 
 def _noise_of_legs(
-    path: _Path, run: MatchedRun, track: float, view: View, *, left: float, right: float
+    path: _Path, runs: Together, track: float, view: View, *, left: float, right: float
 ) -> Floats:
     """Sum of the steps' closed forms, each carried to its leg's end, as the reference sees it."""
-    first, last = int(run.ends[0]), int(run.ends[-1])
-    leg = np.repeat(np.arange(run.legs), np.diff(run.ends))
-    begin = run.ends[leg]
-    steps = slice(first, last)
+    steps = runs.inside
+    leg = np.repeat(np.arange(runs.count), runs.end - runs.begin)
     motion = BodyMotion(*(part[steps] for part in path.motion))
     noise = noise_of_wheel_variances(
         left * np.abs(path.travel.left[steps]), right * np.abs(path.travel.right[steps]), track
     )
-    facing = path.yaw[begin] + view.yaw
+    facing = path.yaw[runs.begin][leg] + view.yaw
     own = piece_covariance(motion, noise, path.yaw[steps] - facing)
-    point = complex(view.ahead, view.left) * np.exp(1j * path.yaw[run.ends[1:]])
-    marker_x = path.x[run.ends[1:]] + point.real
-    marker_y = path.y[run.ends[1:]] + point.imag
-    after = slice(first + 1, last + 1)
-    dx, dy = marker_x[leg] - path.x[after], marker_y[leg] - path.y[after]
-    cos, sin = np.cos(facing), np.sin(facing)
-    moved = carried(own, cos * dx + sin * dy, cos * dy - sin * dx)
-    return PoseCovariance(*(_per_leg(entry, run) for entry in moved)).matrix()
-
-
-def _per_leg(values: Floats, run: MatchedRun) -> Floats:
-    """Sums over the steps of each leg, of values for the steps from the first leg to the last."""
-    sums = np.concatenate([[0.0], np.cumsum(values)])
-    return np.diff(sums[run.ends - run.ends[0]])
+    marker = path.position[runs.end] + complex(view.ahead, view.left) * np.exp(
+        1j * path.yaw[runs.end]
+    )
+    lever = np.exp(-1j * facing) * (marker[leg] - path.position[steps + 1])
+    moved = carried(own, lever.real, lever.imag)
+    starts = np.concatenate([[0], np.cumsum(runs.end - runs.begin)])
+    return PoseCovariance(
+        *(np.diff(np.concatenate([[0.0], np.cumsum(entry)])[starts]) for entry in moved)
+    ).matrix()
