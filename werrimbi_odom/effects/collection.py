@@ -43,8 +43,11 @@ class Collection(NamedTuple):
         for effect in self.effects:
             if effect.name == name:
                 return effect
+        for warning in self.warnings:
+            if warning.startswith(f"effect {name} of "):
+                raise InputError(f"unknown effect {name}: {warning}")
         names = [effect.name for effect in self.effects]
-        near = difflib.get_close_matches(name, names, n=1, cutoff=0.0)
+        near = difflib.get_close_matches(name, names, n=1, cutoff=0.0) or ["none"]
         raise InputError(
             f"unknown effect {name}; the nearest known one is {near[0]} (all: werrimbi explain)"
         )

@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields
 from typing import Literal
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pieces import PieceTolerance
 from werrimbi_odom.model.robot import Robot
@@ -279,10 +280,10 @@ def find(name: str) -> Parameter:
     raise InputError(f"unknown parameter {name}; the nearest known one is {near[0]}")
 
 
-def robot_of(values: Mapping[str, Value]) -> Robot:
-    """The robot that a complete set of checked values describes."""
+def robot_of(values: Mapping[str, Value], effects: tuple[AppliedEffect, ...] = ()) -> Robot:
+    """The robot that a complete set of checked values, and its effects, describe."""
     numbers = {item.name: values[item.name] for item in fields(Robot) if item.name in values}
-    return Robot(**numbers)  # type: ignore[arg-type]
+    return Robot(**numbers, effects=effects)  # type: ignore[arg-type]
 
 
 def tolerance_of(values: Mapping[str, Value]) -> PieceTolerance:

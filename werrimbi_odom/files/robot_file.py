@@ -4,14 +4,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
 from ruamel.yaml.comments import CommentedMap
 
+from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.effect_parameters import (
+    EFFECTS,
+    Find,
+    Named,
+    is_effect_or_near,
+    named_effects,
+    parameters_of,
+)
 from werrimbi_odom.files.parameters import (
     PARAMETERS,
     Parameter,
@@ -24,7 +33,9 @@ from werrimbi_odom.files.parameters import (
 )
 from werrimbi_odom.files.replacing import replacing
 from werrimbi_odom.files.yaml_edit import edited
+from werrimbi_odom.files.yaml_effects import with_effects
 from werrimbi_odom.files.yaml_text import line_of, load, plain, read_text
+from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pieces import PieceTolerance
 from werrimbi_odom.model.robot import Robot
@@ -51,11 +62,13 @@ class RobotFile:
     """Names of the parameters that the file gives, in its order."""
     text: str = field(repr=False)
     """The file's text, so that it can be written anew with its comments."""
+    effects: tuple[AppliedEffect, ...] = ()
+    """Physical effects, in order of application."""
 
     @property
     def robot(self) -> Robot:
-        """Geometry, encoders and noise."""
-        return robot_of(self.values)
+        """Geometry, encoders, noise and physical effects."""
+        return robot_of(self.values, self.effects)
 
     @property
     def tolerance(self) -> PieceTolerance:
@@ -68,13 +81,16 @@ class RobotFile:
         return limits_of(self.values)
 
 
-def read_robot_file(path: str | Path) -> RobotFile:
+def read_robot_file(path: str | Path, effects: Collection | None = None) -> RobotFile:
     """Read a robot file.
 
     Parameters
     ----------
     path : path
         Of a YAML file in UTF-8, of at most a megabyte.
+    effects : Collection, optional
+        Where the effects that it names are looked up; by default the library and installed
+        packages. A robot file never names code.
 
     Raises
     ------
@@ -82,11 +98,16 @@ def read_robot_file(path: str | Path) -> RobotFile:
         When it cannot be used; the message names file, line, parameter, and the mend.
     """
     path = Path(path)
-    return _understood(read_text(path), path)
+    return _understood(read_text(path), path, None if effects is None else effects.find)
 
 
 def write_robot_file(
-    source: RobotFile, changes: Mapping[str, Value], out: str | Path, *, force: bool = False
+    source: RobotFile,
+    changes: Mapping[str, Value],
+    out: str | Path,
+    *,
+    force: bool = False,
+    effects: Sequence[AppliedEffect] | None = None,
 ) -> RobotFile:
     """Write a robot file again with some values changed; its comments and order stay.
 
@@ -100,6 +121,9 @@ def write_robot_file(
         May be the source's own path, with `force`.
     force : bool
         Whether an existing `out` may be overwritten.
+    effects : sequence of AppliedEffect, optional
+        All effects of the new file, in order of application; by default the source's. A parameter
+        that is unknown (each run has its own) is left out.
 
     Returns
     -------
@@ -122,27 +146,66 @@ def write_robot_file(
         if find(name).kind == "float":  # the node's parameters are typed: 2000 is no double
             wanted.setdefault(name, source.values[name])
     order = tuple(item.name for item in PARAMETERS)
-    text = edited(source.text, (source.node, PARAMETER_KEY), wanted, order)
-    written = _understood(text, out)
-    if any(written.values[name] != value for name, value in {**source.values, **wanted}.items()):
+    place = (source.node, PARAMETER_KEY)
+    text = edited(source.text, place, wanted, order)
+    if effects is not None:
+        _check(effects)
+        text = with_effects(text, place, effects)
+    held = source.effects if effects is None else tuple(effects)
+    written = _read_back(text, out, source, held)
+    if (
+        written is None
+        or any(written.values[name] != value for name, value in {**source.values, **wanted}.items())
+        or [_known(item) for item in written.effects] != [_known(item) for item in held]
+    ):
         raise InputError(f"{source.path}: its layout cannot be kept; write it in block style")
     with replacing(out) as file:
         file.write(text)
     return written
 
 
-def _understood(text: str, path: Path) -> RobotFile:
+def _check(effects: Sequence[AppliedEffect]) -> None:
+    """Whether every value can be read back; else nothing shall be written."""
+    for applied in effects:
+        for item, name in zip(parameters_of(applied.effect), applied.effect.parameters, strict=True):
+            item.checked(applied.values.get(name, item.default))
+
+
+def _read_back(
+    text: str, out: Path, source: RobotFile, effects: Sequence[AppliedEffect]
+) -> RobotFile | None:
+    """What was written, as it will be read; None where it cannot be."""
+    collection = Collection(tuple(item.effect for item in (*effects, *source.effects)))
+    try:
+        return _understood(text, out, collection.find)
+    except InputError:
+        return None
+
+
+def _known(applied: AppliedEffect) -> tuple[str, dict[str, float]]:
+    """Its name, and every value that the file can hold."""
+    known = {**applied.effect.nulls, **applied.values}
+    return applied.name, {name: known[name] for name in known if name not in applied.unknown}
+
+
+def _understood(text: str, path: Path, find_effect: Find | None = None) -> RobotFile:
     node, block = _parameter_block(load(text, path), path)
     given: dict[str, Value] = {}
+    try:
+        effects = named_effects(plain(block.get(EFFECTS, [])) or [], find_effect)
+    except InputError as error:
+        raise InputError(f"{path}, line {line_of(block, EFFECTS)}: {error}") from None
     for name, raw in block.items():
-        if isinstance(name, str) and name.split(".")[0] in ROS_OWN:
+        if name == EFFECTS or (isinstance(name, str) and name.split(".")[0] in ROS_OWN):
             continue
         try:
-            if name == "effects":
-                _refuse_effects(plain(raw))
+            if _is_of_effect(name, raw, effects):
+                _take_effect(effects, name, raw)
                 continue
             parameter = find(str(name))
             given[parameter.name] = parameter.checked(_as_ros_reads(parameter, raw))
+        except _InBlockError as error:
+            raise InputError(f"{path}, line {error.line}: {error}") from None
         except InputError as error:
             raise InputError(f"{path}, line {line_of(block, name)}: {error}") from None
     missing = [item for item in PARAMETERS if item.default is None and item.name not in given]
@@ -150,7 +213,7 @@ def _understood(text: str, path: Path) -> RobotFile:
         names = ", ".join(f"{item.name} ({item.unit})" for item in missing)
         raise InputError(f"{path}: {node} must also give {names}")
     values = MappingProxyType({**defaults(), **given})
-    return RobotFile(path, node, values, tuple(given), text)
+    return RobotFile(path, node, values, tuple(given), text, effects.applied())
 
 
 def _parameter_block(content: CommentedMap, path: Path) -> tuple[str, CommentedMap]:
@@ -188,9 +251,33 @@ def _as_ros_reads(parameter: Parameter, raw: object) -> object:
     return plain(raw)
 
 
-def _refuse_effects(names: object) -> None:
-    """Physical effects that the model holds: none in this version."""
-    if not isinstance(names, list):
-        raise InputError(f"effects must be a list of names, [] for none, not {names!r}")
-    if names:
-        raise InputError(f"unknown effect {names[0]}: this version knows no effects yet")
+class _InBlockError(InputError):
+    """Something is wrong within the block of an effect."""
+
+    def __init__(self, message: str, line: int) -> None:
+        super().__init__(message)
+        self.line = line
+
+
+def _is_of_effect(name: object, raw: object, effects: Named) -> bool:
+    """Whether a key tells of an effect: it names one, or holds a block that nothing else has."""
+    if not isinstance(name, str) or any(item.name == name for item in PARAMETERS):
+        return False
+    first = name.partition(".")[0]
+    listed = any(effect.name == first for effect in effects.effects)
+    return listed or isinstance(raw, CommentedMap) or is_effect_or_near(first)
+
+
+def _take_effect(effects: Named, name: str, raw: object) -> None:
+    """A block of parameters, or one of them spelt with a dot."""
+    if "." in name:
+        effects.take(name, plain(raw))
+        return
+    if not isinstance(raw, CommentedMap):
+        raise effects.refuse_value(name, plain(raw))
+    effects.listed(name)
+    for parameter, value in raw.items():
+        try:
+            effects.take(f"{name}.{parameter}", plain(value))
+        except InputError as error:
+            raise _InBlockError(str(error), line_of(raw, parameter)) from None

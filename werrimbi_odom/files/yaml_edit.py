@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import io
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from ruamel.yaml import YAML
@@ -26,14 +26,17 @@ _NOT_TEXT = re.compile(r"(y|n|yes|no|on|off|true|false|null|~)\Z", re.IGNORECASE
 """What a reader of YAML 1.1, as in ROS, does not take for text unless it is quoted."""
 
 
+def float_text(value: float) -> str:
+    """A float that a reader of YAML 1.1 takes for one."""
+    digits = repr(value)
+    return digits if "." in digits else digits.replace("e", ".0e")
+
+
 class _Representer(RoundTripRepresenter):
     """Floats with a point, also before an exponent: without one YAML 1.1 reads a text."""
 
     def represent_float(self, data: float) -> ScalarNode:
-        digits = repr(data)
-        if "." not in digits:
-            digits = digits.replace("e", ".0e")
-        return self.represent_scalar("tag:yaml.org,2002:float", digits)
+        return self.represent_scalar("tag:yaml.org,2002:float", float_text(data))
 
     def represent_scalar_float(self, data: ScalarFloat) -> ScalarNode:
         """A float in the look it had; ruamel drops digits of long ones with an exponent."""
@@ -59,6 +62,20 @@ def edited(
     order : sequence of names
         An added name goes behind the nearest one before it in this order.
     """
+
+
+    def change(block: CommentedMap) -> None:
+        for name, value in values.items():
+            if name not in block:
+                _add(block, name, _as_yaml(value), order)
+            elif not _same(block[name], value):
+                block[name] = _replaced(block[name], value)
+
+    return edited_block(text, place, change)
+
+
+def edited_block(text: str, place: tuple[str, str], change: Callable[[CommentedMap], None]) -> str:
+    """The text after `change` has been made to the block at `place`."""
     yaml = round_trip()
     yaml.Representer = _Representer
     content = yaml.load(text)
@@ -68,11 +85,7 @@ def edited(
     block = below[place[1]]
     _keep_indent(yaml, below, block)
     yaml.explicit_start = text.startswith("---") or "\n---" in text
-    for name, value in values.items():
-        if name not in block:
-            _add(block, name, _as_yaml(value), order)
-        elif not _same(block[name], value):
-            block[name] = _replaced(block[name], value)
+    change(block)
     stream = io.StringIO()
     yaml.dump(content, stream)
     return stream.getvalue()

@@ -1,0 +1,150 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The effects that a robot file names, and their blocks of parameters, as values.
+
+The robot file spells a parameter of an effect as a line in a block; ROS hands it on with a dot,
+``eccentric_left_wheel.amplitude``. Both come here in the form with the dot.
+"""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+
+from werrimbi_odom.effects import collection
+from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.parameters import PARAMETERS, Parameter
+from werrimbi_odom.model.effect import AppliedEffect, Effect
+
+EFFECTS = "effects"
+"""Key of the list of their names."""
+
+Find = Callable[[str], Effect]
+"""An effect by its name; InputError where there is none."""
+
+
+@dataclass
+class Named:
+    """Effects as they are read: their values come one by one."""
+
+    effects: tuple[Effect, ...]
+    _values: dict[str, dict[str, float]] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self._values = {effect.name: {} for effect in self.effects}
+
+    def take(self, key: str, value: object) -> None:
+        """Take the value of ``effect.parameter``.
+
+        Raises
+        ------
+        InputError
+            When there is no such parameter, or it cannot have that value.
+        """
+        name, _, parameter = key.partition(".")
+        effect = self.listed(name)
+        found = next((item for item in parameters_of(effect) if item.name == key), None)
+        if found is None:
+            raise InputError(f"{name} has no parameter {parameter}; {_has(effect)}")
+        if parameter in self._values[name]:
+            raise InputError(f"{key} is given twice")
+        self._values[name][parameter] = float(found.checked(value))  # type: ignore[arg-type]
+
+    def listed(self, name: str) -> Effect:
+        """The effect of a block.
+
+        Raises
+        ------
+        InputError
+            When the list of effects does not name it; the message says which it names.
+        """
+        for effect in self.effects:
+            if effect.name == name:
+                return effect
+        names = [effect.name for effect in (*self.effects, *LIBRARY)]
+        near = difflib.get_close_matches(name, names, n=1)
+        if near and near[0] != name:
+            raise InputError(f"unknown effect {name}; the nearest known one is {near[0]}")
+        raise InputError(
+            f"this is a block of parameters for {name}, but effects does not list {name}; "
+            "add it to the list, or take the block out"
+        )
+
+    def refuse_value(self, name: str, value: object) -> InputError:
+        """What is wrong where a value stands in the place of an effect's block."""
+        effect = self.listed(name)
+        given = "nothing" if value is None else repr(value)
+        if effect.is_mistake:
+            return InputError(f"{name} has no parameters; take this line out")
+        return InputError(
+            f"{name} must be a block of its parameters ({', '.join(effect.parameters)}), "
+            f"not {given}"
+        )
+
+    def applied(self) -> tuple[AppliedEffect, ...]:
+        """With their values, in order of application; what was not given is null or unknown."""
+        return tuple(effect.using(**self._values[effect.name]) for effect in self.effects)
+
+
+def named_effects(names: object, find: Find | None = None) -> Named:
+    """The effects of a list of names.
+
+    Parameters
+    ----------
+    names : object
+        What stands behind ``effects:``; None where there is nothing.
+    find : callable, optional
+        By default the library and installed packages.
+
+    Raises
+    ------
+    InputError
+        When it is no list of names, or one is unknown or listed twice.
+    """
+    if names is None:
+        return Named(())
+    if isinstance(names, str) or not isinstance(names, Iterable) or isinstance(names, Mapping):
+        raise InputError(f"effects must be a list of names, [] for none, not {names!r}")
+    found: dict[str, Effect] = {}
+    for name in names:
+        if not isinstance(name, str) or not name:
+            raise InputError(f"effects must be a list of names, [] for none, not {list(names)!r}")
+        if name in found:
+            raise InputError(f"effects lists {name} twice; an effect acts once")
+        effect = (find or collection.find)(name)
+        if any(item.name == name for item in PARAMETERS):
+            raise InputError(f"effect {name} bears the name of another parameter; rename it")
+        found[name] = effect
+    return Named(tuple(found.values()))
+
+
+def parameters_of(effect: Effect) -> tuple[Parameter, ...]:
+    """The parameters of an effect as a robot file has them, named with a dot."""
+    return tuple(
+        Parameter(
+            f"{effect.name}.{name}",
+            "float",
+            item.null,
+            item.unit,
+            f"{item.says[:1].upper()}{item.says[1:]}.",
+            minimum=item.bounds[0],
+            maximum=item.bounds[1],
+        )
+        for name, item in effect.parameters.items()
+    )
+
+
+def is_effect_or_near(name: str) -> bool:
+    """Whether a key that is no parameter may be meant for an effect's block."""
+    parameters = [item.name for item in PARAMETERS]
+    effects = [effect.name for effect in LIBRARY]
+    near = difflib.get_close_matches(name, [*parameters, *effects], n=1, cutoff=0.0)
+    return near[0] in effects
+
+
+def _has(effect: Effect) -> str:
+    if effect.is_mistake:
+        return "it is a set-up mistake, made or not; listing it is enough"
+    return f"it has {', '.join(effect.parameters)}"
