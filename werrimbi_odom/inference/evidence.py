@@ -3,107 +3,218 @@
 """Where the model fails, before any name is given to it: what the errors depend on.
 
 Under a complete model the whitened innovations depend on nothing. Each cell of the evidence map
-asks whether the error of one channel (along, sideways, heading) goes with one measured variable of
-the leg. It is a score test: the pattern that such a dependence would leave in the innovations, less
-what recalibration could explain of it, against what is there.
+asks whether the error of one channel (left, right, along, sideways, heading) goes with one measured
+variable, as a line or as any smooth curve. It is a score test: the pattern that such a dependence
+would leave in the innovations, less what the model can turn already, against what is there.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.design import stacked, unexpected
-from werrimbi_odom.inference.fit import ModelFit
+from werrimbi_odom.inference.candidates import orthonormal
+from werrimbi_odom.inference.design import Point, stacked, unexpected
 from werrimbi_odom.inference.knobs import Knob
 from werrimbi_odom.inference.likelihood import ReferenceKind
-from werrimbi_odom.inference.matching import MatchedRun
-from werrimbi_odom.inference.prediction import Prediction, predict_all
-from werrimbi_odom.inference.together import Together, together
+from werrimbi_odom.inference.prediction import DrivenPath, path_of, predict_all
+from werrimbi_odom.inference.together import Together
+from werrimbi_odom.inference.variables import Form, Variable, functions_of, variables_of
+from werrimbi_odom.model.effect import View, view_of
 from werrimbi_odom.model.pose import Floats
 
-CHANNELS = ("along", "sideways", "heading")
+CHANNELS = ("left", "right", "along", "sideways", "heading")
+
+
+@dataclass(frozen=True, slots=True)
+class Amount:
+    """What an error is in proportion to, beside its variable."""
+
+    channel: str
+    """left, right, along (both wheels alike), sideways or heading."""
+    per: str
+    """travel (signed), path (unsigned), turn or duration."""
+
+
+AMOUNTS = (
+    Amount("left", "travel"),
+    Amount("right", "travel"),
+    Amount("along", "travel"),
+    Amount("along", "path"),
+    Amount("sideways", "travel"),
+    Amount("sideways", "path"),
+    Amount("heading", "turn"),
+    Amount("heading", "travel"),
+    Amount("heading", "path"),
+)
 
 
 @dataclass(frozen=True, slots=True)
 class Dependence:
     """One cell of the evidence map."""
 
-    channel: str
-    """along, sideways or heading: which error."""
-    variable: str
-    """What it goes with."""
-    slope: float
-    """Error per unit of the variable [m or rad per unit]."""
+    amount: Amount
+    variable: Variable
+    form: Form
+    coefficients: Floats
+    """Of the form's functions; (k,), or (runs, k) where each run has its own zero."""
+    gain: float
+    """Fall of the squared innovations, in their own variances."""
+    degrees: int
     p_value: float
     """Corrected for the number of cells looked at (Bonferroni)."""
 
+    @property
+    def channel(self) -> str:
+        """Which error."""
+        return self.amount.channel
+
 
 def dependences(
-    runs: Sequence[MatchedRun], fit: ModelFit, kind: ReferenceKind, knobs: Sequence[Knob]
+    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob]
 ) -> tuple[Dependence, ...]:
-    """All cells of the map for a fitted model, the most certain first.
+    """All cells of the map for a model, the most certain first.
 
-    `knobs` are what the fit could turn: what they can explain is no evidence.
+    `knobs` are what the model can turn: what they can explain is no evidence.
     """
     from scipy.stats import chi2
 
-    point, laid = fit.point, together(runs)
-    plain = [knob for knob in knobs if knob.per_run or knob in fit.free]
-    white, basis = stacked(laid, point, kind, plain).flat()
-    prediction = predict_all(point.model, laid)
-    variables = leg_variables(laid, prediction)
-    names = list(variables)
-    marks = np.zeros((laid.count, 3, 3 * len(variables)))
-    for column, of_legs in enumerate(variables.values()):
-        for channel in range(3):
-            marks[:, channel, 3 * column + channel] = of_legs
-    patterns = unexpected(laid, point, kind, marks, prediction).whitened()[1]
-    patterns = patterns[..., :-1].reshape(-1, marks.shape[-1])
-    unexplained = _less(white[:, None], basis)[:, 0]
-    marks = _less(patterns, basis)
-    strength = np.sum(marks**2, axis=0)
-    usable = strength > 1e-9 * np.sum(patterns**2, axis=0)
-    score = marks.T @ unexplained
-    cells = []
-    for column in np.flatnonzero(usable).tolist():
-        statistic = score[column] ** 2 / strength[column]
-        cells.append(
-            Dependence(
-                CHANNELS[column % 3],
-                names[column // 3],
-                float(-score[column] / strength[column]),
-                float(min(1.0, chi2.sf(statistic, 1) * int(usable.sum()))),
+    prediction = predict_all(point.model, runs)
+    white, basis = stacked(runs, point, kind, knobs, prediction).flat()
+    frame = orthonormal(basis)
+    rest = white - frame @ (frame.T @ white)
+    found: list[tuple[Amount, Variable, Form, Floats, float, int]] = []
+    path = path_of(point.model, runs)
+    pushes = {amount: _pushes(runs, path, amount, point) for amount in AMOUNTS}
+    for variable in variables_of(runs, point.model):
+        blocks = list(_blocks(runs, variable, pushes))
+        change = np.concatenate([block for _, _, block in blocks], axis=-1)
+        marks = unexpected(runs, point, kind, change, prediction).whitened()[1]
+        first = 0
+        for amount, form, block in blocks:
+            own = marks[..., first : first + block.shape[-1]]
+            first += block.shape[-1]
+            if variable.per_run:
+                own = np.concatenate(
+                    [
+                        own * (runs.run_of_leg == run)[:, None, None]
+                        for run in range(len(runs.runs))
+                    ],
+                    axis=-1,
+                )
+            flat = own.reshape(white.size, -1)
+            free = flat - frame @ (frame.T @ flat)
+            size = np.sqrt(np.sum(flat**2, axis=0))
+            heard = size > 1e-9
+            if not heard.any():
+                continue
+            left, values, right = np.linalg.svd(free[:, heard] / size[heard], full_matrices=False)
+            alive = values > 1e-3
+            if not alive.any():
+                continue
+            shares = left[:, alive].T @ rest
+            solution = np.zeros(flat.shape[-1])
+            solution[heard] = -(right[alive].T @ (shares / values[alive])) / size[heard]
+            found.append(
+                (amount, variable, form, solution, float(shares @ shares), int(alive.sum()))
             )
+    cells = [
+        Dependence(
+            amount,
+            variable,
+            form,
+            solution.reshape(len(runs.runs), -1) if variable.per_run else solution,
+            gain,
+            degrees,
+            float(min(1.0, chi2.sf(gain, degrees) * len(found))),
         )
-    return tuple(sorted(cells, key=lambda cell: cell.p_value))
+        for amount, variable, form, solution, gain, degrees in found
+    ]
+    return tuple(sorted(cells, key=lambda cell: (cell.p_value, -cell.gain / cell.degrees)))
 
 
-def leg_variables(runs: Together, prediction: Prediction) -> dict[str, Floats]:
-    """What a leg's error may go with; arrays of shape (m,), named with their units."""
-    duration = runs.duration
-    ends = np.cumsum(duration)
-    elapsed = ends - duration - (ends - duration)[runs.legs[:-1]][runs.run_of_leg]
-    heading = np.nan_to_num(runs.start[:, 2])
-    travel, turn = prediction.along, prediction.turn
-    return {
-        "travel [m]": travel,
-        "path length [m]": prediction.length,
-        "turn [rad]": turn,
-        "size of the turn [rad]": np.abs(turn),
-        "travel × turn [m·rad]": travel * turn,
-        "speed × turn [m·rad/s]": travel * turn / duration,
-        "path towards the reference's x axis [m]": prediction.length * np.cos(heading),
-        "path towards the reference's y axis [m]": prediction.length * np.sin(heading),
-        "path × time since the start [m·s]": prediction.length * elapsed,
-        "duration [s]": duration,
-    }
+def _blocks(
+    runs: Together, variable: Variable, pushes: dict[Amount, tuple[Floats, Floats]]
+) -> Iterator[tuple[Amount, Form, Floats]]:
+    """Changes of the legs (m, 3, k) for each amount and form."""
+    for form, (left, right) in functions_of(variable).items():
+        for amount, (of_left, of_right) in pushes.items():
+            if (
+                not variable.shared
+                and variable.form != "place"
+                and amount.channel
+                not in (
+                    "left",
+                    "right",
+                    "along",
+                )
+            ):
+                continue
+            block = _legs(runs, left, of_left)
+            if of_right is not None:
+                block = block + _legs(runs, right, of_right)
+            yield amount, form, block
 
 
-def _less(columns: Floats, basis: Floats) -> Floats:
-    """Columns less what the basis can explain of them."""
-    if basis.shape[-1] == 0:
-        return columns
-    return np.asarray(columns - basis @ np.linalg.lstsq(basis, columns, rcond=1e-10)[0])
+def _legs(runs: Together, functions: Floats, pushes: Floats) -> Floats:
+    """Sums over each leg's steps of functions (n, k) times pushes (n, 3), as (m, 3, k)."""
+    steps = runs.inside
+    starts = np.concatenate([[0], np.cumsum(runs.end - runs.begin)])
+    columns = []
+    for index in range(functions.shape[-1]):
+        moved = functions[steps, index, None] * pushes[steps]
+        sums = np.concatenate([np.zeros((1, 3)), np.cumsum(moved, axis=0)])
+        columns.append(np.diff(sums[starts], axis=0))
+    return np.stack(columns, axis=-1)
+
+
+def _pushes(
+    runs: Together, path: DrivenPath, amount: Amount, point: Point
+) -> tuple[Floats, Floats]:
+    """What a unit error of a step does to its leg's relative pose: of left and right wheel, (n, 3).
+
+    Where the amount belongs to the robot, the second is zero.
+    """
+    robot = point.model.robot
+    travel, motion = path.travel, path.motion
+    none = np.zeros(motion.turn.size)
+    view = view_of(robot.effects)
+    if amount.channel in ("left", "right", "along"):
+        left = travel.left if amount.per == "travel" else np.abs(travel.left)
+        right = travel.right if amount.per == "travel" else np.abs(travel.right)
+        of_left = _seen(runs, path, view, 0.5 * left, none, -left / robot.track)
+        of_right = _seen(runs, path, view, 0.5 * right, none, right / robot.track)
+        if amount.channel == "left":
+            return of_left, 0.0 * of_right
+        if amount.channel == "right":
+            return 0.0 * of_left, of_right
+        return of_left, of_right
+    base = {
+        "travel": motion.along,
+        "path": np.abs(motion.along),
+        "turn": motion.turn,
+    }[amount.per]
+    if amount.channel == "sideways":
+        moved = _seen(runs, path, view, none, base, none)
+    else:
+        moved = _seen(runs, path, view, none, none, base)
+    return moved, 0.0 * moved
+
+
+def _seen(
+    runs: Together, path: DrivenPath, view: View, along: Floats, sideways: Floats, turn: Floats
+) -> Floats:
+    """Errors of steps (n,) as they move the end of their leg, in its start's frame, (n, 3)."""
+    count = along.size
+    leg = np.clip(np.searchsorted(runs.begin, np.arange(count), side="right") - 1, 0, None)
+    facing = np.exp(-1j * (path.yaw[runs.begin[leg]] + view.yaw))
+    middle = np.exp(1j * (path.yaw[:-1] + 0.5 * path.motion.turn))
+    end = runs.end[leg]
+    marker = path.position[end] + complex(view.ahead, view.left) * np.exp(1j * path.yaw[end])
+    moved = facing * (
+        middle * (along + 1j * sideways)
+        + 1j * turn * (marker - 0.5 * (path.position[:-1] + path.position[1:]))
+    )
+    return np.stack([moved.real, moved.imag, turn], axis=-1)

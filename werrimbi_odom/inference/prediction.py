@@ -40,7 +40,7 @@ class Prediction:
     per_right: Floats
     """The same for k_R²."""
     length: Floats
-    """Path driven in each leg, shape (m,), [m]."""
+    """DrivenPath driven in each leg, shape (m,), [m]."""
     along: Floats
     """Signed travel in each leg, shape (m,), [m]."""
     turn: Floats
@@ -48,7 +48,7 @@ class Prediction:
 
 
 @dataclass(frozen=True, slots=True)
-class _Path:
+class DrivenPath:
     """Poses of the nodes of all runs, one after the other; only differences mean anything."""
 
     motion: BodyMotion[Floats]
@@ -112,38 +112,64 @@ def right_handed(poses: Floats, view: View) -> Floats:
     return poses * np.array([1.0, -1.0, -1.0]) if view.mirrored else poses
 
 
-def _path(robot: Robot, runs: Together, view: View, start_yaws: Sequence[float | None]) -> _Path:
-    raw, drive = runs.raw_drive(robot)
-    if acts(robot):
-        own_turn = drive.heading.end - drive.heading.start
-        # The heading contains the effects, and an effect may look at it; but no effect's turn
-        # depends on it, so a pass with the heading of the first pass is the answer.
-        _, motion = after_effects(robot, raw, drive)
-        yaw = _summed(motion.turn)
-        first_headings = _first_headings(runs, view, start_yaws)
-        heading = yaw[:-1] + (first_headings - yaw[runs.begin[runs.legs[:-1]]])[runs.run_of_step]
-        travel, motion = after_effects(robot, raw, drive.with_heading(heading, own_turn))
-    else:
-        travel, motion = raw, wheels_to_body(raw, robot.track)
-        yaw = _summed(motion.turn)
-    dx, dy = displacement(motion, yaw[:-1])
-    return _Path(motion, travel, _summed(dx) + 1j * _summed(dy), yaw)
+def path_of(model: Model, runs: Together) -> DrivenPath:
+    """What the model makes of the steps of all runs (the reference's delay being none)."""
+    robot = model.laid_out(runs.run_of_step)
+    return _path(robot, runs, view_of(robot.effects), model.start_yaws)
 
 
-def _first_headings(runs: Together, view: View, start_yaws: Sequence[float | None]) -> Floats:
-    """Heading of the robot at each run's first reference pose, in the reference's frame [rad]."""
-    headings = right_handed(runs.start[runs.legs[:-1]], view)[:, 2]
+def headings_of(
+    path: DrivenPath, runs: Together, view: View, start_yaws: Sequence[float | None]
+) -> Floats:
+    """Heading at the start of each step, in the reference's frame, shape (n,) [rad].
+
+    Every leg starts from the measured heading where there is one, as its prediction does; else the
+    path is followed from the run's start.
+    """
+    measured = right_handed(runs.start, view)[:, 2] - view.yaw
     for index, given in enumerate(start_yaws):
         if given is not None:
-            headings[index] = given
-    return np.nan_to_num(headings - view.yaw)
+            measured[runs.legs[index]] = given - view.yaw
+    anchors = np.searchsorted(runs.begin, np.arange(path.yaw.size - 1), side="right") - 1
+    anchors = np.clip(anchors, runs.legs[:-1][runs.run_of_step], None)
+    known = np.where(np.isfinite(measured), np.arange(runs.count), runs.legs[:-1][runs.run_of_leg])
+    anchor = np.maximum.accumulate(known)[anchors]
+    return np.asarray(
+        np.nan_to_num(measured[anchor]) + path.yaw[:-1] - path.yaw[runs.begin[anchor]]
+    )
+
+
+def _path(
+    robot: Robot, runs: Together, view: View, start_yaws: Sequence[float | None]
+) -> DrivenPath:
+    raw, drive = runs.raw_drive(robot)
+    if not acts(robot):
+        return _from_motion(raw, wheels_to_body(raw, robot.track))
+    path = _from_motion(*after_effects(robot, raw, drive))
+    if not _looks_at_heading(robot):
+        return path
+    # The heading contains the effects, and an effect may look at it; but no effect's turn depends
+    # on it, so a pass with the heading of the first pass is the answer.
+    heading = headings_of(path, runs, view, start_yaws)
+    own_turn = drive.heading.end - drive.heading.start
+    return _from_motion(*after_effects(robot, raw, drive.with_heading(heading, own_turn)))
+
+
+def _looks_at_heading(robot: Robot) -> bool:
+    return any(applied.effect.stage == "body" for applied in robot.effects)
+
+
+def _from_motion(travel: WheelTravel[Floats], motion: BodyMotion[Floats]) -> DrivenPath:
+    yaw = _summed(motion.turn)
+    dx, dy = displacement(motion, yaw[:-1])
+    return DrivenPath(motion, travel, _summed(dx) + 1j * _summed(dy), yaw)
 
 
 def _summed(steps: Floats) -> Floats:
     return np.concatenate([[0.0], np.cumsum(steps)])
 
 
-def _shown(path: _Path, runs: Together, view: View, drifts: Floats) -> Floats:
+def _shown(path: DrivenPath, runs: Together, view: View, drifts: Floats) -> Floats:
     """The legs' relative poses, seen at the reference's point, axis and times."""
     begin, end = runs.begin, runs.end
     turn = path.yaw[end] - path.yaw[begin]
@@ -158,7 +184,7 @@ def _shown(path: _Path, runs: Together, view: View, drifts: Floats) -> Floats:
     return np.stack([shown.real, shown.imag, turn + last - first + drift], axis=-1)
 
 
-def _late(path: _Path, runs: Together, nodes: NDArray[np.intp], delay: float) -> Floats:
+def _late(path: DrivenPath, runs: Together, nodes: NDArray[np.intp], delay: float) -> Floats:
     """How far a heading that is `delay` late [s] is behind, at each leg's node [rad]."""
     behind = np.empty(runs.count)
     for index, run in enumerate(runs.runs):
@@ -171,7 +197,7 @@ def _late(path: _Path, runs: Together, nodes: NDArray[np.intp], delay: float) ->
 
 
 def _noise_of_legs(
-    path: _Path, runs: Together, track: float, view: View, *, left: float, right: float
+    path: DrivenPath, runs: Together, track: float, view: View, *, left: float, right: float
 ) -> Floats:
     """Sum of the steps' closed forms, each carried to its leg's end, as the reference sees it."""
     steps = runs.inside
