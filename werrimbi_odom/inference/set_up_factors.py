@@ -1,0 +1,124 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Simple factors between what is true and what was entered, and the mistakes that make them."""
+
+from __future__ import annotations
+
+import math
+
+FACTORS: dict[str, float] = {
+    "2": 2.0,
+    "1/2": 0.5,
+    "4": 4.0,
+    "1/4": 0.25,
+    "pi": math.pi,
+    "1/pi": 1.0 / math.pi,
+    "180/pi": 180.0 / math.pi,
+    "pi/180": math.pi / 180.0,
+    "1000": 1000.0,
+    "1/1000": 1e-3,
+}
+"""True over entered, by name."""
+
+NEAR = 1.13
+"""A value within this ratio of a simple factor is taken for it (pi and 4 are 1.27 apart)."""
+
+ORDINARY = 1.3
+"""A value within this ratio of 1 is a matter of calibration, not of set-up."""
+
+RADIUS: dict[str, str] = {
+    "2": "half the radius was entered, or twice the counts of a turn",
+    "1/2": "a diameter was entered for the radius, or half the counts of a turn (both edges count)",
+    "4": "counts of a turn were entered four times too large (an encoder that counts lines alone)",
+    "1/4": "lines were entered for counts of a turn, and the encoder counts four edges a line",
+    "pi": "a pi too many was divided out: diameter over circumference",
+    "1/pi": "a circumference was halved and entered for the radius",
+    "180/pi": "the wheels' angles are in radians and were entered as degrees",
+    "pi/180": "the wheels' angles are in degrees and are taken for radians",
+    "1000": "kilometres for metres, or counts of a turn in thousandths",
+    "1/1000": "millimetres were entered for metres",
+}
+"""What makes both radii off by a factor."""
+
+BASE: dict[str, str] = {
+    "2": "half the base was entered (axle's middle to wheel)",
+    "1/2": "twice the base was entered",
+    "4": "a quarter of the base was entered",
+    "1/4": "four times the base was entered",
+    "180/pi": "radians and degrees were mixed up where the base was worked out",
+    "pi/180": "radians and degrees were mixed up where the base was worked out",
+    "1000": "kilometres were entered for metres",
+    "1/1000": "millimetres were entered for metres",
+}
+"""What makes the base off by a factor."""
+
+METRE: dict[str, str] = {
+    "1000": "the reference's positions are in millimetres",
+    "1/1000": "base and radius were both entered in millimetres, or the reference is in kilometres",
+}
+"""What makes base and radii off by one and the same factor."""
+
+
+def simple_factor(value: float) -> str | None:
+    """Name of the simple factor that a positive value is near, by the nearest logarithm."""
+    nearest = min(FACTORS, key=lambda name: abs(math.log(value / FACTORS[name])))
+    return nearest if abs(math.log(value / FACTORS[nearest])) <= math.log(NEAR) else None
+
+
+def is_ordinary(value: float) -> bool:
+    """Whether a positive value is so near to 1 that calibration takes care of it."""
+    return abs(math.log(value)) <= math.log(ORDINARY)
+
+
+def spoken(value: float) -> str:
+    """A factor as one says it."""
+    return f"{value:.3g}" if value >= 1.0 else f"1/{1.0 / value:.3g}"
+
+
+def radius_words(value: float, factor: str | None) -> str:
+    """Both radii."""
+    return _words("both wheels' radius", value, factor, RADIUS, "look at radius, gear and encoder")
+
+
+def base_words(value: float, factor: str | None) -> str:
+    """The base."""
+    return _words("the wheel base", value, factor, BASE, "measure it anew")
+
+
+def metre_words(value: float, factor: str | None) -> str:
+    """Radii and base by the same factor."""
+    return _words(
+        "radius and base alike",
+        value,
+        factor,
+        METRE,
+        "the reference's metre, or the robot file's, is not one",
+    )
+
+
+def side_words(side: str, value: float, factor: str | None) -> str:
+    """One wheel alone."""
+    return _words(
+        f"the {side} wheel's travel alone",
+        value,
+        factor,
+        {},
+        f"the {side} encoder's counts of a turn or its gear were entered wrongly",
+    )
+
+
+def turning_words(value: float, factor: str | None) -> str:
+    """Radii over base, where yaw alone was measured."""
+    return _words(
+        "radius over base",
+        value,
+        factor,
+        {},
+        "radius or base were entered wrongly; yaw alone cannot tell which: drive a taped distance",
+    )
+
+
+def _words(what: str, value: float, factor: str | None, made_by: dict[str, str], else_: str) -> str:
+    near = f", near {factor}" if factor else ""
+    cause = made_by.get(factor or "", else_)
+    return f"{what} is {spoken(value)} times what the robot file says{near}: {cause}"

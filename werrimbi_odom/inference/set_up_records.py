@@ -1,0 +1,236 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Runs cut up for the search of set-up mistakes: nothing here rests on the robot file's scale.
+
+A cut is half a turn of the faster wheel, whatever length that is: the file's metres may be off by
+1000, and so may the reference's. What the robot file already says of the reference (mirror, mount,
+delay) is undone first, so that all that is found later is what is still wrong.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.model.drive import Span
+from werrimbi_odom.model.driving import features
+from werrimbi_odom.model.effect import after_wheel_effects, view_of, wiring_of
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.motion import WheelTravel
+from werrimbi_odom.model.pose import Floats, wrap_all
+from werrimbi_odom.model.recorded_counts import wheel_steps
+from werrimbi_odom.model.robot import Robot
+
+Complexes = NDArray[np.complex128]
+Measured = Literal["poses", "positions", "headings"]
+
+FEWEST, MOST = 300, 8000
+"""Cuts of a whole session: longer than half a turn beyond, shorter below."""
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """One run: travel of both wheels by the robot file, and what was measured; n steps, m rows."""
+
+    time: Floats
+    """Stamps of the messages, shape (n + 1,) [s]."""
+    left: Floats
+    """Travel of what the file takes for the left wheel up to each, shape (n + 1,) [m]."""
+    right: Floats
+    seen: Floats
+    """When each row of the reference was seen, on the ticks' clock, shape (m,) [s]."""
+    place: Complexes
+    """Measured x + iy, shape (m,); NaN where not measured [m]."""
+    yaw: Floats
+    """Measured heading, shape (m,); NaN where not measured [rad]."""
+
+    def delayed(self, delay: float) -> Record:
+        """The same, when the reference is later by `delay` [s] than was believed."""
+        return replace(self, seen=self.seen - delay)
+
+    def in_degrees(self) -> Record:
+        """The same, when what is recorded as yaw are degrees."""
+        return replace(self, yaw=np.radians(self.yaw))
+
+
+@dataclass(frozen=True, slots=True)
+class Cuts:
+    """All runs on common nodes, one behind the other; k cuts.
+
+    Nodes are all messages and the ends of cuts; a run begins with a step of no travel.
+    """
+
+    left: Floats
+    """Travel in each step [m], shape (n,)."""
+    right: Floats
+    begin: NDArray[np.intp]
+    """Steps before the cut's first, shape (k,)."""
+    end: NDArray[np.intp]
+    duration: Floats
+    """Of each cut [s]."""
+    turn: Floats
+    """Measured change of heading, wrapped row by row [rad]; NaN where not measured."""
+    move: Complexes
+    """Measured displacement, in the frame of the measured heading at the cut's start where there
+    is one, else of the reference [m]."""
+    run: NDArray[np.intp]
+    """Number of the run that each cut belongs to."""
+
+    @property
+    def count(self) -> int:
+        """Number of cuts."""
+        return self.begin.size
+
+    def summed(self, steps: Floats) -> Floats:
+        """Sum of the steps in each cut."""
+        total = np.concatenate([[0.0], np.cumsum(steps)])
+        return np.asarray(total[self.end] - total[self.begin])
+
+
+def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | None:
+    """A run as far as it can be used; None where there is no reference, or no travel."""
+    reference, ticks = run.reference, run.ticks
+    if reference is None:
+        return None
+    # A highest speed in metres is no help while the metre itself is in doubt.
+    lenient = replace(limits or EncoderLimits(), max_wheel_speed=0.0)
+    steps = wheel_steps(robot, ticks.time, ticks.left, ticks.right, lenient)
+    if steps.first_row < 0 or steps.time.size < 2:
+        return None
+    rows = np.concatenate([[steps.first_row], steps.row])
+    time = np.asarray(ticks.time, dtype=np.float64)[rows]
+    forward = np.diff(time) > 0.0
+    if not forward.all():
+        return None
+    wheels = wiring_of(robot.effects).wheels
+    left, right = wheels(steps.left / robot.left_tick, steps.right / robot.right_tick)
+    raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
+    if any(applied.effect.stage == "wheels" for applied in robot.effects):
+        first = (float(ticks.left[steps.first_row]), float(ticks.right[steps.first_row]))
+        channels = {}
+        for name, values in ticks.channels.items():
+            there = np.asarray(values, dtype=np.float64)[rows]
+            known = np.isfinite(there)
+            if known.any():
+                there = np.interp(time, time[known], there[known])
+                channels[name] = Span(there[:-1], there[1:])
+        drive = features(robot, np.diff(time), raw, wheels(*first), channels)
+        raw = after_wheel_effects(robot.effects, raw, drive)
+    view = view_of(robot.effects)
+    sign = -1.0 if view.mirrored else 1.0
+    known = (np.isfinite(reference.x) & np.isfinite(reference.y)) | np.isfinite(reference.yaw)
+    stamps = np.asarray(reference.time, dtype=np.float64)
+    latest = np.maximum.accumulate(np.where(known, stamps, -math.inf))
+    known &= np.concatenate([[True], stamps[1:] > latest[:-1]])
+    return Record(
+        time,
+        np.concatenate([[0.0], np.cumsum(raw.left)]),
+        np.concatenate([[0.0], np.cumsum(raw.right)]),
+        stamps[known] - view.delay,
+        (reference.x + 1j * sign * np.asarray(reference.y))[known],
+        sign * np.asarray(reference.yaw)[known],
+    )
+
+
+def measured_by(records: Sequence[Record]) -> Measured | None:
+    """The best that the reference gives: poses where enough rows have all of one."""
+    place = sum(int(np.isfinite(each.place).sum()) for each in records)
+    yaw = sum(int(np.isfinite(each.yaw).sum()) for each in records)
+    both = sum(int((np.isfinite(each.place) & np.isfinite(each.yaw)).sum()) for each in records)
+    if both >= 0.3 * max(place, yaw) and both > 1:
+        return "poses"
+    if place > 1 and place >= yaw:
+        return "positions"
+    return "headings" if yaw > 1 else None
+
+
+def effective_track(robot: Robot) -> float:
+    """Base that the robot file, its effects included, takes for true [m]."""
+    widths = [item.values["multiplier"] for item in robot.effects if item.name == "track_width"]
+    return robot.track * math.prod(widths)
+
+
+def cut(records: Sequence[Record], robot: Robot, measured: Measured, *, fewest: int = FEWEST) -> Cuts:
+    """Cut all runs at rows of the reference, every half turn of the faster wheel.
+
+    Parameters
+    ----------
+    fewest : int
+        Where half turns make fewer cuts than this, cuts are shorter; a cut is at least one interval
+        of the reference.
+    """
+    usable = [_usable(each, measured) for each in records]
+    total = sum(float(_progress(each)[-1]) for each in usable if each.seen.size > 1)
+    half_turn = math.pi * robot.wheel_radius
+    length = min(max(half_turn, total / MOST), total / fewest) if total > 0.0 else half_turn
+    view = view_of(robot.effects)
+    crab = sum(item.values["angle"] for item in robot.effects if item.name == "sideways_drift")
+    parts, offset = [], 0
+    for number, each in enumerate(usable):
+        if each.seen.size < 2:
+            continue
+        point = complex(view.ahead, view.left)
+        part = _cut_run(each, length, point, view.yaw - crab, number, offset)
+        offset += part.left.size
+        parts.append(part)
+    if not parts:
+        none, index = np.empty(0), np.empty(0, dtype=np.intp)
+        return Cuts(none, none, index, index, none, none, none.astype(complex), index)
+    names = [item.name for item in fields(Cuts)]
+    return Cuts(*(np.concatenate([getattr(each, name) for each in parts]) for name in names))
+
+
+def _usable(record: Record, measured: Measured) -> Record:
+    """Rows that hold what is asked for, while the ticks were recorded."""
+    keep = (record.seen >= record.time[0]) & (record.seen <= record.time[-1])
+    if measured != "headings":
+        keep &= np.isfinite(record.place)
+    if measured != "positions":
+        keep &= np.isfinite(record.yaw)
+    yaw = record.yaw[keep] if measured != "positions" else np.full(int(keep.sum()), np.nan)
+    return replace(record, seen=record.seen[keep], place=record.place[keep], yaw=yaw)
+
+
+def _progress(record: Record) -> Floats:
+    """Travel of the faster wheel up to each row of the reference [m]."""
+    faster = np.maximum(np.abs(np.diff(record.left)), np.abs(np.diff(record.right)))
+    gone = np.interp(record.seen, record.time, np.concatenate([[0.0], np.cumsum(faster)]))
+    return np.asarray(gone - gone[0])
+
+
+def _cut_run(
+    record: Record, length: float, point: complex, yaw: float, number: int, offset: int
+) -> Cuts:
+    gone = _progress(record)
+    whole = np.arange(1.0, math.floor(gone[-1] / length * (1.0 + 1e-9)) + 1.0) * length
+    chosen = np.unique(np.concatenate([[0], np.searchsorted(gone, whole * (1.0 - 1e-9))]))
+    if chosen.size == 1:
+        chosen = np.array([0, gone.size - 1])
+    at = record.seen[chosen]
+    time = np.union1d(record.time, at)
+    left = np.interp(time, record.time, record.left)
+    right = np.interp(time, record.time, record.right)
+    nodes = offset + 1 + np.searchsorted(time, at)
+    heading = np.concatenate([[0.0], np.cumsum(wrap_all(np.diff(record.yaw)))])[chosen]
+    turn = np.diff(heading)
+    move = np.diff(record.place[chosen])
+    if np.isfinite(turn).all():
+        # The reference's own axis and point, as far as the file knows them, are undone.
+        move = move * np.exp(1j * (yaw - record.yaw[chosen[:-1]]))
+        move = move - (np.exp(1j * turn) - 1.0) * point
+    return Cuts(
+        np.diff(left, prepend=left[0]),
+        np.diff(right, prepend=right[0]),
+        nodes[:-1],
+        nodes[1:],
+        np.diff(at),
+        turn,
+        move,
+        np.full(at.size - 1, number),
+    )
