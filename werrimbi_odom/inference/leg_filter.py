@@ -1,0 +1,133 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Legs of a reference that gives positions alone: the heading is what earlier positions tell.
+
+A Kalman filter carries position and heading from leg to leg; the error of a leg is what it did not
+expect of the position at the leg's end. A model that is wrong would trust its own heading too much
+and show one bad spin in all legs after it; so the gain is that of a model doubted as much as its
+errors warrant, while the covariance is the honest one of such a gain under the noise as stated.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.model.pose import Floats
+
+_MEDIAN_CHI2_2 = 1.386
+_UNKNOWN_HEADING = 1.0
+"""Variance [rad²] of a fitted heading at the start."""
+_MOST_DOUBT = 1e6
+_ROUNDS = 4
+
+
+class PositionErrors(NamedTuple):
+    """Of all legs, in the frame of the robot at each leg's start."""
+
+    error: Floats
+    """(x, y, NaN), shape (m, 3) [m]."""
+    wheels: Floats
+    """Covariance of it from the wheels' noise, shape (m, 3, 3)."""
+    reference: Floats
+    """Covariance of it from the reference's noise, shape (m, 3, 3)."""
+    heading: Floats
+    """At the leg's start, as the positions before it tell, shape (m,) [rad]."""
+
+
+def position_errors(
+    relative: Floats,
+    wheels: Floats,
+    start: Floats,
+    finish: Floats,
+    variance: Floats | float,
+    first: NDArray[np.intp],
+    headings: Floats,
+) -> PositionErrors:
+    """Filter the legs of all runs.
+
+    Parameters
+    ----------
+    relative, wheels : ndarray, shapes (m, 3) and (m, 3, 3)
+        Predicted relative pose of each leg, and its covariance from the wheels' noise.
+    start, finish : ndarray, shape (m, 2)
+        Measured positions [m].
+    variance : float, or ndarray of shape (m,)
+        Of each measured coordinate [m²].
+    first : ndarray, shape (runs + 1,)
+        First leg of each run, and the number of legs.
+    headings : ndarray, shape (runs,)
+        At the first pose of each run, known roughly [rad].
+    """
+    variances = np.zeros(relative.shape[0]) + variance
+    doubt = 1.0
+    for _ in range(_ROUNDS):
+        found, deviation = _filtered(
+            relative, wheels, start, finish, variances, first, headings, doubt
+        )
+        usual = float(np.median(deviation)) / _MEDIAN_CHI2_2
+        if usual <= 1.5 or doubt >= _MOST_DOUBT:
+            break
+        doubt = min(doubt * usual, _MOST_DOUBT)
+    return found
+
+
+def _filtered(
+    relative: Floats,
+    wheels: Floats,
+    start: Floats,
+    finish: Floats,
+    variances: Floats,
+    first: NDArray[np.intp],
+    headings: Floats,
+    doubt: float,
+) -> tuple[PositionErrors, Floats]:
+    count = relative.shape[0]
+    found = PositionErrors(
+        np.full((count, 3), np.nan),
+        np.zeros((count, 3, 3)),
+        np.zeros((count, 3, 3)),
+        np.zeros(count),
+    )
+    deviation = np.zeros(count)
+    begins = {int(leg): index for index, leg in enumerate(first[:-1])}
+    identity = np.eye(3)
+    state = np.zeros(3)
+    # Three covariances of one state: as doubted (for the gain), and the honest one in two parts.
+    parts = np.zeros((3, 3, 3))
+    for leg in range(count):
+        if leg in begins:
+            state[:2], state[2] = start[leg], headings[begins[leg]]
+            known = np.diag([variances[leg], variances[leg], _UNKNOWN_HEADING])
+            parts = np.stack([known, np.zeros((3, 3)), known])
+        cos, sin = np.cos(state[2]), np.sin(state[2])
+        turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+        move = turn @ relative[leg]
+        lever = identity.copy()
+        lever[0, 2], lever[1, 2] = -move[1], move[0]
+        found.heading[leg] = state[2]
+        state = state + move
+        own = turn @ wheels[leg] @ turn.T
+        parts = lever @ parts @ lever.T
+        parts[0] += doubt * own
+        parts[1] += own
+        noise = variances[leg] * np.eye(2)
+        unexpected = finish[leg] - state[:2]
+        total = parts[0, :2, :2] + noise
+        inverse = np.linalg.inv(total)
+        deviation[leg] = unexpected @ inverse @ unexpected
+        back = turn[:2, :2].T
+        found.error[leg, :2] = back @ unexpected
+        found.wheels[leg, :2, :2] = back @ parts[1, :2, :2] @ back.T
+        found.reference[leg, :2, :2] = back @ (parts[2, :2, :2] + noise) @ back.T
+        gain = parts[0, :, :2] @ inverse
+        state = state + gain @ unexpected
+        less = identity.copy()
+        less[:, :2] -= gain
+        parts = less @ parts @ less.T
+        added = gain @ noise @ gain.T
+        parts[0] += added
+        parts[2] += added
+    return found, deviation
