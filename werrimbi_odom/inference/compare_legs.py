@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -299,9 +300,20 @@ def _in_order(parts: list[Legs]) -> Legs:
         )[order]
         for name in names
     }
-    columns = [
-        np.concatenate([getattr(part, name) for part in parts])[order]
-        for name in ("outlier", "run", "start_time", "end_time", "x", "y", "end_x", "end_y")
-    ]
-    errors = joined([part.errors for part in parts]).chosen(order)
-    return Legs(parts[0].leg, errors, *columns, variables)
+
+    def whole(name: str) -> Any:
+        return np.concatenate([getattr(part, name) for part in parts])[order]
+
+    return Legs(
+        parts[0].leg,
+        joined([part.errors for part in parts]).chosen(order),
+        whole("outlier"),
+        whole("run"),
+        whole("start_time"),
+        whole("end_time"),
+        whole("x"),
+        whole("y"),
+        whole("end_x"),
+        whole("end_y"),
+        variables,
+    )

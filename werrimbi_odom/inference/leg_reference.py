@@ -34,6 +34,7 @@ USUAL_SIGMA_XY, USUAL_SIGMA_YAW = 2e-3, 5e-3
 
 _ENOUGH = 30  # differences, below which a scatter is not told from them
 _REACH = 0.3  # [m] path (or [rad]) that a difference may span; the model's error bends beyond it
+_GROWS = 1.25  # times, from the shortest span to the longest, that the variance grows by chance
 _LEAST = 0.25  # share of the shortest differences' variance that is taken for noise at least
 _THIRD = np.array([-1.0, 3.0, -3.0, 1.0])
 _NORMAL = 1.4826  # from median deviation to standard deviation
@@ -267,6 +268,8 @@ def _intercept(at: Floats, variances: Floats, counts: Floats) -> float:
     weight = counts / np.maximum(variances, 1e-300) ** 2
     weight = weight / weight.sum()
     middle, mean = float(weight @ at), float(weight @ variances)
+    if variances.max() < _GROWS * variances[0]:
+        return mean  # no more than chance; a line would carry that chance on to zero
     spread = float(weight @ (at - middle) ** 2)
     slope = float(weight @ ((at - middle) * variances)) / spread if spread > 0.0 else 0.0
     # Where the growth outruns the noise the line is not to be trusted down to nothing.

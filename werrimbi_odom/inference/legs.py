@@ -65,8 +65,8 @@ class LegErrors:
         """Squared Mahalanobis distance error' Σ⁻¹ error, shape (m,): chi-squared if honest."""
         return squared_deviation(self.error, self.covariance)
 
-    def chosen(self, which: NDArray[np.bool_]) -> LegErrors:
-        """Some of the legs."""
+    def chosen(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> LegErrors:
+        """Some of the legs, by mask or by index."""
         return LegErrors(
             self.error[which],
             self.covariance[which],
