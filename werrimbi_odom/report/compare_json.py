@@ -1,0 +1,158 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A comparison as JSON, field for field; angles in radians, lengths in metres."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from werrimbi_odom.inference.compare import KINDS, Comparison, LegFigures, OfLength, RunFigures
+from werrimbi_odom.inference.compare_legs import Legs
+from werrimbi_odom.inference.compare_verdict import verdict_of
+from werrimbi_odom.inference.leg_groups import ByVariable, Cell
+from werrimbi_odom.inference.leg_systematic import Systematic
+
+
+def json_of(comparison: Comparison) -> dict[str, Any]:
+    """Everything that was found; NaN where nothing was measured (null in the file)."""
+    main, verdict = comparison.main, verdict_of(comparison)
+    return {
+        "runs": [_run(item) for item in comparison.runs],
+        "legs": legs_json(main.all),
+        "by_motion": {kind: legs_json(main.by_motion[kind]) for kind in KINDS},
+        "leg_m": comparison.prepared.leg,
+        "verdict": {
+            "good": verdict.good,
+            "enough": verdict.enough,
+            "mean_is_right": verdict.mean_is_right,
+            "gross": verdict.gross,
+            "noise": verdict.noise,
+            "noise_factor": [verdict.factor.value, verdict.factor.low, verdict.factor.high],
+            "systematic": [_systematic(part) for part in verdict.systematic],
+            "depends_on": [
+                {"channel": item.channel, "variable": item.variable, "p_value": item.p_value}
+                for item in verdict.depends
+            ],
+        },
+        "systematic": [_systematic(part) for part in main.systematic],
+        "by_length": [_of_length(item) for item in comparison.lengths],
+        "by_variable": {item.name: _variable(item) for item in comparison.variables},
+        "floor": [_cell(cell) for cell in comparison.cells],
+        "reference": [
+            {"measures": measure, **asdict(noise)} for measure, noise in comparison.prepared.noises
+        ],
+        "outliers": _outliers(comparison),
+        "each_leg": _each_leg(comparison),
+    }
+
+
+def legs_json(figures: LegFigures) -> dict[str, Any]:
+    """Figures over some legs, with the names of the contract."""
+    item = figures.figures
+    return {
+        "count": item.count,
+        "outliers": figures.outliers,
+        "rmse_position_m": item.rmse_position_m,
+        "median_position_m": item.median_position_m,
+        "rmse_all_position_m": figures.rmse_all_position_m,
+        "rmse_yaw_rad": item.rmse_yaw_rad,
+        "nees": item.nees,
+        "coverage_95": item.coverage_95,
+        "nees_without_systematic": figures.scatter_nees,
+        "noise_factor": list(figures.noise),
+    }
+
+
+def _run(item: RunFigures) -> dict[str, Any]:
+    return {
+        "run": str(item.run.path),
+        "distance_m": item.distance_m,
+        "duration_s": item.duration_s,
+        "end_error_m": item.end_error_m,
+        "end_error_rad": item.end_error_rad,
+        "rmse_path_m": item.rmse_path_m,
+        "legs": legs_json(item.legs),
+    }
+
+
+def _of_length(item: OfLength) -> dict[str, Any]:
+    return {
+        "leg_m": item.leg,
+        **legs_json(item.all),
+        "by_motion": {kind: legs_json(item.by_motion[kind]) for kind in KINDS},
+    }
+
+
+def _systematic(part: Systematic) -> dict[str, Any]:
+    return {**asdict(part), "finding": part.finding}
+
+
+def _variable(item: ByVariable) -> dict[str, Any]:
+    return {
+        "p_values": dict(item.p_values),
+        "bins": [
+            {
+                "low": part.low,
+                "high": part.high,
+                "mean_along_m": part.mean[0],
+                "mean_sideways_m": part.mean[1],
+                "mean_heading_rad": part.mean[2],
+                **asdict(part.figures),
+            }
+            for part in item.bins
+        ],
+    }
+
+
+def _cell(cell: Cell) -> dict[str, Any]:
+    return {
+        "x_m": cell.x,
+        "y_m": cell.y,
+        "side_m": cell.side,
+        "p_value": cell.p_value,
+        "stands_out": cell.stands_out,
+        **asdict(cell.figures),
+    }
+
+
+def _outliers(comparison: Comparison) -> list[dict[str, Any]]:
+    """The legs on which the reference jumped."""
+    legs = comparison.legs
+    return [
+        {
+            "run": str(comparison.runs[legs.run[index]].run.path),
+            "t_start_s": float(legs.start_time[index]),
+            "t_end_s": float(legs.end_time[index]),
+        }
+        for index in np.flatnonzero(legs.outlier).tolist()
+    ]
+
+
+def _each_leg(comparison: Comparison) -> dict[str, Any]:
+    """All legs of the length asked for, column by column."""
+    legs: Legs = comparison.legs
+    errors = legs.errors
+    sigmas = np.sqrt(np.maximum(np.diagonal(errors.covariance, axis1=1, axis2=2), 0.0))
+    sigmas = np.where(np.isfinite(errors.error), sigmas, np.nan)
+    columns: dict[str, Any] = {
+        "run": legs.run,
+        "t_start_s": legs.start_time,
+        "t_end_s": legs.end_time,
+        "x_m": legs.x,
+        "y_m": legs.y,
+        "motion": errors.kind,
+        "outlier": legs.outlier,
+        "travel_m": errors.along,
+        "turn_rad": errors.turn,
+        "error_along_m": errors.error[:, 0],
+        "error_sideways_m": errors.error[:, 1],
+        "error_heading_rad": errors.error[:, 2],
+        "sigma_along_m": sigmas[:, 0],
+        "sigma_sideways_m": sigmas[:, 1],
+        "sigma_heading_rad": sigmas[:, 2],
+        **legs.variables,
+    }
+    return {name: np.asarray(values).tolist() for name, values in columns.items()}

@@ -1,0 +1,143 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A comparison in tables of plain text that fit into 80 columns."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from werrimbi_odom.inference.compare import KINDS, Comparison, LegFigures, OfLength
+from werrimbi_odom.inference.leg_groups import DEPENDS_P, ByVariable
+
+WIDTH = 80
+_NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
+_FIGURES = ("legs", "position", "heading", "NEES", "inside 95 %")
+
+
+def tables_of(comparison: Comparison) -> str:
+    """All tables, each with its heading, parted by empty lines."""
+    tables = [_motions(comparison.main), _lengths(comparison)]
+    if len(comparison.runs) > 1 or math.isfinite(comparison.runs[0].end_error_m):
+        tables.append(_runs(comparison))
+    tables += [_variable(item) for item in comparison.variables if _depends(item)]
+    calm = [item.name.split(" [")[0] for item in comparison.variables if not _depends(item)]
+    if calm:
+        tables.append(f"Nothing is seen to go with: {', '.join(calm)}.")
+    return "\n\n".join(tables)
+
+
+def _depends(item: ByVariable) -> bool:
+    return any(p_value < DEPENDS_P for p_value in item.p_values.values())
+
+
+def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
+    """First column to the left, the others to the right, two blanks between."""
+    columns = list(zip(heads, *rows, strict=True))
+    widths = [max(map(len, column)) for column in columns]
+    lines = [title]
+    for row in (heads, *rows):
+        cells = [row[0].ljust(widths[0])]
+        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
+        lines.append(("  " + "  ".join(cells)).rstrip())
+    return "\n".join(lines)
+
+
+def _motions(main: OfLength) -> str:
+    rows = [
+        [_NAMES[kind], *_cells(main.by_motion[kind])]
+        for kind in KINDS
+        if main.by_motion[kind].figures.count
+    ]
+    rows.append(["all", *_cells(main.all)])
+    return table(f"Errors of legs of {main.leg:g} m (rms)", ("by motion", *_FIGURES), rows)
+
+
+def _lengths(comparison: Comparison) -> str:
+    rows = [[f"{item.leg:g} m", *_cells(item.all)] for item in comparison.lengths]
+    return table("Errors by length of leg (rms)", ("leg", *_FIGURES), rows)
+
+
+def _cells(figures: LegFigures) -> list[str]:
+    item = figures.figures
+    return [
+        str(item.count),
+        _length(item.rmse_position_m),
+        _angle(item.rmse_yaw_rad),
+        _number(item.nees),
+        _percent(item.coverage_95),
+    ]
+
+
+def _runs(comparison: Comparison) -> str:
+    rows = [
+        [
+            _short(item.run.name),
+            f"{item.distance_m:.1f} m",
+            f"{item.duration_s:.0f} s",
+            _length(item.end_error_m),
+            _angle(abs(item.end_error_rad)),
+            _length(item.legs.figures.rmse_position_m),
+            _number(item.legs.figures.nees),
+        ]
+        for item in comparison.runs
+    ]
+    return table(
+        "Runs, dead reckoning begun at the first pose of the reference",
+        ("run", "driven", "time", "end error", "", "legs", "NEES"),
+        rows,
+    )
+
+
+def _short(name: str, most: int = 26) -> str:
+    return name if len(name) <= most else f"{name[: most - 3]}..."
+
+
+def _variable(item: ByVariable) -> str:
+    name, _, unit = item.name.partition(" [")
+    unit = unit.rstrip("]")
+    with_it = [channel for channel, p in item.p_values.items() if p < DEPENDS_P]
+    angles = item.name.startswith("heading")
+    rows = []
+    for part in item.bins:
+        low, high = part.low, part.high
+        if angles:
+            low, high = math.degrees(low), math.degrees(high)
+        rows.append(
+            [
+                f"{low:.3g} to {high:.3g}",
+                str(part.figures.count),
+                _length(part.mean[0], signed=True),
+                _length(part.mean[1], signed=True),
+                _angle(part.mean[2], signed=True),
+                _number(part.figures.nees),
+            ]
+        )
+    heads = ("degrees" if angles else unit or name, "legs", "along", "sideways", "heading", "NEES")
+    title = f"Mean errors by {name} ({', '.join(with_it)} {'go' if len(with_it) > 1 else 'goes'}"
+    return table(f"{title} with it)", heads, rows)
+
+
+def _length(value: float, *, signed: bool = False) -> str:
+    if not math.isfinite(value):
+        return "-"
+    sign = "+" if signed else ""
+    if abs(value) >= 1.0:
+        return f"{value:{sign}.2f} m"
+    return f"{1e3 * value:{sign}.1f} mm"
+
+
+def _angle(value: float, *, signed: bool = False) -> str:
+    if not math.isfinite(value):
+        return "-"
+    return f"{math.degrees(value):{'+' if signed else ''}.2f}°"
+
+
+def _number(value: float) -> str:
+    if not math.isfinite(value):
+        return "-"
+    return f"{value:.2f}" if value < 100.0 else f"{value:.0f}" if value < 1e5 else f"{value:.0e}"
+
+
+def _percent(value: float) -> str:
+    return f"{100.0 * value:.0f} %" if math.isfinite(value) else "-"

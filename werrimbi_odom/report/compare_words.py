@@ -1,0 +1,320 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A comparison in plain words: is the model good, where does it fail, what to do next."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+
+from werrimbi_odom.inference.compare import KINDS, Comparison, LegFigures
+from werrimbi_odom.inference.compare_verdict import FEWEST, Depends, Verdict, verdict_of
+from werrimbi_odom.inference.leg_systematic import Systematic
+
+WIDTH = 80
+
+NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
+_AGREES = {"line": "is", "arc": "are", "spin": "are"}
+_CHANNELS = {
+    "along": "the error along the way",
+    "sideways": "the sideways error",
+    "heading": "the heading error",
+    "size": "the size of the errors",
+}
+_GROSS_SHARE = 0.5
+
+
+def words_of(comparison: Comparison, *, next_step: str = "werrimbi diagnose") -> str:
+    """A few sentences, filled to 80 columns.
+
+    Parameters
+    ----------
+    next_step : str
+        Command that looks for what is missing.
+    """
+    verdict = verdict_of(comparison)
+    paragraphs = [_headline(comparison, verdict)]
+    if verdict.enough:
+        paragraphs += _by_motion(comparison, verdict)
+        paragraphs += _elsewhere(verdict)
+        paragraphs += _covariance(comparison, verdict)
+    paragraphs += _reference(comparison)
+    paragraphs.append(_next(verdict, next_step))
+    return "\n".join(_filled(text) for text in paragraphs if text)
+
+
+def _filled(text: str) -> str:
+    hanging = "  " if text.startswith("- ") else ""
+    return textwrap.fill(
+        text, WIDTH, subsequent_indent=hanging, break_long_words=False, break_on_hyphens=False
+    )
+
+
+def _headline(comparison: Comparison, verdict: Verdict) -> str:
+    count = comparison.main.all.figures.count
+    if not verdict.enough:
+        return (
+            f"Too little to judge: {_counted(count, 'leg')} of "
+            f"{_metres(comparison.prepared.leg)}, {FEWEST} are the least. "
+            "Drive more, or try a shorter --leg."
+        )
+    if verdict.good:
+        shortest, longest = comparison.lengths[0].leg, comparison.lengths[-1].leg
+        over = f"over legs of {_metres(shortest)} to {_metres(longest)}"
+        if shortest == longest:
+            over = f"over legs of {_metres(longest)}"
+        return (
+            f"The model explains these drives: {over} its errors are what its covariance "
+            "promises, and nothing systematic is left in them."
+        )
+    if verdict.gross:
+        return (
+            "The model is grossly wrong: that is not calibration, but something set up wrongly "
+            "(a number of the robot file, a wheel, or the reference's mounting)."
+        )
+    if verdict.mean_is_right and not verdict.off and verdict.noise == "too large":
+        return "The model is right, and better than its covariance says."
+    if verdict.mean_is_right and verdict.noise == "too small":
+        return "On average the model is right, but its errors are larger than it promises."
+    if verdict.mean_is_right:
+        return "The model's errors are larger than it promises."
+    failing = [kind for kind in KINDS if any(part.kind == kind for part in verdict.systematic)]
+    if failing:
+        return f"The model goes wrong in {_listed([NAMES[kind] for kind in failing])}."
+    return "The model goes wrong, in a way that travel and turn alone do not show."
+
+
+def _by_motion(comparison: Comparison, verdict: Verdict) -> list[str]:
+    """A line for each motion type that was driven."""
+    lines = []
+    for kind in KINDS:
+        figures = comparison.main.by_motion[kind]
+        if figures.figures.count < FEWEST:
+            continue
+        parts = [part for part in verdict.systematic if part.kind == kind]
+        said = [_systematic(part, comparison.prepared.leg) for part in parts]
+        name = NAMES[kind].capitalize()
+        errors = _errors(figures)
+        if said:
+            lines.append(f"- {name}: {_listed(said)}. Errors of a leg: {errors}.")
+        elif kind in verdict.off:
+            times = math.sqrt(figures.scatter_nees)
+            lines.append(
+                f"- {name}: errors of a leg {errors}, {times:.1f} times what is promised, "
+                "without a common direction."
+            )
+        else:
+            promised = "" if figures.figures.nees < 0.5 else ", as promised"
+            lines.append(f"- {name} {_AGREES[kind]} good: errors of a leg {errors}{promised}.")
+    return lines
+
+
+def _errors(figures: LegFigures) -> str:
+    parts = []
+    if math.isfinite(figures.figures.rmse_position_m):
+        parts.append(_millimetres(figures.figures.rmse_position_m))
+    if math.isfinite(figures.figures.rmse_yaw_rad):
+        parts.append(f"{math.degrees(figures.figures.rmse_yaw_rad):.2f}°")
+    return " and ".join(parts)
+
+
+def _systematic(part: Systematic, leg: float) -> str:
+    """What the robot did, against what the model says."""
+    value, std = part.value, part.std
+    if part.channel == "heading" and part.per == "turn":
+        return f"the robot turns {_share(value, std)} than the model says"
+    if part.channel == "heading" and part.per == "size of turn":
+        side = "left" if value > 0.0 else "right"
+        return (
+            f"whatever the sense, it turns {_degrees(value, std)} per turned radian to the {side}"
+        )
+    if part.channel == "heading":
+        side = "left" if value > 0.0 else "right"
+        return f"driving forward the robot veers to the {side} by {_degrees(value, std)} per metre"
+    if part.channel == "along" and part.per == "travel":
+        return f"the robot goes {_share(value, std)} than the model says"
+    if part.channel == "sideways" and part.per == "travel":
+        side = "left" if value > 0.0 else "right"
+        return f"the robot ends {_to_side(value, std)} to the {side} per metre forward"
+    quarter = 0.5 * math.pi
+    where = {
+        ("along", True): "forward",
+        ("along", False): "back",
+        ("sideways", True): "to the left",
+        ("sideways", False): "to the right",
+    }[(part.channel, value > 0.0)]
+    return (
+        f"what the reference measures moves {_to_side(value * quarter, std * quarter)} {where} "
+        "in a quarter turn to the left"
+    )
+
+
+def _share(value: float, std: float) -> str:
+    """As a percentage: 1.8 ± 0.1 % less."""
+    if value < -1.0 - _GROSS_SHARE:
+        return f"the other way ({100.0 * (1.0 + value):.0f} % of what is predicted) rather"
+    word = "more" if value > 0.0 else "less"
+    return f"{_rounded(100.0 * abs(value), 100.0 * std)} % {word}"
+
+
+def _degrees(value: float, std: float) -> str:
+    return f"{_rounded(math.degrees(abs(value)), math.degrees(std))}°"
+
+
+def _to_side(value: float, std: float) -> str:
+    return f"{_rounded(1e3 * abs(value), 1e3 * std)} mm"
+
+
+def _rounded(value: float, std: float) -> str:
+    """Value and standard error, to the digits that the error leaves."""
+    if not std > 0.0:
+        return f"{value:.3g}"
+    digits = min(max(-math.floor(math.log10(std)), 0), 6)
+    return f"{value:.{digits}f} ± {std:.{digits}f}"
+
+
+def _elsewhere(verdict: Verdict) -> list[str]:
+    lines = []
+    said: set[str] = set()
+    for item in verdict.depends:
+        if item.variable in said or len(said) == 2:
+            continue
+        said.add(item.variable)
+        others = [
+            other.channel
+            for other in verdict.depends
+            if other.variable == item.variable and other.channel != item.channel
+        ]
+        lines.append(f"- {_dependence(item, others)}")
+    for cell in verdict.cells[:2]:
+        lines.append(
+            f"- Errors are larger on the floor about x {cell.x:.1f} m, y {cell.y:.1f} m (a square "
+            f"of {cell.side:.1f} m): {_millimetres(cell.figures.rmse_position_m)} over "
+            f"{_counted(cell.figures.count, 'leg')}."
+        )
+    return lines
+
+
+def _dependence(item: Depends, others: list[str]) -> str:
+    variable = item.variable.split(" [")[0]
+    channels = _listed([_CHANNELS[channel] for channel in (item.channel, *others)])
+    verb = "go" if others or item.channel == "size" else "goes"
+    verb = "goes" if item.channel == "size" and not others else verb
+    return (
+        f"{channels[0].upper()}{channels[1:]} {verb} with the {variable} ({_chance(item.p_value)})."
+    )
+
+
+def _chance(p_value: float) -> str:
+    if p_value < 1e-12:
+        return "beyond any chance"
+    return f"chance of it without a cause: {p_value:.0e}"
+
+
+def _covariance(comparison: Comparison, verdict: Verdict) -> list[str]:
+    nees = comparison.main.all.figures.nees
+    factor, leg = verdict.factor, _metres(verdict.judged_at)
+    if verdict.good:
+        return [f"- The covariance is honest (NEES {nees:.2f}, 1 is right)."]
+    if not verdict.mean_is_right:
+        if nees < 1.5:
+            return [f"- The covariance is honest so far (NEES {nees:.2f}, 1 is right)."]
+        return [
+            f"- So the covariance is {_times(nees)} times too small (NEES {nees:.3g}, 1 is right). "
+            "Whether the wheels' noise is stated rightly can be told when that is mended."
+        ]
+    times = math.sqrt(factor.value)
+    low, high = math.sqrt(factor.low), math.sqrt(factor.high)
+    between = f"{low:.2g} to {high:.2g}" if math.isfinite(high) else f"at least {low:.2g}"
+    if verdict.noise == "too small":
+        return [
+            f"- The covariance is {_times(nees)} times too small (NEES {nees:.3g}, 1 is right). "
+            f"Legs of {leg} scatter as if the wheels' noise k were {times:.2g} times what "
+            f"the robot file says ({between})."
+        ]
+    if verdict.noise == "too large":
+        return [
+            f"- The covariance is too large (NEES {nees:.2f}, 1 is right): legs of {leg} "
+            f"scatter as if the wheels' noise k were {times:.2g} times what the robot file says "
+            f"({between})."
+        ]
+    if verdict.noise == "grows":
+        return [
+            f"- The covariance is too small (NEES {nees:.3g}, 1 is right), and the more so the "
+            "longer the leg: that is no noise of the wheels, something systematic is missing."
+        ]
+    if verdict.noise == "comes and goes" or verdict.off:
+        return [
+            f"- The covariance is too small for short legs (NEES {nees:.3g}, 1 is right), but not "
+            "for long ones: something comes and goes along the way, which no noise of the "
+            "wheels does."
+        ]
+    if verdict.noise == "honest":
+        return [f"- The covariance is honest (NEES {nees:.2f}, 1 is right)."]
+    return [f"- NEES is {nees:.3g} (1 is right); the wheels' noise cannot be judged by it."]
+
+
+def _times(value: float) -> str:
+    return f"{value:.1f}" if value < 10.0 else f"{value:.0f}" if value < 1e4 else f"{value:.0e}"
+
+
+def _reference(comparison: Comparison) -> list[str]:
+    lines = []
+    each = "pose" if comparison.prepared.kind == "absolute" else "interval"
+    for measure, noise in comparison.prepared.noises:
+        parts = []
+        if measure != "heading":
+            parts.append((f"{1e3 * noise.sigma_xy:.2g} mm", noise.xy_told))
+        if measure != "position":
+            parts.append((f"{math.degrees(noise.sigma_yaw):.2g}°", noise.yaw_told))
+        values = " and ".join(value for value, _ in parts)
+        told = (
+            parts[0][1] if len({how for _, how in parts}) == 1 else _listed([h for _, h in parts])
+        )
+        how = {
+            "estimated": "estimated from its own small differences",
+            "assumed": "assumed, for its poses are too few to tell; --reference-sigma-xy says it",
+            "stated": "as the record states it",
+            "given": "as given",
+        }.get(told, told)
+        what = {"pose": "", "position": " (positions alone)", "heading": " (headings alone)"}
+        lines.append(f"The reference's own noise{what[measure]}, {values} each {each}, is {how}.")
+    outliers = comparison.main.all.outliers
+    if outliers:
+        total = outliers + comparison.main.all.figures.count
+        lines.append(f"On {outliers} of {total} legs the reference jumped; they are left out.")
+    return lines
+
+
+def _next(verdict: Verdict, next_step: str) -> str:
+    if not verdict.enough or verdict.good:
+        return ""
+    if (
+        verdict.mean_is_right
+        and verdict.noise in ("too small", "too large")
+        and not (verdict.noise == "too large" and verdict.off)
+    ):
+        return (
+            f"Next: {next_step} says whether an effect is missing; if none is, `werrimbi "
+            "calibrate fit` fits the wheels' noise."
+        )
+    return f"Next: {next_step} says which physical effect explains it."
+
+
+def _metres(value: float) -> str:
+    return f"{value:g} m"
+
+
+def _millimetres(value: float) -> str:
+    millimetres = 1e3 * value
+    if millimetres >= 1e4:
+        return f"{value:.1f} m"
+    return f"{millimetres:.1f} mm" if millimetres < 100.0 else f"{millimetres:.0f} mm"
+
+
+def _counted(number: int, word: str) -> str:
+    return f"{number} {word}" if number == 1 else f"{number} {word}s"
+
+
+def _listed(words: list[str]) -> str:
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"
