@@ -29,6 +29,10 @@ def _with(line: str) -> str:
     return f"{GOOD}    {line}\n"
 
 
+def _slipping(block: str, more: str = "") -> str:
+    return _with(f"effects: [lateral_slip]\n    lateral_slip: {block}{more}")
+
+
 def complaint(path: Path, text: str | bytes) -> str:
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
     with pytest.raises(InputError) as caught:
@@ -74,8 +78,62 @@ def complaint(path: Path, text: str | bytes) -> str:
         (_with("left_wheel_names: []"), ", line 7: left_wheel_names must be a list of names"),
         (_with("left_wheel_names: [a, 1]"), ", line 7: left_wheel_names must be a list of names"),
         (
-            _with("effects: [lateral_slip]"),
-            ", line 7: unknown effect lateral_slip: this version knows no effects yet",
+            _with("effects: [lateral_slop]"),
+            ", line 7: unknown effect lateral_slop; the nearest known one is lateral_slip",
+        ),
+        (_with("effects: [track_width, track_width]"), ", line 7: effects lists track_width twice"),
+        (_with("effects: [1]"), ", line 7: effects must be a list of names, [] for none, not [1]"),
+        (_with("effects: {a: 1}"), ", line 7: effects must be a list of names, [] for none"),
+        (
+            _slipping("{crep: 0.1}"),
+            ", line 8: lateral_slip has no parameter crep; it has creep",
+        ),
+        (
+            _slipping("\n      crep: 0.1"),
+            ", line 9: lateral_slip has no parameter crep; it has creep",
+        ),
+        (
+            _slipping("\n      creep: 5"),
+            ", line 9: lateral_slip.creep must be a number of at most 0.1 (s), not 5",
+        ),
+        (
+            _slipping("{creep: fast}"),
+            ", line 8: lateral_slip.creep must be a number (s), not 'fast'",
+        ),
+        (_slipping("{creep: true}"), ", line 8: lateral_slip.creep must be a number (s), not True"),
+        (_slipping("{creep: {a: 1}}"), ", line 8: lateral_slip.creep must be a number (s), not "),
+        (
+            _slipping("0.01"),
+            ", line 8: lateral_slip must be a block of its parameters (creep), not 0.01",
+        ),
+        (
+            _slipping(""),
+            ", line 8: lateral_slip must be a block of its parameters (creep), not nothing",
+        ),
+        (
+            _slipping("{creep: 0.01}", "\n    lateral_slip.creep: 0.01"),
+            ", line 9: lateral_slip.creep is given twice",
+        ),
+        (
+            _with("lateral_slip.creep: 0.01"),
+            ", line 7: this is a block of parameters for lateral_slip, but effects does not list "
+            "lateral_slip; add it to the list, or take the block out",
+        ),
+        (
+            _slipping("{creep: 0.01}", "\n    castor_kick:\n      angle: 0.01"),
+            ", line 9: this is a block of parameters for castor_kick, but effects does not list",
+        ),
+        (
+            _with("lateral_slop:\n      creep: 0.01"),
+            ", line 7: unknown effect lateral_slop; the nearest known one is lateral_slip",
+        ),
+        (
+            _with("effects: [wheels_swapped]\n    wheels_swapped: true"),
+            ", line 8: wheels_swapped has no parameters; take this line out",
+        ),
+        (
+            _with("effects: [wheels_swapped]\n    wheels_swapped: {yes: 1}"),
+            ", line 8: wheels_swapped has no parameter yes; it is a set-up mistake, made or not",
         ),
         (_with("effects: lateral_slip"), ", line 7: effects must be a list of names, [] for none"),
         (_with("wheel_radius: 0.06"), ', line 7: this is not YAML: found duplicate key "wheel_rad'),

@@ -8,27 +8,34 @@ import argparse
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import TYPE_CHECKING, TextIO
+from typing import TYPE_CHECKING, TextIO, TypeVar
 
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from werrimbi_odom.cli.odom_figures import Figures
     from werrimbi_odom.files.robot_file import RobotFile
     from werrimbi_odom.files.run import Run
     from werrimbi_odom.model.pose import Floats, Pose
+    from werrimbi_odom.model.shown import Path as ShownPath
     from werrimbi_odom.model.trajectory import Trajectory
 
 HELP = "dead reckoning of a recorded run, with its covariance"
 COLUMNS = "t_s,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw"
+Result = TypeVar("Result")
+
 _BLOCK = 32768  # rows that are text at once
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the options of `werrimbi odom`."""
     parser.description = (
-        "Dead reckoning of a run, started at the reference's first pose. Writes a row for each row "
-        f"of ticks: {COLUMNS} (the covariance in m², m·rad and rad²; a row of ticks that could not "
-        "be used repeats the latest estimate). An existing --out is replaced."
+        "Dead reckoning of a run, started where the reference shows its first pose. Writes a row "
+        f"for each row of ticks: {COLUMNS} (the covariance in m², m·rad and rad²; a row of ticks "
+        "that could not be used repeats the latest estimate). An existing --out is replaced."
     )
     parser.add_argument("run", metavar="RUN", type=Path, help="run folder, or ROS 2 bag")
     parser.add_argument("--robot", metavar="R", type=Path, required=True, help="robot file")
@@ -41,6 +48,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--reference-topic",
         metavar="T",
         help="of a bag with several; T:CHILD_FRAME among transforms, `none` for no reference",
+    )
+    parser.add_argument(
+        "--as-reference",
+        action="store_true",
+        help="write what the reference is predicted to show (its lever arm, yaw offset, delays and "
+        "mirror, as the robot file has them) instead of the axle's midpoint",
+    )
+    parser.add_argument(
+        "--effects",
+        metavar="FILE",
+        action="append",
+        default=[],
+        type=Path,
+        help="file with effects of your own, which the robot file may name; may be given again",
     )
 
 
@@ -55,12 +76,14 @@ def run(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.cli.odom_figures import figures_of
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.cli.table import print_figures
+    from werrimbi_odom.files.learnt import with_learnt_phases
     from werrimbi_odom.files.reading import read_run
-    from werrimbi_odom.files.robot_file import read_robot_file
     from werrimbi_odom.files.start_pose import start_of
+    from werrimbi_odom.model.effect import view_of
+    from werrimbi_odom.model.shown import shown
 
     with share_done("reading") as show:
-        robot_file = read_robot_file(arguments.robot)
+        robot_file = _robot_file(arguments)
         recorded = read_run(
             arguments.run,
             robot_file,
@@ -70,14 +93,38 @@ def run(arguments: argparse.Namespace) -> int:
         )
         _refuse_own_inputs(arguments, recorded)
         show(0.5, "reckoning")
-        start = start_of(recorded, robot_file)
+        robot_file, learnt = _usable(recorded, lambda: with_learnt_phases(recorded, robot_file))
+        start = _usable(recorded, lambda: start_of(recorded, robot_file))
         driven = _reckoned(recorded, robot_file, start.pose)
-        figures = figures_of(recorded, start, driven)
-        _write(arguments, recorded, driven, figures.as_json(), show)
+        seen = shown(driven, view_of(robot_file.robot.effects))
+        figures = figures_of(recorded, start, driven, seen, learnt)
+        _write(arguments, recorded, driven, figures, show)
     print_figures(f"{recorded.name}: wheel odometry of {arguments.robot}", list(figures.rows()))
     written = [arguments.out, *([arguments.json] if arguments.json else [])]
     print(f"written: {', '.join(map(str, written))}")
     return 0
+
+
+def _robot_file(arguments: argparse.Namespace) -> RobotFile:
+    """The robot, with effects of the user's own files where these are given."""
+    from werrimbi_odom.files.robot_file import read_robot_file
+
+    if not arguments.effects:
+        return read_robot_file(arguments.robot)
+    from werrimbi_odom.effects.collection import all_effects
+
+    return read_robot_file(arguments.robot, all_effects(arguments.effects))
+
+
+def _usable(recorded: Run, work: Callable[[], Result]) -> Result:
+    """The result of some work on a run; what is wrong with the run names it."""
+    import numpy as np
+
+    try:
+        with np.errstate(all="ignore"):  # absurd numbers are found in the end, and said once
+            return work()
+    except ValueError as error:
+        raise InputError(f"{recorded.path}: {error}") from error
 
 
 def _reckoned(recorded: Run, robot_file: RobotFile, start: Pose) -> Trajectory:
@@ -86,19 +133,19 @@ def _reckoned(recorded: Run, robot_file: RobotFile, start: Pose) -> Trajectory:
     from werrimbi_odom.model.trajectory import trajectory
 
     ticks = recorded.ticks
-    try:
-        with np.errstate(all="ignore"):  # absurd numbers are found below, and said once
-            driven = trajectory(
-                robot_file.robot,
-                ticks.time,
-                ticks.left,
-                ticks.right,
-                start=start,
-                tolerance=robot_file.tolerance,
-                limits=robot_file.limits,
-            )
-    except ValueError as error:
-        raise InputError(f"{recorded.path}: {error}") from error
+    driven = _usable(
+        recorded,
+        lambda: trajectory(
+            robot_file.robot,
+            ticks.time,
+            ticks.left,
+            ticks.right,
+            start=start,
+            tolerance=robot_file.tolerance,
+            limits=robot_file.limits,
+            channels=ticks.channels,
+        ),
+    )
     for values in (driven.x, driven.y, driven.yaw, *driven.covariance):
         wrong = np.flatnonzero(~np.isfinite(values))
         if wrong.size:
@@ -114,7 +161,7 @@ def _write(
     arguments: argparse.Namespace,
     recorded: Run,
     driven: Trajectory,
-    figures: dict[str, object],
+    figures: Figures,
     show: Callable[[float, str], None],
 ) -> None:
     """Both files, or neither."""
@@ -126,18 +173,23 @@ def _write(
     with ExitStack() as files:
         if arguments.json is not None:
             file = files.enter_context(replacing(arguments.json))
-            json.dump(plain(figures), file, indent=2, allow_nan=False)
+            json.dump(plain(figures.as_json()), file, indent=2, allow_nan=False)
             file.write("\n")
-        _write_rows(files.enter_context(replacing(arguments.out)), recorded, driven, show)
+        out = files.enter_context(replacing(arguments.out))
+        entry = driven.expanded(recorded.ticks.rows)
+        path = figures.shown if arguments.as_reference else driven
+        _write_rows(out, recorded.ticks.time, entry, path, show)
 
 
 def _write_rows(
-    file: TextIO, recorded: Run, driven: Trajectory, show: Callable[[float, str], None]
+    file: TextIO,
+    time: Floats,
+    entry: NDArray[np.intp],
+    driven: Trajectory | ShownPath,
+    show: Callable[[float, str], None],
 ) -> None:
     import numpy as np
 
-    time = recorded.ticks.time
-    entry = driven.expanded(time.size)
     estimates = (driven.x, driven.y, _half_open(driven.yaw), *driven.covariance)
     file.write(COLUMNS + "\n")
     for first in range(0, time.size, _BLOCK):
@@ -160,7 +212,7 @@ def _half_open(yaw: Floats) -> Floats:
 
 def _refuse_own_inputs(arguments: argparse.Namespace, recorded: Run) -> None:
     """An existing --out is replaced, so it must not be what was just read."""
-    read = [arguments.robot, recorded.path]
+    read = [arguments.robot, recorded.path, *arguments.effects]
     for names in ("ticks.csv", "reference.csv", "metadata.yaml", "*.mcap", "*.db3"):
         read += recorded.path.glob(names)
     for name in ("out", "json"):

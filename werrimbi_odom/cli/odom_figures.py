@@ -16,6 +16,7 @@ from werrimbi_odom.files.start_pose import Start
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pose import Floats, Pose, between, compose, wrap
+from werrimbi_odom.model.shown import Path as ShownPath
 from werrimbi_odom.model.trajectory import Trajectory
 
 KINDS = ("line", "arc", "spin")
@@ -46,6 +47,8 @@ class Figures:
     run: Run
     start: Start
     driven: Trajectory
+    shown: ShownPath
+    """What the reference is predicted to show of it."""
     end_error: EndError | None
     remarks: tuple[str, ...]
 
@@ -133,24 +136,35 @@ class Figures:
             yield "note", note
 
 
-def figures_of(run: Run, start: Start, driven: Trajectory) -> Figures:
-    """Work out the figures of a run that was dead reckoned from `start`."""
+def figures_of(
+    run: Run, start: Start, driven: Trajectory, shown: ShownPath, learnt: tuple[str, ...] = ()
+) -> Figures:
+    """Work out the figures of a run that was dead reckoned from `start`.
+
+    Parameters
+    ----------
+    shown : ShownPath
+        What the reference is predicted to show.
+    learnt : tuple of str
+        Remarks on what was learnt from the reference.
+    """
     reference = run.reference
     if reference is None:
-        return Figures(run, start, driven, None, ())
+        return Figures(run, start, driven, shown, None, learnt)
     known = np.flatnonzero(reference.has_position | reference.has_yaw)
     if known.size == 0:
-        return Figures(run, start, driven, None, ("the reference measured nothing",))
+        remarks = (*learnt, "the reference measured nothing")
+        return Figures(run, start, driven, shown, None, remarks)
     first, last = known[0], _last_row(reference, known, driven)
-    remarks = list(_late_or_early(reference, known, driven))
+    found = [*learnt, *_late_or_early(reference, known, driven)]
     if driven.tally.clock_jumps:
-        remarks.append("the ticks' clock was set back, so poses of one time cannot be compared")
-        return Figures(run, start, driven, None, tuple(remarks))
+        found.append("the ticks' clock was set back, so poses of one time cannot be compared")
+        return Figures(run, start, driven, shown, None, tuple(found))
     if last is None:
-        remarks.append("reference and ticks have no time in common; are both clocks the same?")
-        return Figures(run, start, driven, None, tuple(remarks))
-    end = _end_error(reference, start.pose, driven, int(first), int(last))
-    return Figures(run, start, driven, end, tuple(remarks))
+        found.append("reference and ticks have no time in common; are both clocks the same?")
+        return Figures(run, start, driven, shown, None, tuple(found))
+    end = _end_error(reference, start.shown, shown, int(first), int(last))
+    return Figures(run, start, driven, shown, end, tuple(found))
 
 
 def _last_row(reference: Reference, known: Any, driven: Trajectory) -> int | None:
@@ -163,7 +177,7 @@ def _last_row(reference: Reference, known: Any, driven: Trajectory) -> int | Non
 
 
 def _end_error(
-    reference: Reference, start: Pose, driven: Trajectory, first: int, last: int
+    reference: Reference, start: Pose, driven: ShownPath, first: int, last: int
 ) -> EndError:
     """Relative to the reference's first row, so that a late reference is judged fairly."""
     measured = Pose(*(float(part[last]) for part in (reference.x, reference.y, reference.yaw)))
@@ -183,7 +197,7 @@ def _end_error(
     )
 
 
-def _pose_at(driven: Trajectory, time: float) -> Pose:
+def _pose_at(driven: Trajectory | ShownPath, time: float) -> Pose:
     parts = (driven.x, driven.y, driven.yaw)
     return Pose(*(float(np.interp(time, driven.time, part)) for part in parts))
 

@@ -167,7 +167,8 @@ def write_robot_file(
 def _check(effects: Sequence[AppliedEffect]) -> None:
     """Whether every value can be read back; else nothing shall be written."""
     for applied in effects:
-        for item, name in zip(parameters_of(applied.effect), applied.effect.parameters, strict=True):
+        for item in parameters_of(applied.effect):
+            name = item.name.partition(".")[2]
             item.checked(applied.values.get(name, item.default))
 
 

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import cmath
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -12,7 +13,9 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference, Run
-from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.model.effect import View, view_of
+from werrimbi_odom.model.pose import Floats, Pose, between, compose
+from werrimbi_odom.model.shown import Path, axle_of, shown
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 
 
@@ -20,45 +23,104 @@ class Start(NamedTuple):
     """The pose at the first row of ticks, and in words where it comes from."""
 
     pose: Pose
+    """Of the axle's midpoint, in the frame of the odometry, which is right-handed."""
     told: str
+    shown: Pose
+    """What the reference shows of it, in its own frame."""
 
 
 def start_pose(run: Run, robot_file: RobotFile) -> Pose:
-    """The reference's first pose; see `start_of`."""
+    """Where the axle is when the reference shows its first pose; see `start_of`."""
     return start_of(run, robot_file).pose
 
 
 def start_of(run: Run, robot_file: RobotFile) -> Start:
-    """The reference's first pose; the origin where nothing was measured.
+    """Where the axle is when the reference shows its first pose; the origin without a reference.
+
+    Where the robot file says that the reference measures another point or axis, a mirrored frame or
+    another time, the start is the one that makes it show its first pose.
 
     What the first row of the reference leaves out is taken from the next row that has it, brought
     back by the odometry between the two. Where no heading was measured at all, it is the one with
     which the odometry's path fits the measured positions best, in least squares, both turned about
     the first of them.
     """
-    reference = run.reference
-    if reference is None:
-        return Start(Pose(), "the origin; there is no reference")
+    view = view_of(robot_file.robot.effects)
+    if run.reference is None:
+        return _origin("the origin; there is no reference", view)
+    reference = _right_handed(run.reference, view)
+    right_handed = view._replace(mirrored=False)
     known = np.flatnonzero(reference.has_position | reference.has_yaw)
     if known.size == 0:
-        return Start(Pose(), "the origin; the reference measured nothing")
+        return _origin("the origin; the reference measured nothing", view)
     first = known[0]
     if reference.has_position[first] and reference.has_yaw[first]:
         row = (reference.x[first], reference.y[first], reference.yaw[first])
-        return Start(Pose(*map(float, row)), "the reference's first pose")
-    driven = trajectory(
+        first_pose, told = Pose(*map(float, row)), "the reference's first pose"
+    else:
+        path = shown(_driven(run, robot_file, Pose()), right_handed)
+        first_pose, told = _pieced_together(reference, path, float(reference.time[first]))
+    start = axle_of(first_pose, right_handed)
+    if not reference.has_position.any():
+        start = Pose(0.0, 0.0, start.yaw)
+        first_pose = compose(start, Pose(view.ahead, view.left, view.yaw))
+    elif min(view.delay, view.delay + view.heading_delay) < 0.0:
+        start = _brought_back(run, robot_file, start, first_pose, right_handed)
+    return Start(start, told + _seen_how(view), _mirrored(first_pose, view))
+
+
+def _origin(told: str, view: View) -> Start:
+    return Start(Pose(), told, _mirrored(Pose(view.ahead, view.left, view.yaw), view))
+
+
+def _right_handed(reference: Reference, view: View) -> Reference:
+    if not view.mirrored:
+        return reference
+    return replace(reference, y=-reference.y, yaw=-reference.yaw)
+
+
+def _mirrored(pose: Pose, view: View) -> Pose:
+    return Pose(pose.x, -pose.y, -pose.yaw) if view.mirrored else pose
+
+
+def _seen_how(view: View) -> str:
+    """What lies between the reference's pose and the axle's, in words."""
+    parts = []
+    if view.ahead or view.left:
+        parts.append(f"{1e3 * view.ahead:.0f} mm ahead and {1e3 * view.left:.0f} mm to the left")
+    if view.yaw:
+        parts.append(f"turned by {np.degrees(view.yaw):.2f}°")
+    if view.mirrored:
+        parts.append("in a mirrored frame")
+    return f", which it measures {', '.join(parts)}" if parts else ""
+
+
+def _driven(run: Run, robot_file: RobotFile, start: Pose) -> Trajectory:
+    return trajectory(
         robot_file.robot,
         run.ticks.time,
         run.ticks.left,
         run.ticks.right,
+        start=start,
         tolerance=robot_file.tolerance,
         limits=robot_file.limits,
+        channels=run.ticks.channels,
     )
-    return _pieced_together(reference, driven, float(reference.time[first]))
 
 
-def _pieced_together(reference: Reference, driven: Trajectory, begin: float) -> Start:
-    """The pose at the time `begin`, from a path that was driven from the origin."""
+def _brought_back(
+    run: Run, robot_file: RobotFile, start: Pose, first_pose: Pose, view: View
+) -> Pose:
+    """A start from which the reference, whose stamps are early, shows its first pose at once."""
+    for _ in range(2):  # an effect may look at the heading, so once is not quite enough
+        path = shown(_driven(run, robot_file, start), view)
+        begin = Pose(float(path.x[0]), float(path.y[0]), float(path.yaw[0]))
+        start = compose(first_pose, between(begin, start))
+    return start
+
+
+def _pieced_together(reference: Reference, driven: Path, begin: float) -> tuple[Pose, str]:
+    """The pose at the time `begin`, from what a drive from the origin shows; and how, in words."""
     at, facing = np.flatnonzero(reference.has_position), np.flatnonzero(reference.has_yaw)
     positions = reference.x + 1j * reference.y
     path = _path(driven, reference.time)
@@ -78,13 +140,13 @@ def _pieced_together(reference: Reference, driven: Trajectory, begin: float) -> 
             else "the reference's first position, heading 0: none was measured, nor any travel"
         )
     if at.size == 0:
-        return Start(Pose(0.0, 0.0, yaw_then + turned), "the origin with the first heading")
+        return Pose(0.0, 0.0, yaw_then + turned), "the origin with the first heading"
     then = complex(_path(driven, np.array([begin]))[0])
     back = complex(path[at[0]]) - then
     position = complex(positions[at[0]]) - cmath.rect(1.0, turned) * back
-    return Start(Pose(position.real, position.imag, yaw_then + turned), told)
+    return Pose(position.real, position.imag, yaw_then + turned), told
 
 
-def _path(driven: Trajectory, time: Floats) -> NDArray[np.complex128]:
+def _path(driven: Path, time: Floats) -> NDArray[np.complex128]:
     x, y = (np.interp(time, driven.time, values) for values in (driven.x, driven.y))
     return np.asarray(x + 1j * y)

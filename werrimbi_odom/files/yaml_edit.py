@@ -26,6 +26,11 @@ _NOT_TEXT = re.compile(r"(y|n|yes|no|on|off|true|false|null|~)\Z", re.IGNORECASE
 """What a reader of YAML 1.1, as in ROS, does not take for text unless it is quoted."""
 
 
+def is_text(value: str) -> bool:
+    """Whether a reader of YAML 1.1, too, takes it for text without quotes."""
+    return bool(_PLAIN_TEXT.match(value)) and not _NOT_TEXT.match(value)
+
+
 def float_text(value: float) -> str:
     """A float that a reader of YAML 1.1 takes for one."""
     digits = repr(value)
@@ -63,7 +68,6 @@ def edited(
         An added name goes behind the nearest one before it in this order.
     """
 
-
     def change(block: CommentedMap) -> None:
         for name, value in values.items():
             if name not in block:
@@ -100,8 +104,7 @@ def _same(old: Any, value: Value) -> bool:
 
 def _as_yaml(value: Value) -> Any:
     if isinstance(value, str):
-        simple = _PLAIN_TEXT.match(value) and not _NOT_TEXT.match(value)
-        return value if simple else DoubleQuotedScalarString(value)
+        return value if is_text(value) else DoubleQuotedScalarString(value)
     if isinstance(value, tuple):
         names = CommentedSeq(_as_yaml(item) for item in value)
         names.fa.set_flow_style()

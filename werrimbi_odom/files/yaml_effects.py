@@ -14,9 +14,10 @@ from typing import Any, NamedTuple
 
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
+from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
 from werrimbi_odom.files.effect_parameters import EFFECTS
-from werrimbi_odom.files.yaml_edit import edited_block, float_text
+from werrimbi_odom.files.yaml_edit import edited_block, float_text, is_text
 from werrimbi_odom.files.yaml_text import round_trip
 from werrimbi_odom.model.effect import AppliedEffect, Parameter
 
@@ -69,9 +70,9 @@ def _change(block: CommentedMap, effects: Sequence[AppliedEffect]) -> None:
                 _set(block, dotted, value)
             elif isinstance(own, CommentedMap) and own.fa.flow_style():
                 if value != applied.effect.parameters[name].null:
-                    own[name] = value
+                    own[_key(name)] = value
             elif flow:
-                block.setdefault(applied.name, _flow_map())[name] = value
+                block.setdefault(applied.name, _flow_map())[_key(name)] = value
     if flow:
         for key in [key for key in block if _is_gone(key, block, effects)]:
             del block[key]
@@ -103,9 +104,7 @@ def _without(text: str, place: tuple[str, str], effects: Sequence[AppliedEffect]
     return "".join(lines)
 
 
-def _add_missing(
-    text: _Text, place: tuple[str, str], applied: AppliedEffect, behind: str
-) -> str:
+def _add_missing(text: _Text, place: tuple[str, str], applied: AppliedEffect, behind: str) -> str:
     """Add the lines that an effect still needs; returns the key behind which the next belongs."""
     layout = _Layout.of(text.text, place)
     declared, known = applied.effect.parameters, _known(applied)
@@ -163,6 +162,10 @@ def _names(names: Sequence[str], old: Any) -> CommentedSeq:
     return new
 
 
+def _key(name: str) -> str:
+    return name if is_text(name) else DoubleQuotedScalarString(name)
+
+
 def _set(block: CommentedMap, name: str, value: float) -> None:
     if type(block[name]) is bool or float(block[name]) != value:
         block[name] = value
@@ -176,7 +179,10 @@ def _flow_map() -> CommentedMap:
 
 def _line(key: str, value: float, parameter: Parameter) -> str:
     says = f"{parameter.unit}, {parameter.says}" if parameter.unit else parameter.says
-    line = f"{key}: {float_text(value)}"
+    indent, name = key[: len(key) - len(key.lstrip())], key.lstrip()
+    if not is_text(name):  # y, of a lever arm: YAML 1.1 takes it for a truth value
+        name = f'"{name}"'
+    line = f"{indent}{name}: {float_text(value)}"
     short = says if len(says) + _COMMENT_COLUMN <= _WIDTH else parameter.unit
     return _beside(line, short) if short else line
 
@@ -264,7 +270,7 @@ def _span(key: Node, value: Node) -> tuple[int, int]:
     return key.start_mark.line, max(key.start_mark.line, _last_line(value))
 
 
-def _last_line(node: Node) -> int:
+def _last_line(node: Any) -> int:
     """Last line with something of a node; a block's own end lies behind the comments below it."""
     children = node.value if isinstance(node, SequenceNode) else []
     if isinstance(node, MappingNode):

@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.drive import Drive, DriveMemory, RawStep, Span, drive_of_run
 from werrimbi_odom.model.effect import after_body_effects, after_wheel_effects
 from werrimbi_odom.model.motion import BodyMotion, Number, WheelTravel, wheels_to_body
@@ -25,24 +26,56 @@ class Driven(NamedTuple):
     motion: BodyMotion[Floats]
 
 
+Channels = Mapping[str, float]
+"""Extra measured channels at a message, by name."""
+
+
+class DrivenStep(NamedTuple):
+    """One step before any effect, and what effects may look at in it."""
+
+    raw: WheelTravel[float]
+    drive: Drive[float]
+
+
 @dataclass(slots=True)
 class Driving:
     """The effects of a robot in a live drive, a step at a time."""
 
     robot: Robot
+    last: DrivenStep | None = field(default=None, init=False)
+    """The latest step, where the robot has effects."""
     _memory: DriveMemory | None = field(init=False)
+    _channels: dict[str, float] = field(default_factory=dict, init=False)
 
     def __post_init__(self) -> None:
         self._memory = DriveMemory(flicker_of(self.robot)) if acts(self.robot) else None
 
-    def begin(self, left: float, right: float) -> None:
+    def begin(self, left: float, right: float, channels: Channels | None = None) -> None:
         """Take the counters of the first message: wheels have angles from then on."""
         if self._memory is not None:
             self._memory.left_angle = left * _left_angle(self.robot)
             self._memory.right_angle = right * _right_angle(self.robot)
+            self._channels.update(_measured(channels or {}))
+
+    def retune(self, robot: Robot, left: float, right: float) -> None:
+        """Go on with other values; all that effects remember stays.
+
+        Parameters
+        ----------
+        left, right : float
+            The counters of the last message, for an effect that is the first to act.
+        """
+        self.robot = robot
+        if self._memory is None and acts(robot):
+            self.__post_init__()
+            self.begin(left, right)
 
     def step(
-        self, duration: float, raw: WheelTravel[float], yaw: float
+        self,
+        duration: float,
+        raw: WheelTravel[float],
+        yaw: float,
+        channels: Channels | None = None,
     ) -> tuple[WheelTravel[float], BodyMotion[float]]:
         """Travel and motion of one step that begins with heading `yaw` [rad]."""
         motion = wheels_to_body(raw, self.robot.track)
@@ -57,7 +90,42 @@ class Driving:
             raw.left / self.robot.left_tick * _left_angle(self.robot),
             raw.right / self.robot.right_tick * _right_angle(self.robot),
         )
-        return after_effects(self.robot, raw, self._memory.step(step, yaw))
+        drive = self._memory.step(step, yaw, self._spans(channels))
+        self.last = DrivenStep(raw, drive)
+        return after_effects(self.robot, raw, drive)
+
+    def _spans(self, channels: Channels | None) -> Mapping[str, Span[float]] | None:
+        """From the last message's values to this one's; what was not measured stays as it was."""
+        if not channels and not self._channels:
+            check_channels(self.robot, {})
+            return None
+        before = dict(self._channels)
+        self._channels.update(_measured(channels or {}))
+        check_channels(self.robot, self._channels)
+        return {name: Span(before.get(name, now), now) for name, now in self._channels.items()}
+
+
+def _measured(channels: Channels) -> dict[str, float]:
+    return {name: value for name, value in channels.items() if math.isfinite(value)}
+
+
+def check_channels(robot: Robot, channels: Mapping[str, object]) -> None:
+    """Whether everything is measured that the robot's effects look at.
+
+    Raises
+    ------
+    InputError
+        When a channel is not; the message names it and the effect.
+    """
+    for applied in robot.effects:
+        missing = [name for name in applied.effect.channels if name not in channels]
+        if missing:
+            known = f" (there are {', '.join(channels)})" if channels else ""
+            raise InputError(
+                f"effect {applied.name} needs the measured channel {', '.join(missing)}, a column "
+                f"of ticks.csv, which is not there{known}; record it, or take {applied.name} out "
+                "of the robot file's effects"
+            )
 
 
 def driven(robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], yaw: float) -> Driven:
@@ -95,7 +163,15 @@ def features(
     ----------
     first_counts : (left, right)
         The counters at the first message.
+    channels : mapping, optional
+        Extra measured channels at the start and end of each step.
+
+    Raises
+    ------
+    InputError
+        When an effect looks at a channel that was not measured.
     """
+    check_channels(robot, channels or {})
     motion = wheels_to_body(raw, robot.track)
     per_left, per_right = _left_angle(robot), _right_angle(robot)
     return drive_of_run(

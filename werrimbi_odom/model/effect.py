@@ -223,6 +223,16 @@ class AppliedEffect:
         """Of the effect."""
         return self.effect.name
 
+    @property
+    def ready(self) -> bool:
+        """Whether it can act: with an unknown phase it might double the error that it is for."""
+        return not self.unknown
+
+    def learnt(self, **values: float) -> AppliedEffect:
+        """The same with values that are now known."""
+        left = tuple(name for name in self.unknown if name not in values)
+        return AppliedEffect(self.effect, {**self.values, **values}, left)
+
 
 def wheel_effect(
     *,
@@ -292,7 +302,7 @@ def after_wheel_effects(
 ) -> WheelTravel[Any]:
     """Travel of the wheels once the effects on them have acted, in order."""
     for applied in effects:
-        if applied.effect.stage == "wheels":
+        if applied.effect.stage == "wheels" and applied.ready:
             travel = applied.effect.apply(travel, drive, **applied.values)
     return travel
 
@@ -302,7 +312,7 @@ def after_body_effects(
 ) -> BodyMotion[Any]:
     """Motion of the body once the effects on it have acted, in order."""
     for applied in effects:
-        if applied.effect.stage == "body":
+        if applied.effect.stage == "body" and applied.ready:
             motion = applied.effect.apply(motion, drive, **applied.values)
     return motion
 
@@ -311,7 +321,7 @@ def view_of(effects: tuple[AppliedEffect, ...]) -> View:
     """How the reference looks at the robot."""
     view = View()
     for applied in effects:
-        if applied.effect.stage == "reference":
+        if applied.effect.stage == "reference" and applied.ready:
             view = applied.effect.apply(view, **applied.values)
     return view
 

@@ -13,7 +13,7 @@ from werrimbi_odom.model.covariance import (
     noise_of_wheel_variances,
     path_noise,
 )
-from werrimbi_odom.model.driving import Driving
+from werrimbi_odom.model.driving import Channels, DrivenStep, Driving
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder import Encoder, EncoderLimits, EncoderTally, WheelStep
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
@@ -84,6 +84,7 @@ class Odometer:
         self._driving = Driving(robot)
         self._wiring = wiring_of(robot.effects)
         self._time: float | None = None
+        self._counts = (0.0, 0.0)
         self._pose = Pose()
         self._piece = OpenPiece(0.0, Pose(), known(robot.covariance_order))
 
@@ -101,7 +102,14 @@ class Odometer:
     def _now(self) -> float:
         return 0.0 if self._time is None else self._time
 
-    def update(self, time: float, left: float, right: float) -> Estimate | None:
+    @property
+    def driven_step(self) -> DrivenStep | None:
+        """The latest step as effects see it; None where the robot has none."""
+        return self._driving.last
+
+    def update(
+        self, time: float, left: float, right: float, channels: Channels | None = None
+    ) -> Estimate | None:
         """Take the counters of one message.
 
         Parameters
@@ -110,6 +118,8 @@ class Odometer:
             Stamp [s].
         left, right : float or int
             Cumulative signed counts.
+        channels : mapping, optional
+            Extra measured channels, for effects that look at them.
 
         Returns
         -------
@@ -121,13 +131,13 @@ class Odometer:
         step = self._encoder.step(time, left, right)
         if step is None:
             if self._time is None and self._encoder.tally.accepted:
-                self._begin(time, left, right)
+                self._begin(time, left, right, channels)
             return None
         raw = WheelTravel(step.left, step.right)
-        travel, motion = self._driving.step(step.duration, raw, self._pose.yaw)
+        travel, motion = self._driving.step(step.duration, raw, self._pose.yaw, channels)
         pose = self._moved(motion)
         closed = self._cut(step, travel, motion, pose)
-        self._time, self._pose = time, pose
+        self._time, self._counts, self._pose = time, (left, right), pose
         self.distance += abs(motion.along)
         return self._estimate(step, motion, closed)
 
@@ -136,6 +146,37 @@ class Odometer:
         finished = self.piece
         self._pose = pose
         self._piece = OpenPiece(self._now, pose, known(self.robot.covariance_order, covariance))
+        return finished
+
+    def retune(
+        self,
+        robot: Robot,
+        tolerance: PieceTolerance | None = None,
+        limits: EncoderLimits | None = None,
+    ) -> Piece | None:
+        """Go on with other values; pose, errors, counts, and all that effects remember stay.
+
+        The open piece goes on where noise and its rule stay as they are; else it ends here, and is
+        returned: what was driven keeps the noise that was believed of it.
+
+        Raises
+        ------
+        ValueError
+            When counts would mean something else than before.
+        """
+        if _reading_of(robot) != _reading_of(self.robot):
+            raise ValueError("resolution and wiring of the encoders cannot change in a drive")
+        rule = PieceRule.of(robot, tolerance or PieceTolerance())
+        finished = None
+        if rule != self._rule or _noise_of(robot) != _noise_of(self.robot):
+            finished, errors = self.piece, self.errors()
+            if robot.covariance_order != self.robot.covariance_order:
+                errors = known(robot.covariance_order, errors.covariance)
+            travelled = self._piece.travelled_after
+            self._piece = OpenPiece(self._now, self._pose, errors, travelled)
+        self.robot, self._rule = robot, rule
+        self._encoder.robot, self._encoder.limits = robot, limits or EncoderLimits()
+        self._driving.retune(robot, *self._counts)
         return finished
 
     def errors(self) -> Uncertainty[float]:
@@ -149,10 +190,10 @@ class Odometer:
         """Of the present pose, in the odometry frame."""
         return self.errors().covariance
 
-    def _begin(self, time: float, left: float, right: float) -> None:
-        self._time = time
+    def _begin(self, time: float, left: float, right: float, channels: Channels | None) -> None:
+        self._time, self._counts = time, (left, right)
         self._piece.time_start = time
-        self._driving.begin(left, right)
+        self._driving.begin(left, right, channels)
 
     def _moved(self, motion: BodyMotion[float]) -> Pose:
         dx, dy = displacement(motion, self._pose.yaw)
@@ -191,6 +232,18 @@ class Odometer:
             closed,
             errors.mean_shift,
         )
+
+
+def _reading_of(robot: Robot) -> tuple[object, ...]:
+    """What makes travel of counts, but for the size of wheels."""
+    per_turn = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
+    return *per_turn, robot.encoder_bits, wiring_of(robot.effects)
+
+
+def _noise_of(robot: Robot) -> tuple[object, ...]:
+    """What makes covariance of travel."""
+    noise = robot.left_wheel_noise, robot.right_wheel_noise
+    return *noise, robot.track, robot.covariance_order
 
 
 def with_lost_travel(

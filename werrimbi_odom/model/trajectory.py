@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,6 +18,7 @@ from werrimbi_odom.model.covariance import (
     path_noise,
 )
 from werrimbi_odom.model.cutting import Cut, cut
+from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driving import Driven, acts, driven, features
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder import Counts, EncoderLimits, EncoderTally
@@ -71,6 +72,7 @@ def trajectory(
     covariance: PoseCovariance[float] = CERTAIN,
     tolerance: PieceTolerance | None = None,
     limits: EncoderLimits | None = None,
+    channels: Mapping[str, Floats] | None = None,
 ) -> Trajectory:
     """Dead reckoning of a recorded run.
 
@@ -81,11 +83,14 @@ def trajectory(
         Cumulative signed counts, integer or float.
     start, covariance
         Pose before the first row and its covariance.
+    channels : mapping of name to ndarray, shape (rows,), optional
+        Extra measured channels; NaN where not measured, which is interpolated.
 
     Raises
     ------
     ValueError
-        When no row can be used (empty, or none with finite numbers).
+        When no row can be used (empty, or none with finite numbers), or an effect looks at a
+        channel that was not measured.
     """
     left, right = wiring_of(robot.effects).wheels(left, right)
     steps = wheel_steps(robot, time, left, right, limits)
@@ -93,7 +98,9 @@ def trajectory(
         raise ValueError("no row has a finite time and finite counts")
     raw = WheelTravel(steps.left, steps.right)
     first_counts = float(left[steps.first_row]), float(right[steps.first_row])
-    travel, motion = _driven(robot, steps.duration, raw, first_counts, start.yaw)
+    rows = np.concatenate([[steps.first_row], steps.row])
+    spans = channel_spans(time[rows], channels or {}, rows)
+    travel, motion = _driven(robot, steps.duration, raw, first_counts, spans, start.yaw)
     x, y, yaw = _integrated(start, motion)
     lost = noise_of_wheel_variances(steps.left_lost, steps.right_lost, robot.track)
     rule = PieceRule.of(robot, tolerance or PieceTolerance())
@@ -109,7 +116,7 @@ def trajectory(
         yaw,
         errors.covariance,
         errors.mean_shift,
-        np.concatenate([[steps.first_row], steps.row]),
+        rows,
         steps.tally,
         _as_values(robot, pieces, chain, stamps, x, y, yaw),
     )
@@ -120,12 +127,29 @@ def _driven(
     duration: Floats,
     raw: WheelTravel[Floats],
     first_counts: tuple[float, float],
+    channels: Mapping[str, Span[Floats]],
     yaw: float,
 ) -> Driven:
     """Travel and motion of the steps; nothing is worked out for effects that are not there."""
     if not acts(robot):
         return Driven(raw, wheels_to_body(raw, robot.track))
-    return driven(robot, raw, features(robot, duration, raw, first_counts), yaw)
+    return driven(robot, raw, features(robot, duration, raw, first_counts, channels), yaw)
+
+
+def channel_spans(
+    time: Floats, channels: Mapping[str, Floats], rows: NDArray[np.intp]
+) -> dict[str, Span[Floats]]:
+    """Channels at the start and end of each step between `rows`; gaps are interpolated."""
+    spans = {}
+    for name, values in channels.items():
+        there = np.asarray(values, dtype=np.float64)[rows]
+        known_rows = np.isfinite(there)
+        if not known_rows.any():
+            continue
+        if not known_rows.all():
+            there = np.interp(time, time[known_rows], there[known_rows])
+        spans[name] = Span(there[:-1], there[1:])
+    return spans
 
 
 def _integrated(start: Pose, motion: BodyMotion[Floats]) -> Floats:

@@ -1,0 +1,338 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Phases that each run has anew, learnt from a measured heading while the robot drives.
+
+An eccentric wheel whose counter starts anywhere has an amplitude that the robot file knows and a
+phase that it cannot know. The error of the turn is linear in amplitude * cos(phase) and
+amplitude * sin(phase) (`Effect.to_fit`), so both are fitted by least squares, row by row:
+
+    reference turn - predicted turn = sum of (cos, sin) * derivative of the turn in each
+                                      + bias * time + share * turn + noise
+
+with a bias of the reference's rate (a gyro's) and a share of the turn (a base that is a little
+wrong) as nuisances, and the noise estimated from what is left.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import NamedTuple
+
+import numpy as np
+
+from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.driving import DrivenStep, after_effects, features
+from werrimbi_odom.model.effect import AppliedEffect, wiring_of
+from werrimbi_odom.model.encoder import Counts, EncoderLimits
+from werrimbi_odom.model.motion import Number, WheelTravel
+from werrimbi_odom.model.pose import Floats, wrap
+from werrimbi_odom.model.recorded_counts import wheel_steps
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.trajectory import channel_spans
+
+KNOWN_WELL_ENOUGH = 0.3
+"""Standard deviation of a phase [rad] below which the effect takes away most of its error."""
+
+STRIDE = 0.5
+"""A row for each so much of a wheel's turning [rad]: finer rows hold more noise, no more signal."""
+LONGEST = 10.0
+"""Intervals of the reference beyond this [s] are left out."""
+FEWEST = 12
+"""Rows beyond the number of unknowns, before what is left says what the noise is."""
+ABSURD = 0.5
+"""An error of the turn over one row [rad] beyond which the reference has jumped."""
+NUISANCE_BIAS, NUISANCE_SHARE = 0.1, 0.1
+"""What is believed beforehand: a gyro's bias [rad/s], and a base off by a tenth."""
+
+
+class Phase(NamedTuple):
+    """What is known of an effect's phase."""
+
+    effect: str
+    parameter: str
+    value: float
+    """[rad]"""
+    std: float
+    """[rad]"""
+    amplitude: float
+    """That the same data show, whatever the robot file says; in its own unit."""
+
+
+def learnable(robot: Robot) -> tuple[AppliedEffect, ...]:
+    """Effects of which everything is known but the phase of a quadrature."""
+    return tuple(
+        applied
+        for applied in robot.effects
+        if applied.effect.quadrature is not None
+        and applied.effect.stage in ("wheels", "body")
+        and applied.unknown == (applied.effect.quadrature[1],)
+        and abs(applied.values[applied.effect.quadrature[0]]) > 0.0
+    )
+
+
+class Turning:
+    """The turn of steps without the effects to be learnt, and its derivatives in their coordinates.
+
+    Parameters
+    ----------
+    robot : Robot
+    effects : sequence of AppliedEffect
+        `learnable` ones of the robot.
+    """
+
+    def __init__(self, robot: Robot, effects: tuple[AppliedEffect, ...]) -> None:
+        self._robot = robot
+        self._with: list[tuple[Robot, float]] = []
+        for applied in effects:
+            assert applied.effect.quadrature is not None
+            amplitude, phase = applied.effect.quadrature
+            for angle in (0.0, 0.5 * math.pi):
+                known = applied.learnt(**{phase: angle})
+                others = tuple(known if e.name == known.name else e for e in robot.effects)
+                self._with.append((replace(robot, effects=others), applied.values[amplitude]))
+
+    def of(self, raw: WheelTravel[Number], drive: Drive[Number]) -> list[Number]:
+        """The turn [rad], then its derivative in each effect's cos and sin [rad / unit]."""
+        turn = after_effects(self._robot, raw, drive)[1].turn
+        turns = [turn]
+        for robot, amplitude in self._with:
+            turns.append((after_effects(robot, raw, drive)[1].turn - turn) / amplitude)
+        return turns
+
+
+@dataclass
+class _LeastSquares:
+    """Sums over rows: what recursive least squares carries, in its information form."""
+
+    priors: Floats
+    """Standard deviation of each unknown before anything was seen."""
+    matrix: Floats = field(init=False)
+    vector: Floats = field(init=False)
+    squares: float = 0.0
+    rows: int = 0
+
+    def __post_init__(self) -> None:
+        self.matrix = np.zeros((self.priors.size, self.priors.size))
+        self.vector = np.zeros(self.priors.size)
+
+    def add(self, row: Floats, error: float) -> None:
+        self.matrix += np.outer(row, row)
+        self.vector += row * error
+        self.squares += error * error
+        self.rows += 1
+
+    def solved(self) -> tuple[Floats, Floats] | None:
+        """Unknowns and their covariance, the noise being what is left; None while rows are few."""
+        spare = self.rows - self.priors.size
+        if spare < FEWEST:
+            return None
+        variance = self.squares / self.rows
+        if variance <= 0.0:
+            return None
+        for _ in range(3):  # the noise decides how much the priors weigh, and they hardly matter
+            precision = self.matrix / variance + np.diag(self.priors**-2.0)
+            scale = np.sqrt(np.diag(precision))
+            covariance = np.linalg.inv(precision / np.outer(scale, scale))
+            covariance = covariance / np.outer(scale, scale)
+            found = covariance @ (self.vector / variance)
+            left = self.squares - 2.0 * found @ self.vector + found @ self.matrix @ found
+            variance = max(float(left), 1e-12 * self.squares) / spare
+        return found, covariance
+
+
+@dataclass
+class _Sample:
+    """The reference's heading at an instant, and everything summed up to then."""
+
+    chain: int
+    """Headings of one chain are relative to each other."""
+    time: float
+    yaw: float
+    sums: Floats
+    """Turn and slopes so far, then both wheels' angles."""
+
+
+class _Rows:
+    """Rows of least squares from samples, one for each `STRIDE` of a wheel."""
+
+    def __init__(self, effects: tuple[AppliedEffect, ...]) -> None:
+        self.effects = effects
+        sizes = [e.values[e.effect.quadrature[0]] for e in effects if e.effect.quadrature]
+        priors = [*(2.0 * abs(size) for size in sizes for _ in (0, 1))]
+        self.least_squares = _LeastSquares(np.array([*priors, NUISANCE_BIAS, NUISANCE_SHARE]))
+        self._anchor: _Sample | None = None
+
+    def take(self, sample: _Sample) -> None:
+        """Take the next sample in time."""
+        anchor = self._anchor
+        if anchor is None or sample.chain != anchor.chain or sample.time - anchor.time > LONGEST:
+            self._anchor = sample
+            return
+        change = sample.sums - anchor.sums
+        if sample.time <= anchor.time or np.abs(change[-2:]).max() < STRIDE:
+            return
+        self._anchor = sample
+        error = wrap(sample.yaw - anchor.yaw - change[0])
+        if abs(error) < ABSURD:
+            row = np.array([*change[1:-2], sample.time - anchor.time, change[0]])
+            self.least_squares.add(row, error)
+
+    def phases(self) -> tuple[Phase, ...]:
+        """What is known of each phase so far; an unknown one has an infinite deviation."""
+        solved = self.least_squares.solved()
+        return tuple(_phase(applied, i, solved) for i, applied in enumerate(self.effects))
+
+
+def _phase(applied: AppliedEffect, index: int, solved: tuple[Floats, Floats] | None) -> Phase:
+    assert applied.effect.quadrature is not None
+    amplitude, name = applied.effect.quadrature
+    if solved is None:
+        return Phase(applied.name, name, 0.0, math.inf, 0.0)
+    part = slice(2 * index, 2 * index + 2)
+    cos, sin = solved[0][part].tolist()
+    seen = math.hypot(cos, sin)
+    # Across the direction found; where less than the known amplitude shows, by so much less surely.
+    across = np.array([-sin, cos]) / seen
+    lever = min(seen, abs(applied.values[amplitude]))
+    std = math.sqrt(float(across @ solved[1][part, part] @ across)) / lever
+    return Phase(applied.name, name, math.atan2(sin, cos), std, seen)
+
+
+class _Node(NamedTuple):
+    time: float
+    sums: Floats
+
+
+class PhaseLearner:
+    """Learns the phases of a robot's effects while it drives.
+
+    Steps of the odometer and readings of the reference come in any order, stamped by one clock;
+    its memory does not grow.
+
+    Parameters
+    ----------
+    robot : Robot
+        With at least one `learnable` effect.
+    """
+
+    MEMORY = 1000
+    """Steps, and readings, that wait for each other."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.effects = learnable(robot)
+        self._rows = _Rows(self.effects)
+        self._turning = Turning(robot, self.effects)
+        self._nodes: deque[_Node] = deque(maxlen=self.MEMORY)
+        self._waiting: deque[tuple[int, float, float]] = deque(maxlen=self.MEMORY)
+        self._chain = 0
+        self._rate: tuple[float, float, float] | None = None
+
+    def retune(self, robot: Robot) -> None:
+        """Go on with other values of the robot; what was learnt stays.
+
+        Its effects to be learnt count as unknown still, whatever the robot has for them.
+        """
+        unknown = {applied.name: applied for applied in self.effects}
+        effects = tuple(unknown.get(e.name, e) for e in robot.effects)
+        self._turning = Turning(replace(robot, effects=effects), self.effects)
+
+    def step(self, time: float, step: DrivenStep) -> None:
+        """Take a step of the odometer that ends at `time` [s]."""
+        drive = step.drive
+        begin = time - drive.duration
+        if not self._nodes or abs(self._nodes[-1].time - begin) > 1e-6:
+            self.interrupt()
+            self._nodes.clear()
+            nothing = [0.0] * (1 + 2 * len(self.effects))
+            angles = [drive.left_angle.start, drive.right_angle.start]
+            self._nodes.append(_Node(begin, np.array([*nothing, *angles])))
+        turned = [drive.left_angle.change, drive.right_angle.change]
+        change = np.array([*self._turning.of(step.raw, drive), *turned])
+        self._nodes.append(_Node(time, self._nodes[-1].sums + change))
+        self._meet()
+
+    def see_yaw(self, time: float, yaw: float) -> None:
+        """Take a measured heading [rad]."""
+        if math.isfinite(time) and math.isfinite(yaw):
+            self._waiting.append((self._chain, time, yaw))
+            self._meet()
+
+    def see_rate(self, time: float, rate: float) -> None:
+        """Take a measured yaw rate [rad/s]; what lies between two readings is their mean."""
+        if not (math.isfinite(time) and math.isfinite(rate)):
+            return
+        if self._rate is None or not 0.0 < time - self._rate[0] < 0.5:
+            self.interrupt()
+            self._rate = (time, rate, 0.0)
+        else:
+            before, last, yaw = self._rate
+            self._rate = (time, rate, yaw + 0.5 * (last + rate) * (time - before))
+        self.see_yaw(time, self._rate[2])
+
+    def interrupt(self) -> None:
+        """Compare nothing across this instant."""
+        self._chain += 1
+
+    def phases(self) -> tuple[Phase, ...]:
+        """What is known of each phase so far; an unknown one has an infinite deviation."""
+        return self._rows.phases()
+
+    def _meet(self) -> None:
+        """Bring readings together with the steps at their times."""
+        while self._waiting and self._nodes and self._waiting[0][1] <= self._nodes[-1].time:
+            chain, time, yaw = self._waiting.popleft()
+            while len(self._nodes) > 2 and self._nodes[1].time <= time:
+                self._nodes.popleft()
+            before, after = self._nodes[0], self._nodes[min(1, len(self._nodes) - 1)]
+            if before.time <= time <= after.time and after.time > before.time:
+                share = (time - before.time) / (after.time - before.time)
+                sums = before.sums + share * (after.sums - before.sums)
+                self._rows.take(_Sample(chain, time, yaw, sums))
+
+
+def phases_of_run(
+    robot: Robot,
+    time: Floats,
+    left: Counts,
+    right: Counts,
+    reference_time: Floats,
+    reference_yaw: Floats,
+    *,
+    limits: EncoderLimits | None = None,
+    channels: Mapping[str, Floats] | None = None,
+) -> tuple[Phase, ...]:
+    """The same for a recorded run.
+
+    Parameters
+    ----------
+    time, left, right
+        As for `trajectory`.
+    reference_time, reference_yaw : ndarray, shape (m,)
+        Measured heading [rad], NaN where it was not measured.
+    """
+    effects = learnable(robot)
+    left, right = wiring_of(robot.effects).wheels(left, right)
+    steps = wheel_steps(robot, time, left, right, limits)
+    rows = _Rows(effects)
+    if steps.first_row < 0 or steps.time.size == 0:
+        return rows.phases()
+    taken = np.concatenate([[steps.first_row], steps.row])
+    raw = WheelTravel(steps.left, steps.right)
+    first = float(left[steps.first_row]), float(right[steps.first_row])
+    spans = channel_spans(time[taken], channels or {}, taken)
+    drive = features(robot, steps.duration, raw, first, spans)
+    parts = [*Turning(robot, effects).of(raw, drive), drive.left_angle.change]
+    sums = [np.concatenate([[0.0], np.cumsum(p)]) for p in (*parts, drive.right_angle.change)]
+    stamps = time[taken]
+    if not (np.diff(stamps) > 0.0).all():  # a clock set back: times do not tell what is when
+        return rows.phases()
+    known = np.isfinite(reference_yaw)
+    known &= (reference_time >= stamps[0]) & (reference_time <= stamps[-1])
+    at = reference_time[known]
+    there = np.stack([np.interp(at, stamps, part) for part in sums], axis=-1)
+    for when, yaw, row in zip(at.tolist(), reference_yaw[known].tolist(), there, strict=True):
+        rows.take(_Sample(0, when, yaw, row))
+    return rows.phases()
