@@ -19,11 +19,14 @@ from werrimbi_odom.model.pose import Floats, wrap_all
 LONGEST = 5.0
 """Lags looked at, both ways [s]."""
 
-SHORTEST = 0.3
+SHORTEST = 0.25
 """Smaller ones are left to the fits [s]: a derivative finds them."""
 
-CLEARLY = 0.6
-"""Share of the unexplained variance that another lag may leave to be called better."""
+BETTER = 1.1
+"""How many times less another lag must leave unexplained to be called better, ..."""
+
+EVIDENCE = 15.0
+"""... and the logarithm of that over all independent seconds."""
 
 _PERIOD = 0.1
 
@@ -64,7 +67,8 @@ def lag_of(records: Sequence[Record]) -> tuple[float, float]:
         if bend > 0.0:
             lag += 0.5 * _PERIOD * float(before - after) / float(bend)
     gain = float(np.exp(misfit[most] - misfit[best]))
-    if abs(lag) < SHORTEST or gain * CLEARLY < 1.0:
+    seconds = used[0].rows * _PERIOD
+    if abs(lag) < SHORTEST or gain < BETTER or seconds * np.log(gain) < EVIDENCE:
         return 0.0, 1.0
     return float(lag), gain
 

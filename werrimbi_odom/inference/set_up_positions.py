@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.set_up_explanation import (
-    AS_ENTERED,
     Estimate,
     Setting,
     setting_of,
@@ -36,6 +35,9 @@ WINDOW = 12
 MOST_WINDOWS = 60
 """Windows looked at while searching, spread over all drives."""
 
+LONGEST = 6.0
+"""Longest lever arm that is believed, in half bases."""
+
 WIDE_MARGIN = 2.0
 """Another set-up must make the typical error this much smaller than the given one, refined."""
 
@@ -49,24 +51,61 @@ class Windows:
     floor: float
     """Error below which one fit is as good as another [m]."""
 
-    def misfit(self, left: float, right: float, half_base: float | None = None) -> float:
+    def misfit(
+        self, left: float, right: float, half_base: float | None = None, arm: complex = 0j
+    ) -> float:
         """Typical error of a window [m], its own heading fitted, and the scale where not given."""
-        gone, _ = swept(self.cuts, left, right)
-        gone, move = gone.reshape(-1, WINDOW), self.cuts.move.reshape(-1, WINDOW)
-        scale = _scale(gone, move) if half_base is None else half_base
-        facing = _facing(gone, move)
-        off = np.abs(move - scale * facing[:, None] * gone)
-        rms = np.sqrt(np.mean(off**2, axis=1))
+        gone, swing, move = self._shapes(left, right)
+        if half_base is None:
+            half_base = _scale(gone, move) if arm == 0j else self._mount(gone, swing, move, arm)[0]
+        model = half_base * gone + arm * swing
+        rms = _rms(move - _facing(model, move) * model)
         return float(np.exp(np.mean(np.log(rms + self.floor))))
 
+    def mount(self, left: float, right: float, arm: complex = 0j) -> tuple[float, complex]:
+        """Half the base and the lever arm that fit best [m]."""
+        return self._mount(*self._shapes(left, right), arm)
+
     def half_base(self, left: float, right: float) -> float:
-        """Half the base that fits best [m]."""
-        gone, _ = swept(self.cuts, left, right)
-        return _scale(gone.reshape(-1, WINDOW), self.cuts.move.reshape(-1, WINDOW))
+        """Half the base that fits best without a lever arm [m]."""
+        gone, _, move = self._shapes(left, right)
+        return _scale(gone, move)
+
+    def _shapes(self, left: float, right: float) -> tuple[Complexes, Complexes, Complexes]:
+        gone, turn = swept(self.cuts, left, right)
+        swing = np.exp(1j * turn) - 1.0
+        return (
+            gone.reshape(-1, WINDOW),
+            swing.reshape(-1, WINDOW),
+            self.cuts.move.reshape(-1, WINDOW),
+        )
+
+    def _mount(
+        self, gone: Complexes, swing: Complexes, move: Complexes, arm: complex
+    ) -> tuple[float, complex]:
+        """Headings and mount in turn, each in closed form; windows that fit badly count less."""
+        half_base = complex(_scale(gone, move))
+        columns = np.stack([gone.ravel(), swing.ravel()], axis=-1)
+        for _ in range(8):
+            model = half_base * gone + arm * swing
+            facing = _facing(model, move)
+            weight = 1.0 / (_rms(move - facing * model) + self.floor)
+            weights = np.repeat(weight, WINDOW)[:, None]
+            straight = (facing.conj() * move).ravel()[:, None]
+            solved = np.linalg.lstsq(weights * columns, weights * straight, rcond=1e-6)[0][:, 0]
+            # What half the base has of an angle belongs to the headings.
+            axis = np.exp(-1j * np.angle(solved[0]))
+            half_base, arm = solved[0] * axis, complex(solved[1] * axis)
+        return float(half_base.real), arm
 
 
-def _facing(gone: Complexes, move: Complexes) -> Complexes:
-    match = np.sum(gone.conj() * move, axis=1)
+def _rms(off: Complexes) -> Floats:
+    return np.asarray(np.sqrt(np.mean(np.abs(off) ** 2, axis=1)))
+
+
+def _facing(model: Complexes, move: Complexes) -> Complexes:
+    """Heading of each window, shape (w, 1)."""
+    match = np.sum(model.conj() * move, axis=1, keepdims=True)
     return np.asarray(np.exp(1j * np.angle(match)))
 
 
@@ -135,18 +174,26 @@ def search_positions(
     if given[0] < 1.05 * best[0]:
         best = given
     _, left, right = best
-    estimate = Estimate(left, right, 2.0 * windows.half_base(left, right), None)
-    if not estimate.base:
+    arm = 0j
+    for _ in range(3):
+        half_base, arm = windows.mount(left, right, arm)
+        if abs(arm) > LONGEST * half_base:  # circles alone do not tell an arm from a base
+            half_base, arm = windows.half_base(left, right), 0j
+            break
+        _, left, right = _refined(windows, left, right, arm, step=0.03)
+    if half_base <= 0.0:
         return [], None
+    estimate = Estimate(left, right, 2.0 * half_base, None, arm)
     ways = wirings(estimate)
     setting = setting_of(estimate, ways[0], track)
 
     def misfit(one: Setting) -> float:
-        numbers = one.numbers(track)
-        return windows.misfit(numbers[0], numbers[1], abs(numbers[2]))
+        left, right, half_base, _ = one.numbers(track)
+        return windows.misfit(left, right, abs(half_base), arm)
 
     found = findings_of(setting, ways, misfit)
-    if not found or misfit(AS_ENTERED) < WIDE_MARGIN * misfit(setting):
+    entered = windows.misfit(1.0 / track, 1.0 / track, 0.5 * track)
+    if not found or entered < WIDE_MARGIN * misfit(setting):
         return [], None
     return found, setting
 
@@ -164,17 +211,19 @@ def _grid() -> list[tuple[float, float]]:
     ]
 
 
-def _refined(windows: Windows, left: float, right: float) -> tuple[float, float, float]:
+def _refined(
+    windows: Windows, left: float, right: float, arm: complex = 0j, *, step: float = 0.15
+) -> tuple[float, float, float]:
     """Descend from a start by ever smaller steps of common size and ratio."""
-    size, ratio, step = 0.0, 0.0, 0.15
-    best = windows.misfit(left, right)
+    size, ratio = 0.0, 0.0
+    best = windows.misfit(left, right, None, arm)
     while step > 0.002:
         tries: list[tuple[float, float, float]] = []
         for du, dv in ((step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step)):
             factors = math.exp(size + du - 0.5 * (ratio + dv)), math.exp(
                 size + du + 0.5 * (ratio + dv)
             )
-            tries.append((windows.misfit(left * factors[0], right * factors[1]), du, dv))
+            tries.append((windows.misfit(left * factors[0], right * factors[1], None, arm), du, dv))
         value, du, dv = min(tries)
         if value < best:
             best, size, ratio = value, size + du, ratio + dv
