@@ -12,6 +12,7 @@ import numpy as np
 from werrimbi_odom.inference.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.leg_groups import DEPENDS_P, Cell
 from werrimbi_odom.inference.leg_systematic import CHANNELS, NoiseFactor, Systematic
+from werrimbi_odom.inference.matching import QUARTER_TURN
 
 FEWEST = 10
 """Legs, below which nothing is judged."""
@@ -22,8 +23,11 @@ LARGE, SMALL = 1.5, 0.67
 GROSS = 0.15
 """A share of travel or turn beyond which no calibration, but the set-up, is wrong."""
 
+GROSS_LEG = 0.1
+"""A share of the leg that position errors have in the median, for the same."""
+
 _MANY = 30
-_ALIKE = 4.0  # times that the noise factor may differ between short legs and long ones
+_ALIKE = 1.3  # times that the intervals of the noise factor, at short legs and long, are apart
 
 Noise = Literal["honest", "too small", "too large", "grows", "comes and goes", "unknown"]
 """The covariance. `grows`: the errors grow faster with the way than the wheels' noise does;
@@ -55,22 +59,18 @@ class Verdict:
     """On the variance of the wheels' noise, at the longest legs that are many."""
     judged_at: float
     """Their length [m]."""
+    gross: bool
+    """Whether errors are those of a set-up mistake."""
+    few: float
+    """Share of the squared errors that the worst twentieth of the legs holds."""
     off: tuple[str, ...]
     """Motion types whose NEES is too large when their systematic part is taken off."""
 
     @property
-    def gross(self) -> bool:
-        """Whether the error is that of a set-up mistake."""
-        shares = {("along", "travel"), ("sideways", "travel"), ("heading", "turn")}
-        return any(
-            (part.channel, part.per) in shares and abs(part.value) > GROSS
-            for part in self.systematic
-        )
-
-    @property
     def mean_is_right(self) -> bool:
         """Whether nothing systematic was found, in travel and turn or in anything else."""
-        return not self.systematic and not self.depends and not self.cells
+        depends = any(item.channel in CHANNELS for item in self.depends)
+        return not self.systematic and not depends and not self.cells
 
     @property
     def good(self) -> bool:
@@ -83,13 +83,34 @@ def verdict_of(comparison: Comparison) -> Verdict:
     main = comparison.main
     systematic = _primary(main)
     noise, factor, leg = _noise(comparison)
-    depends = _depends(comparison)
+    depends = _depends(comparison, noise)
     enough = main.all.figures.count >= FEWEST
     off = tuple(kind for kind in KINDS if _scatters(main.by_motion[kind]))
-    cells = tuple(cell for cell in comparison.cells if cell.stands_out)
+    cells = tuple(
+        cell for cell in comparison.cells if cell.stands_out and cell.figures.nees > LARGE
+    )
     if not enough:
-        return Verdict(False, (), (), (), "unknown", factor, leg, ())
-    return Verdict(True, systematic, depends, cells, noise, factor, leg, off)
+        return Verdict(False, (), (), (), "unknown", factor, leg, False, 0.0, ())
+    gross = _gross(main, systematic)
+    few = _held_by_few(comparison)
+    return Verdict(True, systematic, depends, cells, noise, factor, leg, gross, few, off)
+
+
+def _gross(main: OfLength, systematic: tuple[Systematic, ...]) -> bool:
+    shares = {("along", "travel"), ("sideways", "travel"), ("heading", "turn")}
+    figures = main.all.figures
+    return (
+        any((part.channel, part.per) in shares and abs(part.value) > GROSS for part in systematic)
+        or figures.median_position_m > GROSS_LEG * main.leg
+        or any(item.figures.rmse_yaw_rad > GROSS * QUARTER_TURN for item in main.by_motion.values())
+    )
+
+
+def _held_by_few(comparison: Comparison) -> float:
+    legs = comparison.legs.errors.chosen(~comparison.legs.outlier)
+    deviation = np.sort(legs.deviation)
+    count = max(deviation.size // 20, 1)
+    return float(deviation[-count:].sum() / max(float(deviation.sum()), 1e-300))
 
 
 def _primary(main: OfLength) -> tuple[Systematic, ...]:
@@ -110,8 +131,8 @@ def _primary(main: OfLength) -> tuple[Systematic, ...]:
     return tuple(sorted(kept, key=lambda part: part.size / part.promised, reverse=True))
 
 
-def _depends(comparison: Comparison) -> tuple[Depends, ...]:
-    """Dependences of the mean error; of its size only where nothing else was found."""
+def _depends(comparison: Comparison, noise: Noise) -> tuple[Depends, ...]:
+    """Dependences of the mean error; of its size only where it is larger than promised."""
     found = [
         Depends(channel, item.name, p_value)
         for item in comparison.variables
@@ -120,7 +141,7 @@ def _depends(comparison: Comparison) -> tuple[Depends, ...]:
     ]
     found.sort(key=lambda item: item.p_value)
     mean = [item for item in found if item.channel in CHANNELS]
-    return tuple(mean or found)
+    return tuple(mean or (found if noise not in ("honest", "too large") else ()))
 
 
 def _scatters(figures: LegFigures) -> bool:
@@ -142,9 +163,10 @@ def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
         return "unknown", factor, longest.leg
     if factor.low > LARGE and longest.all.scatter_nees > LARGE:
         short = main.all.noise
-        ratio = factor.value / max(short.value, 1e-12)
-        if ratio > _ALIKE and short.high < factor.low:
+        if factor.low > _ALIKE * short.high:
             return "grows", factor, longest.leg
+        if short.low > _ALIKE * factor.high:
+            return "comes and goes", factor, longest.leg
         return "too small", factor, longest.leg
     if main.all.noise.low > LARGE and main.all.scatter_nees > LARGE:
         return "comes and goes", main.all.noise, main.leg

@@ -53,10 +53,14 @@ class Systematic:
     promised: float
     """Root mean square of what the covariance promises for the channel [m or rad]."""
 
+    common: bool
+    """Whether most legs have it, and not a few bad ones alone."""
+
     @property
     def finding(self) -> bool:
-        """Certain, and large enough to matter."""
-        return self.p_value < CERTAIN_P and self.size >= WORTH_SAYING * self.promised
+        """Certain, common, and large enough to matter."""
+        worth = self.size >= WORTH_SAYING * self.promised
+        return self.common and worth and self.p_value < CERTAIN_P
 
 
 class NoiseFactor(NamedTuple):
@@ -117,6 +121,7 @@ def _laid_on(
     hat = np.einsum("ij,jk,ik->i", design, inverse, design)
     scaled = design * ((error - predicted) / np.maximum(1.0 - hat, 0.05))[:, None]
     std = np.sqrt(np.maximum(np.diag(inverse @ (scaled.T @ scaled) @ inverse), 0.0))
+    of_most = _of_most(design, error, slopes)
     promised = float(np.sqrt(np.mean(legs.covariance[rows, channel, channel])))
     parts = []
     for column, name in enumerate(names):
@@ -133,9 +138,23 @@ def _laid_on(
                 float(2.0 * student.sf(abs(ratio), rows.size - len(names))),
                 root_mean_square(design[:, column] * slopes[column]),
                 promised,
+                bool(of_most[column] * np.sign(slopes[column]) >= 0.5 * abs(slopes[column])),
             )
         )
     return parts, predicted
+
+
+def _of_most(design: Floats, error: Floats, slopes: Floats) -> Floats:
+    """Slopes that a few bad legs cannot carry: Huber's estimate, by reweighting."""
+    for _ in range(20):
+        left = np.abs(error - design @ slopes)
+        scale = 1.5 * 1.4826 * float(np.median(left))
+        weight = scale / np.maximum(left, max(scale, 1e-300))
+        root = np.sqrt(weight)
+        slopes = np.asarray(
+            np.linalg.lstsq(design * root[:, None], error * root, rcond=1e-2)[0], dtype=np.float64
+        )
+    return slopes
 
 
 _FACTORS = np.logspace(-4.0, 8.0, 241)

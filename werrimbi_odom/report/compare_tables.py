@@ -5,12 +5,15 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from collections.abc import Sequence
 
 from werrimbi_odom.inference.compare import KINDS, Comparison, LegFigures, OfLength
+from werrimbi_odom.inference.compare_verdict import verdict_of
 from werrimbi_odom.inference.leg_groups import DEPENDS_P, ByVariable
 
 WIDTH = 80
+_MOST = 3  # variables with a table of their own
 _NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
 _FIGURES = ("legs", "position", "heading", "NEES", "inside 95 %")
 
@@ -20,10 +23,13 @@ def tables_of(comparison: Comparison) -> str:
     tables = [_motions(comparison.main), _lengths(comparison)]
     if len(comparison.runs) > 1 or math.isfinite(comparison.runs[0].end_error_m):
         tables.append(_runs(comparison))
-    tables += [_variable(item) for item in comparison.variables if _depends(item)]
+    said = list(dict.fromkeys(item.variable for item in verdict_of(comparison).depends))
+    by_name = {item.name: item for item in comparison.variables}
+    tables += [_variable(by_name[name]) for name in said[:_MOST]]
     calm = [item.name.split(" [")[0] for item in comparison.variables if not _depends(item)]
     if calm:
-        tables.append(f"Nothing is seen to go with: {', '.join(calm)}.")
+        told = f"The errors are not seen to go with: {', '.join(calm)}."
+        tables.append(textwrap.fill(told, WIDTH))
     return "\n\n".join(tables)
 
 
@@ -84,7 +90,7 @@ def _runs(comparison: Comparison) -> str:
     ]
     return table(
         "Runs, dead reckoning begun at the first pose of the reference",
-        ("run", "driven", "time", "end error", "", "legs", "NEES"),
+        ("run", "driven", "time", "end error", "heading", "legs", "NEES"),
         rows,
     )
 

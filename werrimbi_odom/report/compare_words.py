@@ -14,6 +14,7 @@ from werrimbi_odom.inference.leg_systematic import Systematic
 WIDTH = 80
 
 NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
+_FEW = 0.6  # of the squared errors, held by a twentieth of the legs
 _AGREES = {"line": "is", "arc": "are", "spin": "are"}
 _CHANNELS = {
     "along": "the error along the way",
@@ -21,7 +22,6 @@ _CHANNELS = {
     "heading": "the heading error",
     "size": "the size of the errors",
 }
-_GROSS_SHARE = 0.5
 
 
 def words_of(comparison: Comparison, *, next_step: str = "werrimbi diagnose") -> str:
@@ -36,8 +36,9 @@ def words_of(comparison: Comparison, *, next_step: str = "werrimbi diagnose") ->
     paragraphs = [_headline(comparison, verdict)]
     if verdict.enough:
         paragraphs += _by_motion(comparison, verdict)
-        paragraphs += _elsewhere(verdict)
-        paragraphs += _covariance(comparison, verdict)
+        if not verdict.gross:
+            paragraphs += _elsewhere(comparison, verdict)
+            paragraphs += _covariance(comparison, verdict)
     paragraphs += _reference(comparison)
     paragraphs.append(_next(verdict, next_step))
     return "\n".join(_filled(text) for text in paragraphs if text)
@@ -87,6 +88,9 @@ def _headline(comparison: Comparison, verdict: Verdict) -> str:
 def _by_motion(comparison: Comparison, verdict: Verdict) -> list[str]:
     """A line for each motion type that was driven."""
     lines = []
+    common = (
+        "" if verdict.depends or verdict.cells or verdict.gross else ", without a common direction"
+    )
     for kind in KINDS:
         figures = comparison.main.by_motion[kind]
         if figures.figures.count < FEWEST:
@@ -100,11 +104,10 @@ def _by_motion(comparison: Comparison, verdict: Verdict) -> list[str]:
         elif kind in verdict.off:
             times = math.sqrt(figures.scatter_nees)
             lines.append(
-                f"- {name}: errors of a leg {errors}, {times:.1f} times what is promised, "
-                "without a common direction."
+                f"- {name}: errors of a leg {errors}, {times:.1f} times what is promised{common}."
             )
         else:
-            promised = "" if figures.figures.nees < 0.5 else ", as promised"
+            promised = ", as promised" if verdict.noise == "honest" else ""
             lines.append(f"- {name} {_AGREES[kind]} good: errors of a leg {errors}{promised}.")
     return lines
 
@@ -122,7 +125,7 @@ def _systematic(part: Systematic, leg: float) -> str:
     """What the robot did, against what the model says."""
     value, std = part.value, part.std
     if part.channel == "heading" and part.per == "turn":
-        return f"the robot turns {_share(value, std)} than the model says"
+        return _share("turns", "the other way", value, std)
     if part.channel == "heading" and part.per == "size of turn":
         side = "left" if value > 0.0 else "right"
         return (
@@ -132,7 +135,7 @@ def _systematic(part: Systematic, leg: float) -> str:
         side = "left" if value > 0.0 else "right"
         return f"driving forward the robot veers to the {side} by {_degrees(value, std)} per metre"
     if part.channel == "along" and part.per == "travel":
-        return f"the robot goes {_share(value, std)} than the model says"
+        return _share("goes", "backward where the model says forward", value, std)
     if part.channel == "sideways" and part.per == "travel":
         side = "left" if value > 0.0 else "right"
         return f"the robot ends {_to_side(value, std)} to the {side} per metre forward"
@@ -149,12 +152,16 @@ def _systematic(part: Systematic, leg: float) -> str:
     )
 
 
-def _share(value: float, std: float) -> str:
-    """As a percentage: 1.8 ± 0.1 % less."""
-    if value < -1.0 - _GROSS_SHARE:
-        return f"the other way ({100.0 * (1.0 + value):.0f} % of what is predicted) rather"
+def _share(verb: str, otherwise: str, value: float, std: float) -> str:
+    """As a percentage: the robot turns 1.8 ± 0.1 % less than the model says."""
+    if value < -1.0:
+        return f"the robot {verb} {otherwise}"
+    if value > 1.0:
+        return f"the robot {verb} {1.0 + value:.3g} times as far as the model says"
     word = "more" if value > 0.0 else "less"
-    return f"{_rounded(100.0 * abs(value), 100.0 * std)} % {word}"
+    return (
+        f"the robot {verb} {_rounded(100.0 * abs(value), 100.0 * std)} % {word} than the model says"
+    )
 
 
 def _degrees(value: float, std: float) -> str:
@@ -173,8 +180,14 @@ def _rounded(value: float, std: float) -> str:
     return f"{value:.{digits}f} ± {std:.{digits}f}"
 
 
-def _elsewhere(verdict: Verdict) -> list[str]:
+def _elsewhere(comparison: Comparison, verdict: Verdict) -> list[str]:
     lines = []
+    count = comparison.main.all.figures.count // 20
+    if verdict.few > _FEW and count > 1 and not verdict.good:
+        lines.append(
+            f"- A few legs are far worse than all others: the worst {count} hold "
+            f"{100.0 * verdict.few:.0f} % of the squared errors. Look what happened there."
+        )
     said: set[str] = set()
     for item in verdict.depends:
         if item.variable in said or len(said) == 2:
@@ -213,6 +226,8 @@ def _chance(p_value: float) -> str:
 
 def _covariance(comparison: Comparison, verdict: Verdict) -> list[str]:
     nees = comparison.main.all.figures.nees
+    there = next(item for item in comparison.lengths if item.leg == verdict.judged_at)
+    over = there.all.figures.nees
     factor, leg = verdict.factor, _metres(verdict.judged_at)
     if verdict.good:
         return [f"- The covariance is honest (NEES {nees:.2f}, 1 is right)."]
@@ -228,13 +243,13 @@ def _covariance(comparison: Comparison, verdict: Verdict) -> list[str]:
     between = f"{low:.2g} to {high:.2g}" if math.isfinite(high) else f"at least {low:.2g}"
     if verdict.noise == "too small":
         return [
-            f"- The covariance is {_times(nees)} times too small (NEES {nees:.3g}, 1 is right). "
-            f"Legs of {leg} scatter as if the wheels' noise k were {times:.2g} times what "
-            f"the robot file says ({between})."
+            f"- The covariance is {_times(over)} times too small over legs of {leg} (NEES "
+            f"{over:.3g}, 1 is right). They scatter as if the wheels' noise k were {times:.2g} "
+            f"times what the robot file says ({between})."
         ]
     if verdict.noise == "too large":
         return [
-            f"- The covariance is too large (NEES {nees:.2f}, 1 is right): legs of {leg} "
+            f"- The covariance is too large (NEES {over:.2f} over legs of {leg}, 1 is right): they "
             f"scatter as if the wheels' noise k were {times:.2g} times what the robot file says "
             f"({between})."
         ]
@@ -245,8 +260,8 @@ def _covariance(comparison: Comparison, verdict: Verdict) -> list[str]:
         ]
     if verdict.noise == "comes and goes" or verdict.off:
         return [
-            f"- The covariance is too small for short legs (NEES {nees:.3g}, 1 is right), but not "
-            "for long ones: something comes and goes along the way, which no noise of the "
+            f"- The covariance is too small (NEES {nees:.3g}, 1 is right), for short legs more "
+            "than for long ones: something comes and goes along the way, which no noise of the "
             "wheels does."
         ]
     if verdict.noise == "honest":
