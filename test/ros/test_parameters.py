@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 import subprocess
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,9 +18,15 @@ pytest.importorskip("rclpy")
 
 from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 
+from werrimbi_odom.effects import collection, find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.parameters import PARAMETERS
-from werrimbi_odom.ros.parameters import CHANGEABLE, VIRTUAL_TICKS_PER_REVOLUTION, checked
+from werrimbi_odom.ros.parameters import (
+    CHANGEABLE,
+    VIRTUAL_TICKS_PER_REVOLUTION,
+    checked,
+    settings_of,
+)
 
 Robot = dict[str, Any]
 Refused = Callable[..., str]
@@ -51,7 +58,7 @@ def test_an_unknown_key_names_the_nearest_known_one(refused: Refused) -> None:
         ({"encoder_bits": 12}, "encoder_bits must be one of 0, 8, 16, 32 (bits), not 12"),
         ({"enable_odom_tf": "yes please"}, "enable_odom_tf must be true or false"),
         ({"left_wheel_names": [1, 2]}, "left_wheel_names must be a list of names"),
-        ({"effects": ["drift"]}, "unknown effect drift: this version knows no effects yet"),
+        ({"effects": ["drift"]}, "unknown effect drift; the nearest known one is radius_drift"),
         ({"enable_odom_tf": True}, "enable_odom_tf needs tf2_ros, which is not installed here"),
         ({"use_sim_time": 3}, "'use_sim_time'"),
         (
@@ -115,10 +122,44 @@ def test_ticks_may_be_left_out_on_both_sides_only_and_without_wrapping() -> None
         checked({**BARE, "encoder_bits": 16})
 
 
-def test_blocks_of_effects_are_not_taken_for_parameters() -> None:
+def test_everything_wrong_with_effects_is_said_at_once_too() -> None:
     with pytest.raises(InputError) as error:
-        checked({**BARE, "effects": ["backlash"], "backlash.travel": 0.01})
-    assert str(error.value) == "unknown effect backlash: this version knows no effects yet"
+        checked(
+            {
+                **BARE,
+                "effects": ["lateral_slip", "wheels_swapped"],
+                "lateral_slip.crep": 0.01,
+                "lateral_slip.creep": 5.0,
+                "wheels_swapped": True,
+                "castor_kick.angle": 0.1,
+                "encoder_bit": 8,
+            }
+        )
+    for words in (
+        "lateral_slip has no parameter crep; it has creep",
+        "lateral_slip.creep must be a number of at most 0.1 (s), not 5.0",
+        "wheels_swapped has no parameters; take this line out",
+        "this is a block of parameters for castor_kick, but effects does not list castor_kick",
+        "unknown parameter encoder_bit; the nearest known one is encoder_bits",
+    ):
+        assert words in str(error.value)
+
+
+def test_effects_come_with_their_values_and_what_is_not_given_is_unknown() -> None:
+    names = ["eccentric_left_wheel", "radius_drift"]
+    amplitude = {"eccentric_left_wheel.amplitude": 1e-3}
+    wheel, drift = settings_of({**BARE, "effects": names, **amplitude}).effects
+    assert wheel.values["amplitude"] == 1e-3
+    assert wheel.unknown == ("phase",)
+    assert drift == find("radius_drift").using()
+
+
+def test_an_effect_that_needs_a_channel_does_not_run_live(monkeypatch: pytest.MonkeyPatch) -> None:
+    slip = find("lateral_slip")
+    fed = replace(slip, name="fed_slip", channels=("payload_kg",))
+    monkeypatch.setattr(collection, "LIBRARY", (fed,))
+    with pytest.raises(InputError, match="effect fed_slip looks at the measured channel payload_"):
+        settings_of({**BARE, "effects": ["fed_slip"]})
 
 
 # ------------------------------------------------------------------------ at run time

@@ -28,7 +28,7 @@ def _default(item: Parameter) -> str:
         return f"`[{', '.join(item.default)}]`"
     if isinstance(item.default, bool):
         return f"`{str(item.default).lower()}`"
-    return f"`{item.default}`"
+    return f"`{item.default}`" if item.default != "" else "empty"
 
 
 def _range(item: Parameter) -> str:

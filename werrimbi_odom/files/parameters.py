@@ -35,6 +35,8 @@ class Parameter:
     """Lower bound that is itself not allowed."""
     maximum: float | None = None
     choices: tuple[str, ...] = ()
+    may_be_empty: bool = False
+    """Of a text: whether "" is one."""
 
     def checked(self, value: object) -> Value:
         """The value in this parameter's type.
@@ -51,7 +53,7 @@ class Parameter:
                 raise self._wrong(value, "true or false")
             return value
         if self.kind == "string":
-            if not isinstance(value, str) or not value:
+            if not isinstance(value, str) or not (value or self.may_be_empty):
                 raise self._wrong(value, "a text")
             if self.choices and value not in self.choices:
                 raise self._wrong(value, "one of " + ", ".join(self.choices))
@@ -256,6 +258,24 @@ PARAMETERS: tuple[Parameter, ...] = (
         "Left and right counts that arrive within this time are one reading (int32_pair, "
         "int64_pair). Too large: a reading of one wheel may be paired with an older one.",
         above=0.0,
+    ),
+    Parameter(
+        "learn_from_topic",
+        "string",
+        "",
+        "",
+        "Topic of a measured heading from which the node learns what each drive has anew (the "
+        "phase of an eccentric wheel); empty: it does not.",
+        may_be_empty=True,
+    ),
+    Parameter(
+        "learn_from_type",
+        "string",
+        "imu",
+        "",
+        "Kind of its messages: sensor_msgs/Imu (yaw rate), geometry_msgs/PoseStamped or "
+        "nav_msgs/Odometry (yaw).",
+        choices=("imu", "pose_stamped", "odometry"),
     ),
 )
 

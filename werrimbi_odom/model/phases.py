@@ -89,10 +89,11 @@ class Turning:
         for applied in effects:
             assert applied.effect.quadrature is not None
             amplitude, phase = applied.effect.quadrature
+            size = applied.effect.parameters[amplitude].typical
             for angle in (0.0, 0.5 * math.pi):
-                known = applied.learnt(**{phase: angle})
+                known = applied.learnt(**{amplitude: size, phase: angle})
                 others = tuple(known if e.name == known.name else e for e in robot.effects)
-                self._with.append((replace(robot, effects=others), applied.values[amplitude]))
+                self._with.append((replace(robot, effects=others), size))
 
     def of(self, raw: WheelTravel[Number], drive: Drive[Number]) -> list[Number]:
         """The turn [rad], then its derivative in each effect's cos and sin [rad / unit]."""
@@ -197,7 +198,8 @@ def _phase(applied: AppliedEffect, index: int, solved: tuple[Floats, Floats] | N
     # Across the direction found; where less than the known amplitude shows, by so much less surely.
     across = np.array([-sin, cos]) / seen
     lever = min(seen, abs(applied.values[amplitude]))
-    std = math.sqrt(float(across @ solved[1][part, part] @ across)) / lever
+    spread = math.sqrt(float(across @ solved[1][part, part] @ across))
+    std = spread / lever if lever > 0.0 else math.inf
     return Phase(applied.name, name, math.atan2(sin, cos), std, seen)
 
 
@@ -233,10 +235,11 @@ class PhaseLearner:
     def retune(self, robot: Robot) -> None:
         """Go on with other values of the robot; what was learnt stays.
 
-        Its effects to be learnt count as unknown still, whatever the robot has for them.
+        Phases to be learnt count as unknown still, whatever the robot has for them.
         """
-        unknown = {applied.name: applied for applied in self.effects}
-        effects = tuple(unknown.get(e.name, e) for e in robot.effects)
+        unknown = {applied.name: applied.unknown for applied in self.effects}
+        effects = tuple(replace(e, unknown=unknown.get(e.name, e.unknown)) for e in robot.effects)
+        self.effects = self._rows.effects = tuple(e for e in effects if e.name in unknown)
         self._turning = Turning(replace(robot, effects=effects), self.effects)
 
     def step(self, time: float, step: DrivenStep) -> None:

@@ -64,7 +64,13 @@ class Health:
         """Note that DDS has lost input messages."""
         self._lost = event.total_count
 
-    def report(self, name: str, tally: EncoderTally, inputs: Mapping[str, int]) -> DiagnosticStatus:
+    def report(
+        self,
+        name: str,
+        tally: EncoderTally,
+        inputs: Mapping[str, int],
+        effects: Mapping[str, str] | None = None,
+    ) -> DiagnosticStatus:
         """How things stand, and at which rate they went since the last report.
 
         Parameters
@@ -75,6 +81,8 @@ class Health:
             What the model's encoder made of the readings.
         inputs : mapping
             Further counts of the input.
+        effects : mapping, optional
+            What each physical effect runs with.
         """
         now = time.monotonic()
         counts = self._counts(tally, inputs)
@@ -87,7 +95,8 @@ class Health:
             "output rate": f"{new['published'] / elapsed:.1f} Hz",
         }
         level, words = self._verdict(now, new)
-        values = [KeyValue(key=key, value=str(value)) for key, value in (rates | counts).items()]
+        told = rates | counts | dict(effects or {})
+        values = [KeyValue(key=key, value=str(value)) for key, value in told.items()]
         return DiagnosticStatus(
             level=level,
             name=name,

@@ -11,6 +11,8 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 from builtin_interfaces.msg import Time as Stamp
@@ -20,6 +22,7 @@ from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rclpy.qos_overriding_options import QoSOverridingOptions
@@ -28,8 +31,10 @@ from visualization_msgs.msg import MarkerArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.parameters import limits_of, tolerance_of
+from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros import inputs, parameters
 from werrimbi_odom.ros.health import Health
+from werrimbi_odom.ros.learning import learning_of, told
 from werrimbi_odom.ros.markers import PieceTrail
 from werrimbi_odom.ros.messages import OdometryMessage, pose_from, transform_of
 from werrimbi_odom.ros.running import run
@@ -55,9 +60,11 @@ class OdomNode(Node):  # type: ignore[misc]
 
     def __init__(self) -> None:
         super().__init__("odom_node")
-        self._values = values = parameters.declared(self)
+        self._values, self._effects = parameters.declared(self)
+        values = self._values
+        self._changeable = parameters.changeable(self._effects)
         self._frame = str(values["odom_frame_id"])
-        robot = inputs.robot_at_counters(values)
+        robot = self._robot()
         limits = limits_of(values)
         self._topics = tuple(self.resolve_topic_name(name) for name in inputs.topics_of(values))
         self._tracker = Tracker(robot, tolerance_of(values), limits)
@@ -72,6 +79,7 @@ class OdomNode(Node):  # type: ignore[misc]
         self._status = self._publisher(DiagnosticStatus, "~/status", 10)
         self._diagnostics = self._publisher(DiagnosticArray, "/diagnostics", 10)
         self._send_transform = _transform_sender(self) if values["enable_odom_tf"] else None
+        self._learning = learning_of(inputs.Wiring(self, values, self._take, self._health), robot)
         self._input = inputs.subscribed(inputs.Wiring(self, values, self._take, self._health))
         self.create_subscription(
             PoseWithCovarianceStamped,
@@ -81,8 +89,8 @@ class OdomNode(Node):  # type: ignore[misc]
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
         self.create_service(Trigger, "~/reset", self._on_reset)
-        self.add_pre_set_parameters_callback(parameters.with_floats)
-        self.add_on_set_parameters_callback(parameters.judged)
+        self.add_pre_set_parameters_callback(partial(parameters.with_floats, self._changeable))
+        self.add_on_set_parameters_callback(partial(parameters.judged, self._changeable))
         self.add_post_set_parameters_callback(self._on_parameters_set)
         # The steady clock: /diagnostics must go on when simulated time stands still.
         steady = Clock(clock_type=ClockType.STEADY_TIME)
@@ -102,6 +110,7 @@ class OdomNode(Node):  # type: ignore[misc]
         if self._send_transform is not None:
             self._send_transform(transform_of(odometry))
         self._keep(self._tracker.finished_by(estimate))
+        self._learning.after(self._tracker)
 
     def _keep(self, finished: Finished | None) -> None:
         """Add a piece to those that RViz shows; without a viewer nothing is drawn."""
@@ -130,22 +139,31 @@ class OdomNode(Node):  # type: ignore[misc]
         return response
 
     def _on_parameters_set(self, changed: list[Any]) -> None:
-        changes = parameters.changes_of(changed)
+        changes = parameters.changes_of(self._changeable, changed)
         if not changes:
             return
-        self._values.update(changes)
+        self._values.update({name: v for name, v in changes.items() if name in self._values})
+        self._effects = parameters.with_changes(self._effects, changes)
         limits = limits_of(self._values)
-        robot = inputs.robot_at_counters(self._values)
+        robot = self._robot()
         self._health.silent_after = limits.gap_duration
         self._keep(self._tracker.retune(robot, tolerance_of(self._values), limits))
+        self._learning.retune(robot, tuple(changes))
         self.get_logger().info(
             "from here on: " + ", ".join(f"{name} {value}" for name, value in changes.items())
         )
+
+    def _robot(self) -> Robot:
+        """The robot as it is believed to be now."""
+        return replace(inputs.robot_at_counters(self._values), effects=self._effects)
 
     # ------------------------------------------------------------------------- reports
 
     def _report(self) -> None:
         self._rounds += 1
+        learnt = self._learning.news()
+        if learnt:
+            self.set_parameters([Parameter(name, value=value) for name, value in learnt.items()])
         due = self._rounds % DIAGNOSTICS_EVERY == 0
         self._greet_viewers()
         if self._tracker.started:
@@ -187,7 +205,8 @@ class OdomNode(Node):  # type: ignore[misc]
 
     def _publish_diagnostics(self) -> None:
         name = f"{self.get_name()}: wheel encoders"
-        status = self._health.report(name, self._tracker.tally, self._input.tally())
+        effects = told(self._effects, self._learning)
+        status = self._health.report(name, self._tracker.tally, self._input.tally(), effects)
         if status.level != self._level:
             self._level = status.level
             # Two lines, because rclpy knows a logging call by its line and its severity.
@@ -226,6 +245,8 @@ class OdomNode(Node):  # type: ignore[misc]
                 "left_ and right_ticks_per_revolution where you know them: then quantisation "
                 "belongs to the covariance, and a count that flickers is no motion"
             )
+        for name, words in told(self._effects, self._learning).items():
+            log.info(f"{name}: {words}")
         log.info(
             f"{self._values['input_type']} on {' and '.join(self._topics)}, odometry on "
             f"{self._odometry.topic_name} from {self._frame} to {self._values['base_frame_id']}"

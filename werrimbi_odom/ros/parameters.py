@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
+from typing import NamedTuple
 
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
 from rclpy.node import Node
@@ -17,7 +18,9 @@ from rclpy.parameter import Parameter
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import parameters as table
+from werrimbi_odom.files.effect_parameters import EFFECTS, Named, named_effects, parameters_of
 from werrimbi_odom.files.parameters import Value
+from werrimbi_odom.model.effect import AppliedEffect
 
 CHANGEABLE = frozenset(
     {
@@ -40,11 +43,27 @@ VIRTUAL_TICKS_PER_REVOLUTION = 2.0e6 * math.pi
 """Counts of a microradian, for wheel angles whose encoder is not known: no quantisation."""
 
 _TICKS = ("left_ticks_per_revolution", "right_ticks_per_revolution")
-_FLOATS = frozenset(item.name for item in table.PARAMETERS if item.kind == "float")
 _QOS = "qos_overrides."
 
+Changeable = Mapping[str, table.Parameter]
+"""What may change while the node runs, by name."""
 
-def declared(node: Node) -> dict[str, Value]:
+
+class Settings(NamedTuple):
+    """What the node was started with."""
+
+    values: dict[str, Value]
+    effects: tuple[AppliedEffect, ...]
+
+
+def changeable(effects: tuple[AppliedEffect, ...]) -> Changeable:
+    """What may change while the node runs: `CHANGEABLE`, and every parameter of an effect."""
+    items = [item for item in table.PARAMETERS if item.name in CHANGEABLE]
+    items += [item for applied in effects for item in parameters_of(applied.effect)]
+    return {item.name: item for item in items}
+
+
+def declared(node: Node) -> Settings:
     """Declare every parameter on a node, with the values it was started with.
 
     Raises
@@ -55,20 +74,43 @@ def declared(node: Node) -> dict[str, Value]:
     with node.handle:
         given = {name: item.value for name, item in node.handle.get_parameters(Parameter).items()}
     own = {name: value for name, value in given.items() if not _is_of_ros(node, name)}
-    values = checked(own, node.get_fully_qualified_name())
+    values, effects = settings = settings_of(own, node.get_fully_qualified_name())
     for item in table.PARAMETERS:
         value = values[item.name]
         node.declare_parameter(
             item.name,
             list(value) if isinstance(value, tuple) else value,
-            _descriptor(item),
+            _descriptor(item, item.name in CHANGEABLE),
             ignore_override=True,
         )
-    return values
+    _declare_effects(node, effects)
+    return settings
+
+
+def _declare_effects(node: Node, effects: tuple[AppliedEffect, ...]) -> None:
+    if effects:  # rclpy cannot tell the type of an empty list
+        description = ParameterDescriptor(
+            description="Physical effects, in order of application.", read_only=True
+        )
+        names = [applied.name for applied in effects]
+        node.declare_parameter(EFFECTS, names, description, ignore_override=True)
+    for applied in effects:
+        for item in parameters_of(applied.effect):
+            name = item.name.partition(".")[2]
+            unknown = name in applied.unknown
+            descriptor = _descriptor(item, True)
+            descriptor.dynamic_typing = unknown  # it has no value yet, so no type
+            value = None if unknown else applied.values[name]
+            node.declare_parameter(item.name, value, descriptor, ignore_override=True)
 
 
 def checked(given: Mapping[str, object], node_name: str = "/odom_node") -> dict[str, Value]:
-    """Values of all parameters, from those given; those that may be left out filled in.
+    """Values of all parameters but the effects'; see `settings_of`."""
+    return settings_of(given, node_name).values
+
+
+def settings_of(given: Mapping[str, object], node_name: str = "/odom_node") -> Settings:
+    """All parameters, from those given; those that may be left out filled in.
 
     Raises
     ------
@@ -77,15 +119,18 @@ def checked(given: Mapping[str, object], node_name: str = "/odom_node") -> dict[
     """
     values: dict[str, Value] = table.defaults()
     wrong: list[str] = []
-    effects = given.get("effects")
+    effects = _named(given.get(EFFECTS), wrong)
     for name, value in given.items():
-        if name == "effects" or _belongs_to_effect(name, effects):
-            continue
         try:
-            values[name] = table.find(name).checked(_plain(value))
+            if name == EFFECTS:
+                continue
+            if "." in name or any(name == effect.name for effect in effects.effects):
+                _take_of_effect(effects, name, value)
+            else:
+                values[name] = table.find(name).checked(_plain(value))
         except InputError as error:
             wrong.append(str(error))
-    wrong += _refused_effects(effects)
+    wrong += _without_channels(effects)
     without_ticks = _needs_no_ticks(values) and not any(name in given for name in _TICKS)
     if without_ticks:
         values.update(dict.fromkeys(_TICKS, VIRTUAL_TICKS_PER_REVOLUTION))
@@ -103,7 +148,7 @@ def checked(given: Mapping[str, object], node_name: str = "/odom_node") -> dict[
         )
     if wrong:
         raise InputError(". ".join(wrong))
-    return values
+    return Settings(values, effects.applied())
 
 
 def has_virtual_ticks(values: Mapping[str, Value]) -> bool:
@@ -118,51 +163,81 @@ def leftover_qos_overrides(node: Node) -> list[str]:
     return [name for name in given if name.startswith(_QOS) and not node.has_parameter(name)]
 
 
-def with_floats(parameters: list[Parameter]) -> list[Parameter]:
+def with_floats(items: Changeable, parameters: list[Parameter]) -> list[Parameter]:
     """Whole numbers given for floats (2000 for 2000.0) made floats, before types are compared."""
+    floats = {item.name for item in (*table.PARAMETERS, *items.values()) if item.kind == "float"}
     return [
         Parameter(item.name, value=float(item.value))
-        if item.name in _FLOATS and item.type_ is Parameter.Type.INTEGER
+        if item.name in floats and item.type_ is Parameter.Type.INTEGER
         else item
         for item in parameters
     ]
 
 
-def judged(parameters: list[Parameter]) -> SetParametersResult:
+def judged(items: Changeable, parameters: list[Parameter]) -> SetParametersResult:
     """Whether a change at run time may be made, and else why not."""
-    for item in parameters:
-        if item.name in CHANGEABLE:
-            try:
-                table.find(item.name).checked(item.value)
-            except InputError as error:
-                return SetParametersResult(successful=False, reason=str(error))
+    try:
+        changes_of(items, parameters)
+    except InputError as error:
+        return SetParametersResult(successful=False, reason=str(error))
     return SetParametersResult(successful=True)
 
 
-def changes_of(parameters: list[Parameter]) -> dict[str, Value]:
-    """The values among `parameters` that are ours."""
+def changes_of(items: Changeable, parameters: list[Parameter]) -> dict[str, Value]:
+    """The values among `parameters` that are ours.
+
+    Raises
+    ------
+    InputError
+        When one of them cannot be had.
+    """
     return {
-        item.name: table.find(item.name).checked(item.value)
+        item.name: items[item.name].checked(_plain(item.value))
         for item in parameters
-        if item.name in CHANGEABLE
+        if item.name in items
     }
+
+
+def with_changes(
+    effects: tuple[AppliedEffect, ...], changes: Mapping[str, Value]
+) -> tuple[AppliedEffect, ...]:
+    """The effects with those of the changes that are theirs; what is given is no more unknown."""
+
+    def own(applied: AppliedEffect) -> dict[str, float]:
+        begin = f"{applied.name}."
+        mine = {key.removeprefix(begin): v for key, v in changes.items() if key.startswith(begin)}
+        return {name: float(value) for name, value in mine.items()}  # type: ignore[arg-type]
+
+    return tuple(applied.learnt(**own(applied)) for applied in effects)
 
 
 def _is_of_ros(node: Node, name: str) -> bool:
     return name.startswith(_QOS) or node.has_parameter(name)
 
 
-def _belongs_to_effect(name: str, effects: object) -> bool:
-    return isinstance(effects, Sequence) and name.partition(".")[0] in effects
+def _named(names: object, wrong: list[str]) -> Named:
+    """The effects; an empty list arrives from ROS as a parameter that is not set."""
+    try:
+        return named_effects(names)
+    except InputError as error:
+        wrong.append(str(error))
+        return Named(())
 
 
-def _refused_effects(effects: object) -> list[str]:
-    """An empty list arrives from ROS as a parameter that is not set."""
-    if effects is None:
-        return []
-    if isinstance(effects, str) or not isinstance(effects, Sequence):
-        return [f"effects must be a list of names, not {effects!r}"]
-    return [f"unknown effect {name}: this version knows no effects yet" for name in effects]
+def _take_of_effect(effects: Named, name: str, value: object) -> None:
+    if "." not in name:
+        raise effects.refuse_value(name, value)
+    effects.take(name, _plain(value))
+
+
+def _without_channels(effects: Named) -> list[str]:
+    """What cannot run live: a node has nothing but the counters."""
+    return [
+        f"effect {effect.name} looks at the measured channel {', '.join(effect.channels)}, which "
+        "the node does not have; it works on recorded runs alone. Take it out of effects"
+        for effect in effects.effects
+        if effect.channels
+    ]
 
 
 def _needs_no_ticks(values: Mapping[str, Value]) -> bool:
@@ -173,11 +248,9 @@ def _plain(value: object) -> object:
     return "nothing" if value is None else value
 
 
-def _descriptor(item: table.Parameter) -> ParameterDescriptor:
+def _descriptor(item: table.Parameter, may_change: bool) -> ParameterDescriptor:
     unit = f" [{item.unit}]" if item.unit else ""
-    description = ParameterDescriptor(
-        description=item.says + unit, read_only=item.name not in CHANGEABLE
-    )
+    description = ParameterDescriptor(description=item.says + unit, read_only=not may_change)
     lowest = item.minimum if item.above is None else item.above
     if item.kind == "float" and lowest is not None:
         highest = sys.float_info.max if item.maximum is None else item.maximum

@@ -4,11 +4,13 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from builtin_interfaces.msg import Time as Stamp
 
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
+from werrimbi_odom.model.driving import DrivenStep
 from werrimbi_odom.model.encoder import EncoderLimits, EncoderTally
 from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.pieces import Piece, PieceTolerance
@@ -38,12 +40,8 @@ class Tracker:
         """Of the last reading that was taken."""
         self._odometer = Odometer(robot, tolerance, limits)
         self._origin: int | None = None
-        self._reading: tuple[float, float, float] | None = None
-
-    @property
-    def started(self) -> bool:
+        self.started = False
         """Whether any reading has been taken."""
-        return self._reading is not None
 
     @property
     def tally(self) -> EncoderTally:
@@ -72,17 +70,30 @@ class Tracker:
 
     def take(self, stamp: Stamp, left: float, right: float) -> Estimate | None:
         """The estimate after a reading; None for the first and for one that is refused."""
-        # Seconds since the first stamp: as seconds since 1970 a float resolves but 0.2 µs.
         if self._origin is None:
             self._origin = stamp.sec
-        time = (stamp.sec - self._origin) + 1e-9 * stamp.nanosec
+        time = self.seconds(stamp)
         accepted = self.tally.accepted
         estimate = self._odometer.update(time, left, right)
         if self.tally.accepted > accepted:
-            self._reading, self.stamp = (time, left, right), stamp
+            self.started, self.stamp = True, stamp
         if estimate is not None:
             self.pose = estimate.pose
         return estimate
+
+    def seconds(self, stamp: Stamp) -> float:
+        """A stamp in the odometer's time [s]; not a number before the first reading.
+
+        It counts from the first stamp: of the seconds since 1970 a float resolves but 0.2 µs.
+        """
+        if self._origin is None:
+            return math.nan
+        return float(stamp.sec - self._origin) + 1e-9 * float(stamp.nanosec)
+
+    @property
+    def driven_step(self) -> DrivenStep | None:
+        """The latest step as effects see it; None where the robot has none."""
+        return self._odometer.driven_step
 
     def finished_by(self, estimate: Estimate) -> Finished | None:
         """The piece that an estimate, the last one, brought to its end."""
@@ -105,18 +116,11 @@ class Tracker:
     def retune(
         self, robot: Robot, tolerance: PieceTolerance, limits: EncoderLimits
     ) -> Finished | None:
-        """Take other values for what follows; pose, covariance and counts stay as they are.
+        """Take other values for what follows; pose, covariance, counts and memory stay as they are.
 
-        The new odometer is given the last reading to count on from, so no motion is lost. Counts
-        must mean the same to both robots: the resolution of the encoders cannot be changed.
+        Returns the piece that this ends, if it ended one that had any length. Counts must mean the
+        same as before: the resolution of the encoders cannot be changed.
         """
-        old, covariance = self._odometer, self.covariance
-        piece = old.piece
-        self._odometer = Odometer(robot, tolerance, limits)
-        if self._reading is not None:
-            self._odometer.update(*self._reading)
-        self._odometer.set_pose(self.pose, covariance)
-        self._odometer.distance = old.distance
-        for name, count in old.tally.as_dict().items():
-            setattr(self._odometer.tally, name, count)
-        return Finished(piece, covariance) if any(piece.travel) else None
+        covariance = self.covariance
+        piece = self._odometer.retune(robot, tolerance, limits)
+        return Finished(piece, covariance) if piece is not None and any(piece.travel) else None

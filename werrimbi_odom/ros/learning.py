@@ -1,0 +1,212 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What each drive has anew (the phase of an eccentric wheel), learnt live from a measured heading.
+
+The mathematics is in `werrimbi_odom.model.phases`; here are the subscription, and when to tell.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+from geometry_msgs.msg import PoseStamped
+from nav_msgs.msg import Odometry
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.qos_overriding_options import QoSOverridingOptions
+from sensor_msgs.msg import Imu
+
+from werrimbi_odom.model.effect import AppliedEffect
+from werrimbi_odom.model.phases import KNOWN_WELL_ENOUGH, Phase, PhaseLearner, learnable
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.ros import inputs
+from werrimbi_odom.ros.tracker import Tracker
+
+FINE = 0.03
+"""Standard deviation of a phase [rad] beyond which nothing is gained by telling it anew."""
+
+
+class NoLearning:
+    """Where nothing is to be learnt, or from nothing."""
+
+    topic = ""
+
+    def after(self, tracker: Tracker) -> None:
+        """Take the reading that the tracker has just taken."""
+
+    def retune(self, robot: Robot, changed: tuple[str, ...]) -> None:
+        """Go on with other values of the robot."""
+
+    def news(self) -> dict[str, float]:
+        """Parameters that are known now, or much better than when they were last told."""
+        return {}
+
+    def phase(self, effect: str) -> Phase | None:
+        """What is known so far of an effect's phase; None where it is not to be learnt."""
+        return None
+
+
+class Learning(NoLearning):
+    """Learns phases from a topic.
+
+    Parameters
+    ----------
+    wiring : Wiring
+    robot : Robot
+        With effects to be learnt.
+    topic, kind : str
+        `learn_from_topic` and `learn_from_type`.
+    """
+
+    def __init__(self, wiring: inputs.Wiring, robot: Robot, topic: str, kind: str) -> None:
+        self.topic = topic
+        self._learner = PhaseLearner(robot)
+        self._tracker: Tracker | None = None
+        self._clock = wiring.node.get_clock()
+        self._logger = wiring.node.get_logger()
+        self._health = wiring.health
+        self._told: dict[str, float] = {}
+        """Standard deviation with which a phase was last told, by effect [rad]."""
+        self._settled: set[str] = set()
+        """Effects whose phase is fine, or set by somebody else."""
+        self._telling: set[str] = set()
+        """Parameters that are about to be set because we told them."""
+        message_type, see = {
+            "imu": (Imu, self._see_imu),
+            "pose_stamped": (PoseStamped, self._see_pose),
+            "odometry": (Odometry, self._see_odometry),
+        }[kind]
+        self._subscribe(wiring, message_type, see)
+
+    def _subscribe(
+        self, wiring: inputs.Wiring, message_type: type, see: Callable[[Any], None]
+    ) -> None:
+        with inputs.qos_errors_of(self.topic):
+            wiring.node.create_subscription(
+                message_type,
+                self.topic,
+                see,
+                inputs.sensor_qos(),
+                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+                qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            )
+
+    def after(self, tracker: Tracker) -> None:
+        """Take the reading that the tracker has just taken."""
+        self._tracker = tracker
+        if tracker.driven_step is not None and not self._done:
+            self._learner.step(tracker.seconds(tracker.stamp), tracker.driven_step)
+
+    def retune(self, robot: Robot, changed: tuple[str, ...]) -> None:
+        """Go on with other values of the robot; a phase that somebody else sets is settled."""
+        self._learner.retune(robot)
+        for phase in self._learner.phases():
+            if _key(phase) in changed and _key(phase) not in self._telling:
+                self._settled.add(phase.effect)
+        self._telling -= set(changed)
+
+    @property
+    def _done(self) -> bool:
+        return len(self._settled) == len(self._learner.effects)
+
+    def news(self) -> dict[str, float]:
+        """Parameters that are known now, or twice as well as when they were last told."""
+        if self._done:
+            return {}
+        found = {}
+        for phase in self._learner.phases():
+            last = self._told.get(phase.effect, 2.0 * KNOWN_WELL_ENOUGH)
+            if phase.effect in self._settled or phase.std > 0.5 * last:
+                continue
+            self._told[phase.effect] = phase.std
+            if phase.std < FINE:
+                self._settled.add(phase.effect)
+            found[_key(phase)] = phase.value
+            self._logger.info(
+                f"learnt from {self.topic}: {_key(phase)} is {phase.value:.2f} rad, give or take "
+                f"{phase.std:.2f}"
+            )
+        self._telling = set(found)
+        return found
+
+    def phase(self, effect: str) -> Phase | None:
+        """What is known so far of an effect's phase; None where it is not to be learnt."""
+        found = (phase for phase in self._learner.phases() if phase.effect == effect)
+        return next(found, None)
+
+    def _see_imu(self, message: Any) -> None:
+        if message.angular_velocity_covariance[0] < 0.0:  # REP-145: it does not measure this
+            self._health.refuse("no angular velocity", f"the Imu on {self.topic} measures none")
+            return
+        if not self._done:
+            self._learner.see_rate(self._time_of(message), message.angular_velocity.z)
+
+    def _see_pose(self, message: Any) -> None:
+        self._see_yaw(message, message.pose.orientation)
+
+    def _see_odometry(self, message: Any) -> None:
+        self._see_yaw(message, message.pose.pose.orientation)
+
+    def _see_yaw(self, message: Any, orientation: Any) -> None:
+        if not self._done:
+            self._learner.see_yaw(self._time_of(message), _yaw(orientation))
+
+    def _time_of(self, message: Any) -> float:
+        stamp = message.header.stamp
+        if stamp.sec == 0 and stamp.nanosec == 0:
+            stamp = self._clock.now().to_msg()
+        return math.nan if self._tracker is None else self._tracker.seconds(stamp)
+
+
+def learning_of(wiring: inputs.Wiring, robot: Robot) -> NoLearning:
+    """What the robot file asks for, where there is anything to learn."""
+    topic, log = str(wiring.values["learn_from_topic"]), wiring.node.get_logger()
+    unknown = [applied.name for applied in robot.effects if applied.unknown]
+    if topic and learnable(robot):
+        return Learning(wiring, robot, topic, str(wiring.values["learn_from_type"]))
+    if topic:
+        log.info(f"nothing to learn from {topic}: no effect has an unknown phase")
+    elif unknown:
+        log.warning(
+            f"{', '.join(unknown)}: not applied while the phase is unknown; set it, or give "
+            "learn_from_topic a measured heading to learn it from"
+        )
+    return NoLearning()
+
+
+def told(effects: tuple[AppliedEffect, ...], learning: NoLearning) -> dict[str, str]:
+    """Which effects run, and with what, in words."""
+    return {f"effect {applied.name}": _words(applied, learning) for applied in effects}
+
+
+def _words(applied: AppliedEffect, learning: NoLearning) -> str:
+    effect, phase = applied.effect, learning.phase(applied.name)
+    numbers = [
+        f"{name} {applied.values[name]:.6g} {item.unit}".rstrip()
+        for name, item in effect.parameters.items()
+        if name not in applied.unknown
+    ]
+    words = [", ".join(numbers) or "on"]
+    if applied.unknown:
+        words.append(f"not applied: {' and '.join(applied.unknown)} unknown")
+        if phase is not None:
+            so_far = f"{phase.std:.2f} rad" if math.isfinite(phase.std) else "nothing"
+            words.append(f"learning from {learning.topic}, so far to {so_far}")
+    elif phase is not None:
+        words.append(f"phase learnt from {learning.topic}, to {phase.std:.2f} rad")
+    if effect.stage == "reference":
+        words.append("of the measurement, so odometry does without it")
+    return "; ".join(words)
+
+
+def _key(phase: Phase) -> str:
+    return f"{phase.effect}.{phase.parameter}"
+
+
+def _yaw(orientation: Any) -> float:
+    """Heading of a quaternion [rad]; not a number where it is none."""
+    x, y, z, w = orientation.x, orientation.y, orientation.z, orientation.w
+    if not 0.5 < math.sqrt(x * x + y * y + z * z + w * w) < 2.0:
+        return math.nan
+    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
