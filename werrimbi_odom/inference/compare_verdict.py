@@ -11,7 +11,7 @@ import numpy as np
 
 from werrimbi_odom.inference.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.leg_groups import DEPENDS_P, Cell
-from werrimbi_odom.inference.leg_systematic import CHANNELS, NoiseFactor, Systematic
+from werrimbi_odom.inference.leg_systematic import CERTAIN_P, CHANNELS, NoiseFactor, Systematic
 from werrimbi_odom.inference.matching import QUARTER_TURN
 
 FEWEST = 10
@@ -63,6 +63,8 @@ class Verdict:
     """Whether errors are those of a set-up mistake."""
     few: float
     """Share of the squared errors that the worst twentieth of the legs holds."""
+    few_and_bad: tuple[str, ...]
+    """Motion types of too few legs to say more than that their errors are larger than promised."""
     off: tuple[str, ...]
     """Motion types whose NEES is too large when their systematic part is taken off."""
 
@@ -73,9 +75,14 @@ class Verdict:
         return not self.systematic and not depends and not self.cells
 
     @property
+    def off_at_all(self) -> tuple[str, ...]:
+        """Motion types whose errors are larger than promised, few legs or many."""
+        return (*self.off, *self.few_and_bad)
+
+    @property
     def good(self) -> bool:
         """Whether the model explains the drives."""
-        return self.enough and self.mean_is_right and self.noise == "honest" and not self.off
+        return self.enough and self.mean_is_right and self.noise == "honest" and not self.off_at_all
 
 
 def verdict_of(comparison: Comparison) -> Verdict:
@@ -90,10 +97,11 @@ def verdict_of(comparison: Comparison) -> Verdict:
         cell for cell in comparison.cells if cell.stands_out and cell.figures.nees > LARGE
     )
     if not enough:
-        return Verdict(False, (), (), (), "unknown", factor, leg, False, 0.0, ())
+        return Verdict(False, (), (), (), "unknown", factor, leg, False, 0.0, (), ())
     gross = _gross(main, systematic)
     few = _held_by_few(comparison)
-    return Verdict(True, systematic, depends, cells, noise, factor, leg, gross, few, off)
+    bad = tuple(kind for kind in KINDS if _bad(main.by_motion[kind]))
+    return Verdict(True, systematic, depends, cells, noise, factor, leg, gross, few, bad, off)
 
 
 def _gross(main: OfLength, systematic: tuple[Systematic, ...]) -> bool:
@@ -150,6 +158,16 @@ def _scatters(figures: LegFigures) -> bool:
         and figures.scatter_nees > LARGE
         and figures.noise.low > LARGE
     )
+
+
+def _bad(figures: LegFigures) -> bool:
+    """Whether a few legs err beyond any chance: chi-squared of all of them together."""
+    from scipy.stats import chi2
+
+    count, nees = figures.figures.count, figures.figures.nees
+    if not 0 < count < FEWEST or not nees > LARGE:
+        return False
+    return bool(chi2.sf(3.0 * count * nees, 3 * count) < CERTAIN_P)
 
 
 def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:

@@ -94,6 +94,12 @@ def _by_motion(comparison: Comparison, verdict: Verdict) -> list[str]:
     for kind in KINDS:
         figures = comparison.main.by_motion[kind]
         if figures.figures.count < FEWEST:
+            if kind in verdict.few_and_bad:
+                lines.append(
+                    f"- {NAMES[kind].capitalize()} ({_counted(figures.figures.count, 'leg')} only): "
+                    f"errors of a leg {_errors(figures)}, {math.sqrt(figures.figures.nees):.1f} "
+                    "times what is promised."
+                )
             continue
         parts = [part for part in verdict.systematic if part.kind == kind]
         said = [_systematic(part, comparison.prepared.leg) for part in parts]

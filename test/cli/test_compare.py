@@ -1,0 +1,184 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi compare` on the command line: words, tables, JSON, and one line for a mistake."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from werrimbi_odom.cli.main import main
+
+ROOT = Path(__file__).parents[2]
+RECORDING = ROOT / "werrimbi_odom" / "recordings" / "square"
+ROBOT = RECORDING / "robot.yaml"
+DATA = Path(os.environ.get("WERRIMBI_DATA", ROOT / ".." / "shared" / "data")) / "robots"
+ROBOTS = {
+    "optitrack_robot": ("--leg", "0.5"),
+    "khepera_laser_to_the_side": ("--leg", "0.1", "--reference-kind", "incremental"),
+    "khepera_laser_moved": ("--leg", "0.1", "--reference-kind", "incremental"),
+    "labyrinth": (),
+}
+LEGS = {
+    "count",
+    "outliers",
+    "rmse_position_m",
+    "median_position_m",
+    "rmse_all_position_m",
+    "rmse_yaw_rad",
+    "nees",
+    "coverage_95",
+}
+
+
+def compared(tmp_path: Path, *words: object) -> dict[str, Any]:
+    file = tmp_path / "figures.json"
+    assert main(["compare", *map(str, words), "--json", str(file)]) == 0
+
+    def refuse(constant: str) -> None:
+        raise AssertionError(f"{constant} is no JSON")
+
+    found = json.loads(file.read_text(), parse_constant=refuse)
+    assert isinstance(found, dict)
+    return found
+
+
+def wrong_base(tmp_path: Path) -> Path:
+    path = tmp_path / "wrong.yaml"
+    text = ROBOT.read_text().replace("wheel_separation: 0.35 ", "wheel_separation: 0.36 ")
+    assert text != ROBOT.read_text()
+    path.write_text(text)
+    return path
+
+
+def test_the_shipped_drive_is_explained_and_the_json_is_the_contracts(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    found = compared(tmp_path, "--robot", ROBOT, RECORDING)
+    assert found["legs"].keys() >= LEGS
+    assert set(found["by_motion"]) == {"line", "arc", "spin"}
+    for figures in found["by_motion"].values():
+        assert figures.keys() >= LEGS
+    (run,) = found["runs"]
+    assert run["run"] == str(RECORDING)
+    assert run.keys() >= {"distance_m", "duration_s", "end_error_m", "end_error_rad", "legs"}
+    assert run["legs"]["count"] == found["legs"]["count"]
+    by_motion = sum(figures["count"] for figures in found["by_motion"].values())
+    assert by_motion == found["legs"]["count"]
+    assert found["each_leg"]["error_along_m"][0] == pytest.approx(0.0, abs=0.05)
+    said = capsys.readouterr()
+    assert said.err == ""
+    assert max(map(len, said.out.splitlines()[:-1])) <= 80
+
+
+def test_end_errors_are_those_of_werrimbi_odom(tmp_path: Path) -> None:
+    recording = tmp_path / "square"
+    recording.mkdir()
+    (recording / "ticks.csv").write_text((RECORDING / "ticks.csv").read_text())
+    # Both begin at the first pose; let that be one that is not before the first ticks.
+    head, _, *poses = (RECORDING / "reference.csv").read_text().splitlines()
+    (recording / "reference.csv").write_text("\n".join([head, *poses]) + "\n")
+    found = compared(tmp_path, "--robot", ROBOT, recording)
+    out, figures = tmp_path / "odom.csv", tmp_path / "odom.json"
+    words = ["odom", "--robot", ROBOT, recording, "--out", out, "--json", figures]
+    assert main([str(word) for word in words]) == 0
+    theirs = json.loads(figures.read_text())
+    (run,) = found["runs"]
+    assert run["end_error_m"] == pytest.approx(theirs["end_error_m"], abs=1e-3)
+    assert run["end_error_rad"] == pytest.approx(theirs["end_error_rad"], abs=1e-3)
+    assert run["distance_m"] == pytest.approx(theirs["distance_m"], rel=1e-3)
+
+
+def test_a_wrong_base_makes_it_worse_and_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    right = compared(tmp_path, "--robot", ROBOT, RECORDING, "--leg", "0.25")
+    capsys.readouterr()
+    page = tmp_path / "page.html"
+    wrong = compared(
+        tmp_path, "--robot", wrong_base(tmp_path), RECORDING, "--leg", "0.25", "--report", page
+    )
+    assert wrong["by_motion"]["spin"]["nees"] > 3.0 * right["by_motion"]["spin"]["nees"]
+    said = capsys.readouterr().out
+    told = " ".join(said.split())
+    (share,) = re.findall(r"Curves: the robot turns ([\d.]+) ± [\d.]+ % more than", told)
+    assert float(share) == pytest.approx(100.0 * (0.36 / 0.35 - 1.0), abs=0.3)
+    assert "Spins (4 legs only): errors of a leg" in told
+    assert "werrimbi diagnose --robot" in said
+    assert page.stat().st_size > 1_000_000
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_every_recorded_robot(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = DATA / name
+    if not folder.exists():
+        pytest.skip(f"no recorded robots in {DATA} (WERRIMBI_DATA)")
+    runs = sorted(path.parent for path in folder.glob("*/ticks.csv"))
+    found = compared(tmp_path, "--robot", folder / "robot.yaml", *runs, *ROBOTS[name])
+    assert len(found["runs"]) == len(runs)
+    assert found["legs"]["count"] > 10
+    assert found["legs"]["nees"] > 3.0  # each of these robot files is wrong
+    assert "explains these drives" not in capsys.readouterr().out
+
+
+def complaint(capsys: pytest.CaptureFixture[str], *words: object) -> str:
+    assert main(["compare", *map(str, words)]) == 2
+    said = capsys.readouterr()
+    assert said.out == ""
+    assert len(said.err.splitlines()) == 1
+    assert said.err.startswith("werrimbi compare: ")
+    return said.err
+
+
+def test_mistakes_are_told_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    robot = ("--robot", ROBOT)
+    told = complaint(capsys, *robot, RECORDING, "--leg", "0")
+    assert "--leg" in told
+    assert "greater than zero" in told
+    assert "given twice" in complaint(capsys, *robot, RECORDING, f"{RECORDING}/.")
+    assert "there is no such run" in complaint(capsys, *robot, tmp_path / "nowhere")
+    told = complaint(capsys, *robot, RECORDING, "--json", RECORDING / "ticks.csv")
+    assert "would overwrite" in told
+    told = complaint(capsys, *robot, RECORDING, "--json", tmp_path)
+    assert "is a folder" in told
+
+
+def test_a_folder_of_runs_names_them(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for name in ("first", "second"):
+        (tmp_path / "runs" / name).mkdir(parents=True)
+        for file in ("ticks.csv", "reference.csv"):
+            (tmp_path / "runs" / name / file).write_text((RECORDING / file).read_text())
+    told = complaint(capsys, "--robot", ROBOT, tmp_path / "runs")
+    assert "is no run but a folder of 2 (first, second)" in told
+
+
+def test_a_run_without_a_reference_is_named(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "blind").mkdir()
+    (tmp_path / "blind" / "ticks.csv").write_text((RECORDING / "ticks.csv").read_text())
+    told = complaint(capsys, "--robot", ROBOT, tmp_path / "blind")
+    assert "there is no reference to compare with" in told
+
+
+def test_in_a_process_of_its_own_without_a_terminal() -> None:
+    words = ["compare", "--robot", ROBOT, RECORDING]
+    done = subprocess.run(
+        [sys.executable, "-m", "werrimbi_odom.cli.main", *words],
+        capture_output=True,
+        text=True,
+        cwd=ROOT,
+        check=False,
+    )
+    assert done.returncode == 0
+    assert done.stderr == ""
+    assert "Errors of legs of 1 m (rms)" in done.stdout

@@ -1,0 +1,292 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Comparing: figures and words that tell what is hidden in the data, and nothing that is not."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from test.white_noise_robot import WhiteNoiseRobot, drive, square, wandering
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.compare import Comparison, compare, judged
+from werrimbi_odom.inference.compare_legs import prepare
+from werrimbi_odom.inference.compare_verdict import verdict_of
+from werrimbi_odom.inference.knobs import Model
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.compare_json import json_of
+from werrimbi_odom.report.compare_words import words_of
+
+TRUE = WhiteNoiseRobot(left_noise=5e-4, right_noise=5e-4)
+RIGHT = Robot(
+    0.35,
+    0.05,
+    2000.0,
+    2000.0,
+    TRUE.separation / 0.35,
+    TRUE.left_radius / 0.05,
+    TRUE.right_radius / 0.05,
+    left_wheel_noise=5e-4,
+    right_wheel_noise=5e-4,
+)
+
+
+def recorded(seed: int, *, seconds: float = 120.0, every: int = 3) -> Run:
+    random = np.random.default_rng(seed)
+    commands = [square(1.5, sense) for sense in (1.0, -1.0)]
+    speed, rate = (np.concatenate([one, two]) for one, two in zip(*commands, strict=True))
+    free = wandering(random, seconds)
+    joined = np.concatenate([free[0], speed]), np.concatenate([free[1], rate])
+    seen = drive(TRUE, joined, random, every=every)
+    return Run(
+        f"run_{seed}",
+        Path(f"run_{seed}"),
+        Ticks(seen.ticks.time, seen.ticks.left, seen.ticks.right),
+        Reference(seen.reference.time, seen.reference.x, seen.reference.y, seen.reference.yaw),
+    )
+
+
+@pytest.fixture(scope="module")
+def runs() -> tuple[Run, ...]:
+    return tuple(recorded(seed) for seed in range(60, 64))
+
+
+def with_reference(run: Run, **columns: np.ndarray) -> Run:
+    assert run.reference is not None
+    return replace(run, reference=replace(run.reference, **columns))
+
+
+def without(run: Run, *names: str) -> Run:
+    assert run.reference is not None
+    nothing = np.full(run.reference.time.size, np.nan)
+    return with_reference(run, **dict.fromkeys(names, nothing))
+
+
+def flat(comparison: Comparison) -> str:
+    return " ".join(words_of(comparison).split())
+
+
+def test_a_true_model_is_called_good_and_its_covariance_honest(runs: tuple[Run, ...]) -> None:
+    found = compare(runs, RIGHT)
+    assert verdict_of(found).good
+    words = flat(found)
+    assert words.startswith("The model explains these drives")
+    assert "Next" not in words
+    # 600 legs of 3 degrees of freedom: mean and coverage scatter by 0.04 and 0.01.
+    figures = found.main.all.figures
+    assert figures.nees == pytest.approx(1.0, abs=0.15)
+    assert figures.coverage_95 == pytest.approx(0.95, abs=0.035)
+
+
+def test_the_noise_of_the_reference_is_found_whatever_is_wrong_with_the_model(
+    runs: tuple[Run, ...],
+) -> None:
+    wrong = replace(
+        RIGHT,
+        wheel_separation_multiplier=0.9,
+        left_wheel_radius_multiplier=1.1,
+        left_wheel_noise=5e-5,
+        right_wheel_noise=5e-3,
+    )
+    for robot in (RIGHT, wrong):
+        ((_, noise),) = compare(runs, robot).prepared.noises
+        assert noise.sigma_xy == pytest.approx(1e-3, rel=0.08)
+        assert noise.sigma_yaw == pytest.approx(2e-3, rel=0.08)
+        assert (noise.xy_told, noise.yaw_told) == ("estimated", "estimated")
+
+
+def test_a_base_two_percent_too_small_goes_wrong_in_turns_and_not_on_lines(
+    runs: tuple[Run, ...],
+) -> None:
+    small = replace(RIGHT, wheel_separation_multiplier=0.98 * RIGHT.wheel_separation_multiplier)
+    words = flat(compare(runs, small))
+    assert "The model goes wrong in curves and spins." in words
+    assert "Straight driving is good" in words
+    (share,) = re.findall(r"Spins: the robot turns ([\d.]+) ± [\d.]+ % less than the model", words)
+    assert float(share) == pytest.approx(2.0, abs=0.2)
+    assert "says which physical effect explains it" in words
+
+
+def test_a_larger_left_wheel_veers_to_the_right(runs: tuple[Run, ...]) -> None:
+    # The robot file believes the left wheel smaller than it is.
+    believed = RIGHT.left_wheel_radius_multiplier / 1.01
+    words = flat(compare(runs, replace(RIGHT, left_wheel_radius_multiplier=believed)))
+    found = re.findall(
+        r"Straight driving:.*? veers to the right by ([\d.]+) ± [\d.]+° per metre", words
+    )
+    # 1 % of a metre more on the left, over the base, is 0.01 / 0.353 rad.
+    assert float(found[0]) == pytest.approx(np.degrees(0.01 / TRUE.separation), rel=0.1)
+
+
+def test_a_wheel_noise_ten_times_too_small_makes_the_covariance_too_small(
+    runs: tuple[Run, ...],
+) -> None:
+    sure = replace(RIGHT, left_wheel_noise=5e-5, right_wheel_noise=5e-5)
+    found = compare(runs, sure)
+    words = flat(found)
+    assert words.startswith("On average the model is right")
+    assert "times too small over legs" in words
+    low, high = (np.sqrt(bound) for bound in verdict_of(found).factor[1:])
+    assert low < 10.0 < high
+    assert found.main.systematic
+    assert not any(part.finding for part in found.main.systematic)
+
+
+def test_a_wheel_noise_ten_times_too_large_makes_it_too_large(runs: tuple[Run, ...]) -> None:
+    unsure = replace(RIGHT, left_wheel_noise=5e-3, right_wheel_noise=5e-3)
+    words = flat(compare(runs, unsure))
+    assert words.startswith("The model is right, and better than its covariance says.")
+    assert "too large" in words
+
+
+def test_exchanged_wheels_are_no_matter_of_calibration(runs: tuple[Run, ...]) -> None:
+    swapped = [
+        replace(run, ticks=replace(run.ticks, left=run.ticks.right, right=run.ticks.left))
+        for run in runs
+    ]
+    found = compare(swapped, RIGHT)
+    assert verdict_of(found).gross
+    words = flat(found)
+    assert words.startswith("The model is grossly wrong")
+    assert "turns the other way" in words
+
+
+@pytest.mark.parametrize(
+    ("unmeasured", "freedom"), [(("yaw",), 2), (("x", "y"), 1)], ids=["position", "heading"]
+)
+def test_references_of_positions_or_headings_alone_are_judged_honestly(
+    runs: tuple[Run, ...], unmeasured: tuple[str, ...], freedom: int
+) -> None:
+    found = compare([without(run, *unmeasured) for run in runs], RIGHT)
+    figures = found.main.all.figures
+    assert set(found.legs.errors.freedom.tolist()) == {freedom}
+    assert figures.nees == pytest.approx(1.0, abs=0.2)
+    assert figures.coverage_95 == pytest.approx(0.95, abs=0.04)
+    assert np.isnan(figures.rmse_position_m) == (freedom == 1)
+    assert np.isnan(figures.rmse_yaw_rad) == (freedom == 2)
+    assert np.isnan(found.runs[0].end_error_m) == (freedom == 1)
+    assert "goes wrong" not in flat(found)
+
+
+def test_a_bad_spin_shows_in_positions_alone_and_does_not_spoil_what_follows(
+    runs: tuple[Run, ...],
+) -> None:
+    blind = [without(run, "yaw") for run in runs]
+    small = replace(RIGHT, wheel_separation_multiplier=0.9 * RIGHT.wheel_separation_multiplier)
+    figures = compare(blind, small).main.all
+    assert figures.figures.nees > 3.0
+    # A heading that is never corrected would be off by radians at the end of each drive.
+    assert figures.figures.median_position_m < 0.1
+
+
+def test_runs_whose_references_differ_are_judged_together(runs: tuple[Run, ...]) -> None:
+    mixed = compare([runs[0], without(runs[1], "yaw"), without(runs[2], "x", "y")], RIGHT)
+    assert mixed.prepared.measures == ("pose", "position", "heading")
+    assert (np.diff(mixed.legs.run) >= 0).all()
+    assert sum(item.legs.figures.count for item in mixed.runs) == mixed.main.all.figures.count
+    alone = compare([runs[0]], RIGHT)
+    ours = mixed.legs.errors.error[mixed.legs.run == 0]
+    np.testing.assert_allclose(ours, alone.legs.errors.error, atol=1e-12)
+
+
+def test_two_poses_a_drive_are_one_leg_each(runs: tuple[Run, ...]) -> None:
+    ends = []
+    for run in runs:
+        assert run.reference is not None
+        two = {name: getattr(run.reference, name)[[0, -1]] for name in ("time", "x", "y", "yaw")}
+        ends.append(with_reference(run, **two))
+    found = compare(ends, RIGHT)
+    assert found.main.all.figures.count == len(runs)
+    assert flat(found).startswith("Too little to judge: 4 legs")
+    np.testing.assert_allclose(
+        [item.end_error_m for item in found.runs], found.legs.errors.distance, atol=1e-9
+    )
+
+
+def test_one_pose_a_second_is_enough(runs: tuple[Run, ...]) -> None:
+    slow = []
+    for run in runs:
+        assert run.reference is not None
+        rows = slice(None, None, 17)
+        fewer = {name: getattr(run.reference, name)[rows] for name in ("time", "x", "y", "yaw")}
+        slow.append(with_reference(run, **fewer))
+    found = compare(slow, RIGHT)
+    assert 0.6 < found.main.all.figures.nees < 1.3
+    assert "goes wrong" not in flat(found)
+
+
+def shifted(run: Run, at: float, by: float, last: int | None = None) -> Run:
+    assert run.reference is not None
+    first = int(at * run.reference.time.size)
+    rows = slice(first, None if last is None else first + last)
+    x = run.reference.x.copy()
+    x[rows] += by
+    return with_reference(run, x=x)
+
+
+def test_a_tracker_that_jumps_spoils_the_leg_on_which_it_does_and_no_other(
+    runs: tuple[Run, ...],
+) -> None:
+    clean = compare(runs, RIGHT)
+    found = compare([shifted(runs[0], 0.4, 0.3), *runs[1:]], RIGHT)
+    assert clean.main.all.outliers == 0
+    assert found.main.all.outliers == 1
+    assert found.legs.run[found.legs.outlier].tolist() == [0]
+    assert found.main.all.rmse_all_position_m > 2.0 * found.main.all.figures.rmse_position_m
+    assert found.main.all.figures.rmse_position_m == pytest.approx(
+        clean.main.all.figures.rmse_position_m, rel=0.02
+    )
+    assert "On 1 of" in flat(found)
+    assert verdict_of(found).good
+    ((moment,),) = [json_of(found)["outliers"]]
+    assert runs[0].reference is not None
+    jumped = runs[0].reference.time[int(0.4 * runs[0].reference.time.size)]
+    assert moment["t_start_s"] <= jumped <= moment["t_end_s"]
+
+
+def test_a_wrong_model_is_no_jump_of_the_reference(runs: tuple[Run, ...]) -> None:
+    for robot in (
+        replace(RIGHT, wheel_separation_multiplier=2.0),
+        replace(RIGHT, wheel_radius=0.1),
+        replace(RIGHT, wheel_radius=0.0125),
+    ):
+        assert compare(runs, robot).main.all.outliers == 0
+
+
+def test_before_and_after_are_over_the_same_legs(runs: tuple[Run, ...]) -> None:
+    wrong = replace(RIGHT, wheel_radius=0.06)
+    prepared = prepare([shifted(runs[0], 0.4, 0.3), *runs[1:]], wrong)
+    before, after = judged(prepared, wrong), judged(prepared, RIGHT)
+    np.testing.assert_array_equal(before.legs.start_time, after.legs.start_time)
+    np.testing.assert_array_equal(before.legs.outlier, after.legs.outlier)
+    assert after.main.all.figures.rmse_position_m < 0.1 * before.main.all.figures.rmse_position_m
+
+
+def test_a_model_with_values_of_the_runs_own_is_taken_as_well(runs: tuple[Run, ...]) -> None:
+    plain = compare(runs, RIGHT)
+    found = compare(runs, Model(RIGHT, tuple({} for _ in runs)))
+    np.testing.assert_array_equal(found.legs.errors.error, plain.legs.errors.error)
+
+
+def test_a_floor_that_pulls_one_way_goes_with_the_heading(runs: tuple[Run, ...]) -> None:
+    drifting = []
+    for run in runs:
+        assert run.reference is not None
+        path = np.concatenate(
+            [[0.0], np.cumsum(np.hypot(*np.diff([run.reference.x, run.reference.y])))]
+        )
+        drifting.append(with_reference(run, x=run.reference.x + 0.01 * path))
+    found = compare(drifting, RIGHT)
+    assert not verdict_of(found).mean_is_right
+    words = flat(found)
+    assert re.search(r"(along the way|sideways error).* go(es)? with the heading", words)
+
+
+def test_a_run_without_a_reference_is_refused_by_name(runs: tuple[Run, ...]) -> None:
+    with pytest.raises(InputError, match=r"run_60: there is no reference to compare with"):
+        compare([replace(runs[0], reference=None)], RIGHT)
