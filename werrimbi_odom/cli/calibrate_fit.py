@@ -9,12 +9,14 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from werrimbi_odom.cli.calibration_files import add_file_arguments, write_all
+from werrimbi_odom.cli.calibration_files import write_all
+from werrimbi_odom.cli.recordings import Recordings, add_recording_arguments, read_recordings
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
     from werrimbi_odom.files.robot_file import RobotFile
+    from werrimbi_odom.files.run import Run
     from werrimbi_odom.inference.calibration import Calibration
     from werrimbi_odom.inference.matching import MatchedRun
 
@@ -28,44 +30,31 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "recorded drives with a reference, several at once. What the driving does not determine is "
         "left alone; when calibration is not what is missing, that is said."
     )
-    parser.add_argument("runs", metavar="RUN", nargs="+", type=Path, help="folders or bags")
+    add_recording_arguments(parser, holdout=True)
     parser.add_argument(
-        "--holdout", metavar="RUN", nargs="+", type=Path, help="runs to judge on, not to fit"
+        "--out", metavar="NEW", type=Path, required=True, help="robot file to write"
     )
-    parser.add_argument(
-        "--leg", metavar="M", type=float, default=1.0, help="length of a leg to judge by [m]"
-    )
-    parser.add_argument(
-        "--reference-kind",
-        choices=("absolute", "incremental"),
-        default="absolute",
-        help="each pose has noise of its own (motion capture), or noise adds up (scan matcher)",
-    )
-    parser.add_argument("--reference-sigma-xy", metavar="M", type=float, help="if known [m]")
-    parser.add_argument("--reference-sigma-yaw", metavar="RAD", type=float, help="if known [rad]")
-    parser.add_argument("--ticks-topic", metavar="T", help="of a bag, where it has several")
-    parser.add_argument("--reference-topic", metavar="T", help="of a bag, where it has several")
-    add_file_arguments(parser)
+    parser.add_argument("--force", action="store_true", help="overwrite --out if it exists")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Calibrate; 0 on success."""
-    from werrimbi_odom.files.robot_file import read_robot_file
     from werrimbi_odom.inference.calibration import calibrate
 
-    source = read_robot_file(arguments.robot)
-    runs = _matched(arguments.runs, source, PARTS_OF_A_LEG, arguments)
+    given = read_recordings(arguments)
+    source = given.source
+    runs = _matched(given.runs, given, PARTS_OF_A_LEG)
     result = calibrate(
         runs,
         source.robot,
-        arguments.reference_kind,
-        sigma_xy=arguments.reference_sigma_xy or _stated(runs, "sigma_xy"),
-        sigma_yaw=arguments.reference_sigma_yaw or _stated(runs, "sigma_yaw"),
+        given.kind,
+        sigma_xy=given.sigma_xy or _stated(runs, "sigma_xy"),
+        sigma_yaw=given.sigma_yaw or _stated(runs, "sigma_yaw"),
     )
     _say(result)
     figures = _json(result)
-    if arguments.holdout:
-        held_out = _matched(arguments.holdout, source, 1, arguments)
+    if given.holdout:
+        held_out = _matched(given.holdout, given, 1)
         figures["holdout"] = _judged(held_out, source, result)
     changes = {name: item.value for name, item in result.multipliers.items() if item.determined}
     for name in ("left_wheel_noise", "right_wheel_noise"):
@@ -93,28 +82,11 @@ def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) 
     )
 
 
-def _matched(
-    paths: Sequence[Path], source: RobotFile, parts: int, arguments: argparse.Namespace
-) -> list[MatchedRun]:
-    from werrimbi_odom.cli.progress import with_progress
-    from werrimbi_odom.files.reading import read_run
+def _matched(runs: Sequence[Run], given: Recordings, parts: int) -> list[MatchedRun]:
     from werrimbi_odom.inference.matching import QUARTER_TURN, match
 
-    return [
-        match(
-            read_run(
-                path,
-                source,
-                ticks_topic=arguments.ticks_topic,
-                reference_topic=arguments.reference_topic,
-            ),
-            source.robot,
-            arguments.leg / parts,
-            source.limits,
-            QUARTER_TURN / parts,
-        )
-        for path in with_progress(paths, "reading runs")
-    ]
+    robot, limits = given.source.robot, given.source.limits
+    return [match(run, robot, given.leg / parts, limits, QUARTER_TURN / parts) for run in runs]
 
 
 def _stated(runs: Sequence[MatchedRun], name: str) -> float | None:
@@ -160,7 +132,7 @@ def _say(result: Calibration) -> None:
     for words in result.strange:
         console.print(f"  - {words}", markup=False)
     for cell in result.misfit[:5]:
-        words = f"the {cell.channel} error still goes with {cell.variable}"
+        words = f"the {cell.channel} error still goes with {cell.name}"
         console.print(f"  - {words} (p = {cell.p_value:.0e})", markup=False)
     console.print(
         "The values above are the best of a model that does not fit, so they have no error bars. "
@@ -213,7 +185,7 @@ def _json(result: Calibration) -> dict[str, Any]:
         "trusted": result.trusted,
         "something_else_is_missing": [
             *result.strange,
-            *(f"{item.channel} error goes with {item.variable}" for item in result.misfit),
+            *(f"{item.channel} error goes with {item.name}" for item in result.misfit),
         ],
         "outliers": sum(int(legs.sum()) for legs in result.excluded),
     }

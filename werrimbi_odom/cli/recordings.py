@@ -123,7 +123,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     collection = all_effects(arguments.effects)
     for warning in collection.warnings:
         print(f"warning: {warning}", file=sys.stderr)
-    source = read_robot_file(arguments.robot)
+    source = read_robot_file(arguments.robot, effects=collection)
     with share_done("reading") as show:
         read = []
         for number, path in enumerate(paths):

@@ -161,13 +161,13 @@ def _scatters(figures: LegFigures) -> bool:
 
 
 def _bad(figures: LegFigures) -> bool:
-    """Whether a few legs err beyond any chance: chi-squared of all of them together."""
+    """Whether a few legs err beyond any chance, be it in one direction alone."""
     from scipy.stats import chi2
 
     count, nees = figures.figures.count, figures.figures.nees
     if not 0 < count < FEWEST or not nees > LARGE:
         return False
-    return bool(chi2.sf(3.0 * count * nees, 3 * count) < CERTAIN_P)
+    return bool(chi2.sf(count * nees, count) < CERTAIN_P)
 
 
 def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:

@@ -68,7 +68,7 @@ class NoiseFactor(NamedTuple):
 
     value: float
     low: float
-    """Likelihood interval, 95 %."""
+    """Likelihood interval, 99.9 %."""
     high: float
 
     @property
@@ -158,7 +158,7 @@ def _of_most(design: Floats, error: Floats, slopes: Floats) -> Floats:
 
 
 _FACTORS = np.logspace(-4.0, 8.0, 241)
-_SAME = 3.841  # drop of minus two log-likelihood within a 95 % interval
+_SAME = 10.828  # of minus two log-likelihood: a 99.9 % interval, for a dozen are looked at
 
 
 def noise_factor(errors: Floats, covariance: Floats, wheels: Floats) -> NoiseFactor:

@@ -95,10 +95,11 @@ def _by_motion(comparison: Comparison, verdict: Verdict) -> list[str]:
         figures = comparison.main.by_motion[kind]
         if figures.figures.count < FEWEST:
             if kind in verdict.few_and_bad:
+                number = _counted(figures.figures.count, "leg")
+                times = math.sqrt(figures.figures.nees)
                 lines.append(
-                    f"- {NAMES[kind].capitalize()} ({_counted(figures.figures.count, 'leg')} only): "
-                    f"errors of a leg {_errors(figures)}, {math.sqrt(figures.figures.nees):.1f} "
-                    "times what is promised."
+                    f"- {NAMES[kind].capitalize()} ({number} only): errors of a leg "
+                    f"{_errors(figures)}, {times:.1f} times what is promised."
                 )
             continue
         parts = [part for part in verdict.systematic if part.kind == kind]
