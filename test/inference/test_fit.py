@@ -18,6 +18,7 @@ from werrimbi_odom.inference.legs import LegErrors, LegStatistics, joined, leg_e
 from werrimbi_odom.inference.likelihood import ReferenceKind
 from werrimbi_odom.inference.matching import match
 from werrimbi_odom.inference.noise import NOISES, noise_estimates
+from werrimbi_odom.inference.together import together
 from werrimbi_odom.model.robot import Robot
 
 NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0)
@@ -134,7 +135,7 @@ def test_an_incremental_reference_calibrates_too() -> None:
 def test_under_a_true_model_nothing_depends_on_anything() -> None:
     matched = [match(run, NOMINAL, 0.25) for run in runs_of(2)]
     fit = fit_model(matched, start_point(matched, NOMINAL))
-    assert dependences(matched, fit, "absolute", CALIBRATION)[0].p_value > 0.01
+    assert dependences(together(matched), fit.point, "absolute", CALIBRATION)[0].p_value > 0.01
 
 
 def test_a_missing_effect_shows_as_a_dependence() -> None:
@@ -145,9 +146,9 @@ def test_a_missing_effect_shows_as_a_dependence() -> None:
         run.reference.y += 0.03 * np.cos(run.reference.yaw)
     matched = [match(run, NOMINAL, 0.25) for run in runs]
     fit = fit_model(matched, start_point(matched, NOMINAL))
-    strongest = dependences(matched, fit, "absolute", CALIBRATION)[0]
+    strongest = dependences(together(matched), fit.point, "absolute", CALIBRATION)[0]
     assert strongest.p_value < 1e-12
-    assert (strongest.channel, strongest.variable) == ("along", "turn [rad]")
+    assert (strongest.channel, strongest.name) == ("along", "turn")
 
 
 KNOWN = replace(

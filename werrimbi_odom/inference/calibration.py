@@ -17,6 +17,7 @@ from werrimbi_odom.inference.likelihood import ReferenceKind, relative_errors
 from werrimbi_odom.inference.matching import MatchedRun
 from werrimbi_odom.inference.noise import NoiseEstimate, noise_estimates, with_noise
 from werrimbi_odom.inference.prediction import predict
+from werrimbi_odom.inference.together import together
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -82,7 +83,8 @@ def calibrate(
     fit = fit_model(runs, begin, kind, CALIBRATION, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
     held = (sigma_xy is not None, sigma_yaw is not None)
     noises = noise_estimates(Costs(runs, fit.point, kind), fit.point.variances, held)
-    found = dependences(runs, fit, kind, CALIBRATION)
+    turned = [knob for knob in CALIBRATION if knob in fit.free]
+    found = dependences(together(runs), fit.point, kind, turned)
     misfit = tuple(item for item in found if item.p_value < MISFIT_P)
     strange = _strange(fit, noises)
     spread = np.sqrt(np.diag(fit.covariance))

@@ -167,7 +167,7 @@ def scores(
         if not heard:
             continue
         gain = float(np.sum((basis_of_it.T @ rest) ** 2))
-        solution = -np.linalg.lstsq(free, rest, rcond=1e-6)[0]
+        solution = np.asarray(-np.linalg.lstsq(free, rest, rcond=1e-6)[0], dtype=np.float64)
         if candidate.per_run:
             solution = solution.reshape(-1, width)
         results.append(Score(candidate, gain, heard, solution))
@@ -182,7 +182,7 @@ def _slope(
     prediction: Prediction,
 ) -> Floats:
     """Change of the legs for one coordinate's step, (m, 3)."""
-    poses = []
+    poses: list[Floats] = []
     for factor in (1.0, -1.0):
         applied = candidate.with_value(coordinate, factor)
         if factor < 0.0 and applied.values == candidate.with_value(coordinate, 0.0).values:

@@ -48,7 +48,7 @@ class Design:
 
     def flat(self) -> tuple[Floats, Floats]:
         """As (3 m,) and (3 m, p)."""
-        return self.white.ravel(), self.slopes.reshape(-1, self.slopes.shape[-1])
+        return self.white.ravel(), self.slopes.reshape(self.white.size, self.slopes.shape[-1])
 
 
 def unexpected(

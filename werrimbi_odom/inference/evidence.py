@@ -21,7 +21,13 @@ from werrimbi_odom.inference.knobs import Knob
 from werrimbi_odom.inference.likelihood import ReferenceKind
 from werrimbi_odom.inference.prediction import DrivenPath, path_of, predict_all
 from werrimbi_odom.inference.together import Together
-from werrimbi_odom.inference.variables import Form, Variable, functions_of, variables_of
+from werrimbi_odom.inference.variables import (
+    CONSTANT,
+    Form,
+    Variable,
+    functions_of,
+    variables_of,
+)
 from werrimbi_odom.model.effect import View, view_of
 from werrimbi_odom.model.pose import Floats
 
@@ -43,11 +49,14 @@ AMOUNTS = (
     Amount("right", "travel"),
     Amount("along", "travel"),
     Amount("along", "path"),
+    Amount("along", "turn"),
     Amount("sideways", "travel"),
     Amount("sideways", "path"),
+    Amount("sideways", "turn"),
     Amount("heading", "turn"),
     Amount("heading", "travel"),
     Amount("heading", "path"),
+    Amount("heading", "duration"),
 )
 
 
@@ -70,6 +79,11 @@ class Dependence:
     def channel(self) -> str:
         """Which error."""
         return self.amount.channel
+
+    @property
+    def name(self) -> str:
+        """What it goes with: the variable, or where it depends on none, what it is per."""
+        return self.amount.per if self.variable.name == CONSTANT else self.variable.name
 
 
 def dependences(
@@ -162,12 +176,13 @@ def _legs(runs: Together, functions: Floats, pushes: Floats) -> Floats:
     """Sums over each leg's steps of functions (n, k) times pushes (n, 3), as (m, 3, k)."""
     steps = runs.inside
     starts = np.concatenate([[0], np.cumsum(runs.end - runs.begin)])
-    columns = []
+    moved, functions = pushes[steps], functions[steps]
+    found = np.zeros((runs.count, 3, functions.shape[-1]))
+    filled = np.flatnonzero(np.diff(starts))  # reduceat gives an empty leg its neighbour's value
     for index in range(functions.shape[-1]):
-        moved = functions[steps, index, None] * pushes[steps]
-        sums = np.concatenate([np.zeros((1, 3)), np.cumsum(moved, axis=0)])
-        columns.append(np.diff(sums[starts], axis=0))
-    return np.stack(columns, axis=-1)
+        sums = np.add.reduceat(functions[:, index, None] * moved, starts[:-1][filled], axis=0)
+        found[filled, :, index] = sums
+    return found
 
 
 def _pushes(
@@ -181,7 +196,7 @@ def _pushes(
     travel, motion = path.travel, path.motion
     none = np.zeros(motion.turn.size)
     view = view_of(robot.effects)
-    if amount.channel in ("left", "right", "along"):
+    if amount.channel in ("left", "right", "along") and amount.per != "turn":
         left = travel.left if amount.per == "travel" else np.abs(travel.left)
         right = travel.right if amount.per == "travel" else np.abs(travel.right)
         of_left = _seen(runs, path, view, 0.5 * left, none, -left / robot.track)
@@ -195,8 +210,11 @@ def _pushes(
         "travel": motion.along,
         "path": np.abs(motion.along),
         "turn": motion.turn,
+        "duration": runs.raw_drive(robot)[1].duration,
     }[amount.per]
-    if amount.channel == "sideways":
+    if amount.channel == "along":
+        moved = _seen(runs, path, view, base, none, none)
+    elif amount.channel == "sideways":
         moved = _seen(runs, path, view, none, base, none)
     else:
         moved = _seen(runs, path, view, none, none, base)

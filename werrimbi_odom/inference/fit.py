@@ -242,7 +242,7 @@ class Costs:
 def solved(design: Design, weight: Floats) -> Floats:
     """Weighted least squares step; directions that nothing excites are not moved."""
     root = np.sqrt(weight)[:, None]
-    matrix = (design.slopes * root[..., None]).reshape(-1, design.slopes.shape[-1])
+    matrix = (design.slopes * root[..., None]).reshape(design.white.size, len(design.columns))
     size = np.sqrt(np.sum(matrix**2, axis=0))
     size = np.where(size > 0.0, size, 1.0)
     target = (design.white * root).ravel()

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.inference.knobs import Model
 from werrimbi_odom.inference.prediction import headings_of, path_of, right_handed
@@ -25,7 +26,10 @@ CELL = 0.5
 CELLS = 40
 """Cells of the floor, at the most."""
 
-Form = Literal["line", "curve", "turns", "place"]
+CONSTANT = "constant"
+"""Name of the variable that is 1 everywhere: an error in proportion to its amount alone."""
+
+Form = Literal["constant", "line", "curve", "turns", "place"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +71,9 @@ def variables_of(runs: Together, model: Model) -> tuple[Variable, ...]:
         return Variable(name, unit, values, values, looks_at=fields)
 
     acceleration = drive.speed.change / drive.duration
+    ones = np.ones(heading.size)
     found = [
+        Variable(CONSTANT, "", ones, ones, "constant"),
         robots("speed", "m/s", np.abs(drive.speed.end), "speed", "left_speed", "right_speed"),
         own(
             "wheel_speed",
@@ -130,7 +136,7 @@ def variables_of(runs: Together, model: Model) -> tuple[Variable, ...]:
         found.append(Variable("position", "m", place[0], place[1], "place", ("x", "y")))
     for name, span in drive.channels.items():
         found.append(robots(name, "", _mean(span), name))
-    return tuple(item for item in found if np.ptp(item.left) > 0.0)
+    return tuple(item for item in found if item.name == CONSTANT or np.ptp(item.left) > 0.0)
 
 
 def _mean(span: Span[Floats]) -> Floats:
@@ -138,7 +144,11 @@ def _mean(span: Span[Floats]) -> Floats:
 
 
 def _places(
-    runs: Together, position: Floats, heading: Floats, yaw: Floats, start: Floats
+    runs: Together,
+    position: NDArray[np.complex128],
+    heading: Floats,
+    yaw: Floats,
+    start: Floats,
 ) -> tuple[Floats, Floats] | None:
     """Where each step begins, in the reference's frame; None where it gives no position."""
     known = np.isfinite(start[:, 0]) & np.isfinite(start[:, 1])
@@ -158,6 +168,8 @@ def _places(
 
 def functions_of(variable: Variable) -> dict[Form, tuple[Floats, Floats]]:
     """Functions of a variable, for left and right wheel, by form; arrays of shape (n, k)."""
+    if variable.form == "constant":
+        return {"constant": (variable.left[:, None], variable.right[:, None])}
     if variable.form == "turns":
         waves = [function(variable.harmonic * variable.left) for function in (np.cos, np.sin)]
         both = np.stack(waves, axis=-1)

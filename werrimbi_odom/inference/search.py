@@ -1,0 +1,163 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Forward search for what a model is missing: score all, fit the best few, keep what earns it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+from werrimbi_odom.inference.candidates import (
+    CALIBRATED,
+    Candidate,
+    Score,
+    candidates,
+    knobs_of_candidate,
+    put_in,
+    scores,
+)
+from werrimbi_odom.inference.design import Point
+from werrimbi_odom.inference.evidence import Dependence, dependences
+from werrimbi_odom.inference.fit import start_point
+from werrimbi_odom.inference.knobs import CALIBRATION, Knob, Model, changed, knobs_of
+from werrimbi_odom.inference.likelihood import ReferenceKind
+from werrimbi_odom.inference.selection import Fitted, fitted
+from werrimbi_odom.inference.together import Together
+from werrimbi_odom.model.effect import AppliedEffect, Effect
+from werrimbi_odom.model.robot import Robot
+
+REFITTED = 5
+"""Candidates that are fitted in full in each round."""
+
+HALF_AS_GOOD = 0.25
+"""Share of the best score below which a candidate is not worth a fit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Round:
+    """One round of the search."""
+
+    before: Fitted
+    scores: tuple[Score, ...]
+    """The best score of each effect, best first."""
+    tried: tuple[Fitted, ...]
+    """Fits of the best few, cheapest first."""
+    dependences: tuple[Dependence, ...]
+    """The evidence map of `before`."""
+    number: int
+    """Of candidates looked at."""
+
+
+def first_fit(
+    runs: Together,
+    robot: Robot,
+    kind: ReferenceKind,
+    sigma: tuple[float | None, float | None] = (None, None),
+) -> Fitted:
+    """The robot as given, calibrated."""
+    point = start_point(runs, robot, *sigma)
+    point, knobs = with_own_values(runs, point, kind)
+    return fitted(runs, point, kind, (), knobs, robot, rounds=3, sigma=sigma)
+
+
+def with_own_values(
+    runs: Together, point: Point, kind: ReferenceKind
+) -> tuple[Point, tuple[Knob, ...]]:
+    """The point with what each run has of its own in the robot's effects, and all their knobs.
+
+    A phase can be anywhere, so it is looked for by its score, which knows no start value.
+    """
+    knobs: list[Knob] = []
+    for applied in point.model.robot.effects:
+        if applied.effect.is_mistake or applied.name in CALIBRATED:
+            continue
+        shared = tuple(
+            name
+            for name, item in applied.effect.parameters.items()
+            if item.per_run and name not in applied.unknown
+        )
+        knobs += knobs_of(applied.effect, shared)
+        if applied.unknown:
+            point = replace(point, model=_learnt(runs, point, kind, applied))
+    return point, tuple(knobs)
+
+
+def _learnt(runs: Together, point: Point, kind: ReferenceKind, applied: AppliedEffect) -> Model:
+    """The model with the phases of an effect in each run."""
+    robot = point.model.robot
+    others = tuple(item for item in robot.effects if item is not applied)
+    bare = replace(point, model=replace(point.model, robot=replace(robot, effects=others)))
+    candidate = Candidate(applied.effect, {})
+    score = scores(runs, bare, kind, CALIBRATION, [candidate])
+    if not score:
+        return bare.model
+    model = put_in(bare.model, score[0])
+    known = {
+        f"{applied.name}.{name}": value
+        for name, value in applied.values.items()
+        if name not in applied.unknown
+    }
+    return Model(changed(model.robot, known), model.own)
+
+
+def search_round(
+    runs: Together,
+    before: Fitted,
+    kind: ReferenceKind,
+    effects: Sequence[Effect],
+    given: Robot,
+    sigma: tuple[float | None, float | None] = (None, None),
+) -> Round:
+    """Look for one more effect."""
+    point = before.point
+    held = {applied.name for applied in point.model.robot.effects}
+    channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
+    looked_at = candidates(effects, held, channels, len(runs.runs))
+    turned = (*CALIBRATION, *before.knobs)
+    found = scores(runs, point, kind, turned, looked_at)
+    ordered = best_of_each(found)
+    tried = []
+    for score in worth_fitting(ordered):
+        variants = [
+            other
+            for other in found
+            if other.candidate.name == score.candidate.name
+            and other.candidate.per_run != score.candidate.per_run
+            and other.gain > 0.5 * score.gain
+        ]
+        options = [score] + ([max(variants, key=lambda other: other.gain)] if variants else [])
+        fits = []
+        for option in options:
+            start = replace(point, model=put_in(point.model, option))
+            knobs = (*before.knobs, *knobs_of_candidate(option.candidate))
+            names = (*before.names, option.candidate.name)
+            fits.append(fitted(runs, start, kind, names, knobs, given, sigma=sigma))
+        tried.append(min(fits, key=lambda fit: fit.total))
+    tried.sort(key=lambda fit: fit.total)
+    return Round(
+        before,
+        tuple(ordered),
+        tuple(tried),
+        dependences(runs, point, kind, turned),
+        len(looked_at),
+    )
+
+
+def best_of_each(found: Sequence[Score]) -> list[Score]:
+    """The best shape of each effect, best effect first."""
+    best: dict[str, Score] = {}
+    for score in sorted(found, key=lambda score: -score.excess):
+        best.setdefault(score.candidate.name, score)
+    return list(best.values())
+
+
+def worth_fitting(ordered: Sequence[Score]) -> list[Score]:
+    """The few that may be the best one after a fit."""
+    if not ordered:
+        return []
+    top = ordered[0].gain
+    return [
+        score
+        for score in ordered[: 2 * REFITTED]
+        if score.gain > HALF_AS_GOOD * top and score.gain > score.degrees + 8.0
+    ][:REFITTED]
