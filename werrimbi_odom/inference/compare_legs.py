@@ -17,13 +17,12 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.knobs import Model
+from werrimbi_odom.inference.leg_jumps import jumped_legs, jumps_of
 from werrimbi_odom.inference.leg_reference import (
     USUAL_SIGMA_XY,
     USUAL_SIGMA_YAW,
     Measure,
     Residual,
-    jumped_legs,
-    jumps_of,
     measured_alike,
     reference_noise,
     residuals_of,
