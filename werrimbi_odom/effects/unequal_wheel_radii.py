@@ -11,7 +11,7 @@ from werrimbi_odom.model.motion import Number, WheelTravel
 
 @wheel_effect(
     ratio=Parameter(
-        "", null=1.0, typical=1.005, bounds=(0.1, 10.0), says="right over left radius (E_d)"
+        "", null=1.0, typical=1.005, bounds=(1e-4, 1e4), says="right over left radius (E_d)"
     ),
 )
 def unequal_wheel_radii(

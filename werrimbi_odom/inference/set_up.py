@@ -19,7 +19,7 @@ from werrimbi_odom.inference.set_up_findings import IN_DEGREES, SetUpFinding
 from werrimbi_odom.inference.set_up_headings import search_headings
 from werrimbi_odom.inference.set_up_poses import degrees_gain, search_poses
 from werrimbi_odom.inference.set_up_positions import search_positions
-from werrimbi_odom.inference.set_up_records import Record, measured_by, record_of
+from werrimbi_odom.inference.set_up_records import measured_by, record_of
 from werrimbi_odom.inference.set_up_robot import with_findings
 from werrimbi_odom.inference.set_up_sparse import is_sparse, search_sparse
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -78,7 +78,7 @@ def look_for_mistakes(
     else:
         found, setting = search_headings(records, robot)
     mount = [each for each in found if each.effect.startswith("reference_")]
-    wheels = [each for each in found if each not in mount]
+    wheels = sorted((each for each in found if each not in mount), key=lambda each: -each.gain)
     degrees = [each for each in extra if each.effect == IN_DEGREES]
     late = [each for each in extra if each.effect != IN_DEGREES]
     mended, findings = with_findings(robot, [*degrees, *wheels, *late, *mount], setting)

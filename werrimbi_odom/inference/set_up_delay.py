@@ -105,7 +105,8 @@ class _Sums:
     def unexplained(self) -> Floats:
         """Share of the variance at each lag."""
         solved = np.linalg.lstsq(self.gram, self.cross, rcond=1e-9)[0]
-        return np.clip(1.0 - np.sum(self.cross * solved, axis=0) / self.square, 1e-3, 1.0)
+        explained = np.sum(self.cross * solved, axis=0) / self.square
+        return np.asarray(np.clip(1.0 - explained, 1e-3, 1.0))
 
 
 def _turns(record: Record, grid: Floats) -> Floats | None:

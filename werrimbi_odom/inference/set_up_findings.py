@@ -114,9 +114,7 @@ def _wiring(setting: Setting, ways: list[Wired]) -> Iterator[SetUpFinding]:
             words = WIRING_WORDS[name]
             if "reference_mirrored" in twins:
                 words += "; or the reference's frame is left-handed (y down)"
-            yield SetUpFinding(
-                name, {}, None, words, twins, 1.0, replace(setting, wired=right)
-            )
+            yield SetUpFinding(name, {}, None, words, twins, 1.0, replace(setting, wired=right))
 
 
 def _sizes(setting: Setting, yaw_alone: bool) -> Iterator[SetUpFinding]:

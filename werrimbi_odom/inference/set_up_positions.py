@@ -220,8 +220,9 @@ def _refined(
     while step > 0.002:
         tries: list[tuple[float, float, float]] = []
         for du, dv in ((step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step)):
-            factors = math.exp(size + du - 0.5 * (ratio + dv)), math.exp(
-                size + du + 0.5 * (ratio + dv)
+            factors = (
+                math.exp(size + du - 0.5 * (ratio + dv)),
+                math.exp(size + du + 0.5 * (ratio + dv)),
             )
             tries.append((windows.misfit(left * factors[0], right * factors[1], None, arm), du, dv))
         value, du, dv = min(tries)
@@ -230,5 +231,3 @@ def _refined(
         else:
             step *= 0.5
     return best, left * math.exp(size - 0.5 * ratio), right * math.exp(size + 0.5 * ratio)
-
-

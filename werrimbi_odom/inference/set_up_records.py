@@ -153,10 +153,12 @@ def measured_by(records: Sequence[Record]) -> Measured | None:
 def effective_track(robot: Robot) -> float:
     """Base that the robot file, its effects included, takes for true [m]."""
     widths = [item.values["multiplier"] for item in robot.effects if item.name == "track_width"]
-    return robot.track * math.prod(widths)
+    return float(robot.track * math.prod(widths))
 
 
-def cut(records: Sequence[Record], robot: Robot, measured: Measured, *, fewest: int = FEWEST) -> Cuts:
+def cut(
+    records: Sequence[Record], robot: Robot, measured: Measured, *, fewest: int = FEWEST
+) -> Cuts:
     """Cut all runs at rows of the reference, every half turn of the faster wheel.
 
     Parameters

@@ -69,7 +69,9 @@ def turning(cuts: Cuts, *, with_bias: bool = False) -> Turning | None:
     if fit is None:
         return None
     value, std, scatter = fit
-    return Turning(value[1], value[0], float(std[1]), float(std[0]), scatter)
+    return Turning(
+        float(value[1].real), float(value[0].real), float(std[1]), float(std[0]), scatter
+    )
 
 
 def moving(cuts: Cuts, left: float, right: float) -> Moving | None:
@@ -82,10 +84,10 @@ def moving(cuts: Cuts, left: float, right: float) -> Moving | None:
         return None
     if both is not None and both[1][0] < 0.02 * abs(both[0][0]):
         value, std, scatter = both
-        return Moving(value[0], value[1], float(std[0]), float(std[1]), scatter)
+        return Moving(complex(value[0]), complex(value[1]), float(std[0]), float(std[1]), scatter)
     # A circle is a circle about any point: base and lever arm are then one.
     value, std, scatter = alone
-    return Moving(value[0], 0j, float(std[0]), np.inf, scatter)
+    return Moving(complex(value[0]), 0j, float(std[0]), np.inf, scatter)
 
 
 def swept(cuts: Cuts, left: float, right: float) -> tuple[Complexes, Floats]:
@@ -143,4 +145,4 @@ def robust(
     if np.linalg.matrix_rank((rows.conj().T * weight) @ rows) < width:
         return None
     spread = np.linalg.inv((rows.conj().T * weight) @ rows).diagonal().real
-    return value / size, np.sqrt(spread) * scatter / size, scatter
+    return np.asarray(value / size), np.asarray(np.sqrt(spread) * scatter / size), scatter

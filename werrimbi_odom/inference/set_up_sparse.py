@@ -29,8 +29,8 @@ from werrimbi_odom.model.motion import sinc
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
-SHARE = 0.02
-"""What a robot that is set up right may err by: of its path, and of its turning."""
+SHARES = (0.002, 0.005, 0.01, 0.02, 0.04)
+"""What a robot that is set up right may err by, of its path and turning; the likeliest counts."""
 
 MARGIN = 10.0
 """Log-likelihood by which a set-up must be better than the one entered ..."""
@@ -54,14 +54,19 @@ def search_sparse(
     if cuts.count == 0 or measured == "headings":
         return [], None
     drives = _Drives(cuts, track, measured == "poses")
-    tried = sorted(((drives.fits(each), i, each) for i, each in enumerate(_settings())), reverse=True)
+    tried = sorted(
+        ((drives.fits(each), i, each) for i, each in enumerate(_settings())), reverse=True
+    )
     (best, _, setting), given = tried[0], drives.fits(AS_ENTERED)
     if best < given + MARGIN:
         return [], None
     left, right, half_base, _ = setting.numbers(track)
     yaw = -float(np.angle(half_base)) if measured == "poses" else None
     ways = wirings(Estimate(left, right, 2.0 * abs(half_base), yaw))
-    same = [setting_of(Estimate(left, right, 2.0 * abs(half_base), yaw), way, track) for way in ways]
+    # Before a mirrored reference the same signs are another prediction.
+    upright = [way for way in ways if not way.mirrored]
+    estimate = Estimate(left, right, 2.0 * abs(half_base), yaw)
+    same = [setting_of(estimate, way, track) for way in upright]
     for value, _, other in tried[1:]:
         if value < best - APART:
             break
@@ -103,10 +108,10 @@ def _settings() -> Iterator[Setting]:
 def _alike(a: Setting, b: Setting, facing: bool) -> bool:
     """Whether two set-ups predict the same."""
     one, other = a.numbers(1.0), b.numbers(1.0)
-    same = np.allclose(one[:2], other[:2])
+    same = bool(np.allclose(one[:2], other[:2]))
     if facing:
-        return same and np.isclose(one[2], other[2])
-    return same and np.isclose(abs(one[2]), abs(other[2]))
+        return same and bool(np.isclose(one[2], other[2]))
+    return same and bool(np.isclose(abs(one[2]), abs(other[2])))
 
 
 @dataclass(frozen=True, slots=True)
@@ -119,17 +124,21 @@ class _Drives:
         """Log-likelihood of all drives, with errors that grow with what this set-up drove."""
         left, right, half_base, arm = setting.numbers(self.track)
         cuts = self.cuts
-        turns = np.abs(right * cuts.right - left * cuts.left)
+        turned = cuts.summed(np.abs(right * cuts.right - left * cuts.left))
         path = cuts.summed(abs(half_base) * np.abs(left * cuts.left + right * cuts.right))
-        turned = cuts.summed(turns)
-        of_turn = 0.02 + SHARE * turned
-        of_move = 0.01 + SHARE * path + of_turn * self._extent(left, right, half_base)
+        extent = self._extent(left, right, half_base)
         off, of_heading = errors(cuts, left, right, half_base, arm)
-        if not self.facing:
-            return float(np.sum(_log_radius(np.abs(cuts.move), np.abs(cuts.move - off), of_move)))
-        value = -0.5 * np.abs(off / of_move) ** 2 - 2.0 * np.log(of_move)
-        value += _log_wrapped(of_heading.real, of_turn)
-        return float(np.sum(value))
+        values = []
+        for share in SHARES:
+            of_turn = 0.005 + share * turned
+            of_move = 0.003 + share * path + of_turn * extent
+            if self.facing:
+                value = -0.5 * np.abs(off / of_move) ** 2 - 2.0 * np.log(of_move)
+                value += _log_wrapped(of_heading.real, of_turn)
+            else:
+                value = _log_radius(np.abs(cuts.move), np.abs(cuts.move - off), of_move)
+            values.append(float(np.sum(value)))
+        return max(values)
 
     def _extent(self, left: float, right: float, half_base: complex) -> Floats:
         """Root mean square distance of the path from each drive's start [m]."""

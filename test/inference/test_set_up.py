@@ -1,0 +1,217 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every set-up mistake, put into simulated drives, is found first; none where none is."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from test.inference.set_up_mistakes import (
+    DELAYS,
+    ONE_SIDE,
+    REFERENCE,
+    SIZES,
+    WIRING,
+    Mistake,
+    gyro,
+    once_a_second,
+    two_poses,
+    without_yaw,
+)
+from werrimbi_odom.effects import find
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run_folder import read_run_folder
+from werrimbi_odom.inference.legs import leg_errors, statistics
+from werrimbi_odom.inference.matching import match
+from werrimbi_odom.inference.set_up import SetUp, SetUpFinding, look_for_mistakes
+from werrimbi_odom.model.effect import AppliedEffect
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.simulation import TrueRobot, drives, hide, record, write_run
+
+NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0)
+NAMES = ("train/square_ccw", "train/free_calm", "train/eights_and_spins")
+
+
+def recorded(folder: Path, *effects: str) -> list[Run]:
+    hidden = [hide(name, seed=3).peculiarity for name in effects]
+    manoeuvres = drives(7)
+    return [
+        read_run_folder(
+            write_run(
+                record(TrueRobot(), manoeuvres[name], seed=40 + number, hidden=hidden),
+                folder / Path(name).name,
+            )
+        )
+        for number, name in enumerate(NAMES)
+    ]
+
+
+@pytest.fixture(scope="module")
+def session(tmp_path_factory: pytest.TempPathFactory) -> list[Run]:
+    return recorded(tmp_path_factory.mktemp("session"))
+
+
+def found(runs: list[Run], robot: Robot, mistake: Mistake) -> SetUp:
+    tampered, wrong = mistake.made(runs, robot)
+    return look_for_mistakes(tampered, wrong, "absolute")
+
+
+def is_named(finding: SetUpFinding, mistake: Mistake) -> bool:
+    return bool({finding.effect, *finding.twins} & set(mistake.names))
+
+
+@pytest.mark.parametrize("name", [*WIRING, *SIZES, *ONE_SIDE, *REFERENCE, *DELAYS])
+def test_a_mistake_is_found_first(session: list[Run], name: str) -> None:
+    mistake = {**WIRING, **SIZES, **ONE_SIDE, **REFERENCE, **DELAYS}[name]
+    first = found(session, NOMINAL, mistake).findings[0]
+    assert is_named(first, mistake), first
+    if mistake.factor is not None:
+        assert first.factor == mistake.factor
+
+
+@pytest.mark.parametrize(
+    "name", [*WIRING, *SIZES, *ONE_SIDE, *(key for key in REFERENCE if key != "degrees"), *DELAYS]
+)
+def test_the_robot_that_comes_back_is_set_up_right(session: list[Run], name: str) -> None:
+    """What remains is for fits: some percent of a leg of half a metre."""
+    mistake = {**WIRING, **SIZES, **ONE_SIDE, **REFERENCE, **DELAYS}[name]
+    tampered, wrong = mistake.made(session, NOMINAL)
+    mended = look_for_mistakes(tampered, wrong, "absolute").robot
+    metre = 1e3 if name == "millimetres" else 1.0
+    for run in tampered:
+        errors = leg_errors(mended, match(run, mended, 0.5 * metre), 1e-3, 2e-3)
+        assert statistics(errors).median_position_m < 0.02 * metre
+
+
+def both(*mistakes: Mistake) -> Callable[[list[Run]], SetUp]:
+    def look(runs: list[Run]) -> SetUp:
+        robot = NOMINAL
+        for mistake in mistakes:
+            runs, robot = mistake.made(runs, robot)
+        return look_for_mistakes(runs, robot, "absolute")
+
+    return look
+
+
+def test_two_mistakes_at_once_are_both_found(session: list[Run]) -> None:
+    mistakes = WIRING["left reversed"], SIZES["base 1/2"], REFERENCE["mount 90"]
+    findings = both(*mistakes)(session).findings
+    assert {each.effect for each in findings} == {
+        "left_wheel_reversed",
+        "track_width",
+        "reference_yaw_offset",
+    }
+
+
+def test_an_effect_that_the_file_holds_already_is_changed_not_doubled(session: list[Run]) -> None:
+    held = Robot(
+        0.35,
+        0.05,
+        2000.0,
+        2000.0,
+        effects=(
+            find("reference_yaw_offset").using(angle=1.0),
+            AppliedEffect(find("wheels_swapped")),
+        ),
+    )
+    turned, _ = REFERENCE["mount 90"].made(session, held)
+    mended = look_for_mistakes(turned, held, "absolute").robot
+    assert [each.name for each in mended.effects] == ["reference_yaw_offset"]
+    assert mended.effects[0].values["angle"] == pytest.approx(math.pi / 2, abs=0.01)
+
+
+# -- nothing wrong ------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    "effect",
+    [
+        "reference_lever_arm",
+        "reference_delay",
+        "reference_yaw_offset",
+        "floor_slope",
+        "turn_dependent_track",
+        "track_width",
+        "left_missed_ticks",
+        "slippery_spot",
+    ],
+)
+def test_an_ordinary_effect_is_no_mistake(tmp_path: Path, effect: str) -> None:
+    runs = recorded(tmp_path, effect)
+    for poorer in (list, without_yaw, gyro, once_a_second, two_poses):
+        poor = runs if poorer is list else [poorer(run) for run in runs]
+        assert look_for_mistakes(poor, NOMINAL, "absolute").findings == ()
+
+
+def test_a_set_up_that_is_right_comes_back_as_it_is(session: list[Run]) -> None:
+    assert look_for_mistakes(session, NOMINAL, "absolute") == SetUp((), NOMINAL)
+
+
+def test_a_reference_of_something_else_claims_nothing(session: list[Run]) -> None:
+    """Poses of another drive: no set-up makes these wheels go there."""
+    first, second, third = (run.reference for run in session)
+    wrong = [
+        Run(run.name, run.path, run.ticks, reference)
+        for run, reference in zip(session, (second, third, first), strict=True)
+    ]
+    assert look_for_mistakes(wrong, NOMINAL, "absolute").findings == ()
+
+
+# -- poorer references --------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", [*WIRING, *SIZES, *ONE_SIDE, *DELAYS, "mount 90", "millimetres"])
+def test_once_a_second_is_enough(session: list[Run], name: str) -> None:
+    mistake = {**WIRING, **SIZES, **ONE_SIDE, **REFERENCE, **DELAYS}[name]
+    first = found([once_a_second(run) for run in session], NOMINAL, mistake).findings[0]
+    assert is_named(first, mistake), first
+
+
+@pytest.mark.parametrize("name", [*WIRING, *SIZES, *ONE_SIDE, "clock 2.0 s late", "millimetres"])
+def test_positions_alone_show_wiring_and_sizes(session: list[Run], name: str) -> None:
+    mistake = {**WIRING, **SIZES, **ONE_SIDE, **REFERENCE, **DELAYS}[name]
+    first = found([without_yaw(run) for run in session], NOMINAL, mistake).findings[0]
+    assert is_named(first, mistake), first
+
+
+@pytest.mark.parametrize("name", [*WIRING, *SIZES, *ONE_SIDE, "clock 2.0 s late"])
+def test_a_gyro_shows_wiring_and_radius_over_base(session: list[Run], name: str) -> None:
+    mistake = {**WIRING, **SIZES, **ONE_SIDE, **DELAYS}[name]
+    findings = found([gyro(run) for run in session], NOMINAL, mistake).findings
+    if name == "file in millimetres":  # radius over base is right
+        assert findings == ()
+    else:
+        assert is_named(findings[0], mistake), findings
+
+
+def test_a_gyro_does_not_show_a_mount(session: list[Run]) -> None:
+    runs, robot = REFERENCE["mount 90"].made(session, NOMINAL)
+    assert look_for_mistakes([gyro(run) for run in runs], robot, "absolute").findings == ()
+
+
+@pytest.mark.parametrize("name", [*WIRING, *SIZES, *ONE_SIDE, "mount 180", "mount 90"])
+def test_two_poses_a_drive_name_it_or_claim_nothing(session: list[Run], name: str) -> None:
+    mistake = {**WIRING, **SIZES, **ONE_SIDE, **REFERENCE}[name]
+    findings = found([two_poses(run) for run in session], NOMINAL, mistake).findings
+    assert not findings or is_named(findings[0], mistake), findings
+
+
+@pytest.mark.parametrize("name", ["swapped", "left reversed", "radius 2", "base 1/2"])
+def test_two_poses_a_drive_name_the_commonest(session: list[Run], name: str) -> None:
+    mistake = {**WIRING, **SIZES}[name]
+    assert found([two_poses(run) for run in session], NOMINAL, mistake).findings
+
+
+def test_no_reference_no_findings(session: list[Run]) -> None:
+    bare = [Run(run.name, run.path, run.ticks) for run in session]
+    assert look_for_mistakes(bare, NOMINAL, "absolute") == SetUp((), NOMINAL)
+    blank = [without_yaw(run) for run in session]
+    for run in blank:
+        assert run.reference is not None
+        run.reference.x[:] = np.nan
+    assert look_for_mistakes(blank, NOMINAL, "absolute") == SetUp((), NOMINAL)
