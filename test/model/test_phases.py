@@ -13,10 +13,10 @@ import pytest
 from test.model.drives import ROBOT, Ticks, random_drive, read
 from werrimbi_odom.effects import find
 from werrimbi_odom.model.odometer import Odometer
+from werrimbi_odom.model.phase_learner import PhaseLearner
 from werrimbi_odom.model.phases import (
     KNOWN_WELL_ENOUGH,
     Phase,
-    PhaseLearner,
     learnable,
     phases_of_run,
 )
@@ -208,7 +208,18 @@ def test_its_memory_does_not_grow() -> None:
     ticks = drive()
     odometer, learner = Odometer(UNKNOWN), PhaseLearner(UNKNOWN)
     for message in zip(*(column.tolist() for column in ticks), strict=True):
-        learner.see_yaw(1e9, 0.0)
         if odometer.update(*message) is not None and odometer.driven_step is not None:
             learner.step(message[0], odometer.driven_step)
+            learner.see_yaw(1e9, 0.0)
     assert len(learner._nodes) == len(learner._waiting) == learner.MEMORY
+
+
+def test_a_clock_that_is_set_back_costs_one_interval() -> None:
+    """Readings that wait for a time that does not come again are in nobody's way."""
+    ticks = drive()
+    back = np.where(np.arange(ticks.time.size) < 200, ticks.time, ticks.time - 7.0)
+    yaw = gyro_heading(ticks, true_robot(1.0), np.random.default_rng(12))
+    readings = list(zip((back + 0.01).tolist(), yaw.tolist(), strict=True))
+    (phase,) = learner_after(Ticks(back, ticks.left, ticks.right), readings).phases()
+    assert phase.std < KNOWN_WELL_ENOUGH
+    assert abs(off(phase, 1.0)) < 3.0 * phase.std + 0.01 * 14.0  # the yaws are 10 ms late

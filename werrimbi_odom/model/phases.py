@@ -16,7 +16,6 @@ wrong) as nuisances, and the noise estimated from what is left.
 from __future__ import annotations
 
 import math
-from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import NamedTuple
@@ -24,7 +23,7 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.driving import DrivenStep, after_effects, features
+from werrimbi_odom.model.driving import after_effects, features
 from werrimbi_odom.model.effect import AppliedEffect, wiring_of
 from werrimbi_odom.model.encoder import Counts, EncoderLimits
 from werrimbi_odom.model.motion import Number, WheelTravel
@@ -145,7 +144,7 @@ class _LeastSquares:
 
 
 @dataclass
-class _Sample:
+class Sample:
     """The reference's heading at an instant, and everything summed up to then."""
 
     chain: int
@@ -156,7 +155,7 @@ class _Sample:
     """Turn and slopes so far, then both wheels' angles."""
 
 
-class _Rows:
+class Rows:
     """Rows of least squares from samples, one for each `STRIDE` of a wheel."""
 
     def __init__(self, effects: tuple[AppliedEffect, ...]) -> None:
@@ -164,9 +163,9 @@ class _Rows:
         sizes = [e.values[e.effect.quadrature[0]] for e in effects if e.effect.quadrature]
         priors = [*(2.0 * abs(size) for size in sizes for _ in (0, 1))]
         self.least_squares = _LeastSquares(np.array([*priors, NUISANCE_BIAS, NUISANCE_SHARE]))
-        self._anchor: _Sample | None = None
+        self._anchor: Sample | None = None
 
-    def take(self, sample: _Sample) -> None:
+    def take(self, sample: Sample) -> None:
         """Take the next sample in time."""
         anchor = self._anchor
         if anchor is None or sample.chain != anchor.chain or sample.time - anchor.time > LONGEST:
@@ -203,99 +202,6 @@ def _phase(applied: AppliedEffect, index: int, solved: tuple[Floats, Floats] | N
     return Phase(applied.name, name, math.atan2(sin, cos), std, seen)
 
 
-class _Node(NamedTuple):
-    time: float
-    sums: Floats
-
-
-class PhaseLearner:
-    """Learns the phases of a robot's effects while it drives.
-
-    Steps of the odometer and readings of the reference come in any order, stamped by one clock;
-    its memory does not grow.
-
-    Parameters
-    ----------
-    robot : Robot
-        With at least one `learnable` effect.
-    """
-
-    MEMORY = 1000
-    """Steps, and readings, that wait for each other."""
-
-    def __init__(self, robot: Robot) -> None:
-        self.effects = learnable(robot)
-        self._rows = _Rows(self.effects)
-        self._turning = Turning(robot, self.effects)
-        self._nodes: deque[_Node] = deque(maxlen=self.MEMORY)
-        self._waiting: deque[tuple[int, float, float]] = deque(maxlen=self.MEMORY)
-        self._chain = 0
-        self._rate: tuple[float, float, float] | None = None
-
-    def retune(self, robot: Robot) -> None:
-        """Go on with other values of the robot; what was learnt stays.
-
-        Phases to be learnt count as unknown still, whatever the robot has for them.
-        """
-        unknown = {applied.name: applied.unknown for applied in self.effects}
-        effects = tuple(replace(e, unknown=unknown.get(e.name, e.unknown)) for e in robot.effects)
-        self.effects = self._rows.effects = tuple(e for e in effects if e.name in unknown)
-        self._turning = Turning(replace(robot, effects=effects), self.effects)
-
-    def step(self, time: float, step: DrivenStep) -> None:
-        """Take a step of the odometer that ends at `time` [s]."""
-        drive = step.drive
-        begin = time - drive.duration
-        if not self._nodes or abs(self._nodes[-1].time - begin) > 1e-6:
-            self.interrupt()
-            self._nodes.clear()
-            nothing = [0.0] * (1 + 2 * len(self.effects))
-            angles = [drive.left_angle.start, drive.right_angle.start]
-            self._nodes.append(_Node(begin, np.array([*nothing, *angles])))
-        turned = [drive.left_angle.change, drive.right_angle.change]
-        change = np.array([*self._turning.of(step.raw, drive), *turned])
-        self._nodes.append(_Node(time, self._nodes[-1].sums + change))
-        self._meet()
-
-    def see_yaw(self, time: float, yaw: float) -> None:
-        """Take a measured heading [rad]."""
-        if math.isfinite(time) and math.isfinite(yaw):
-            self._waiting.append((self._chain, time, yaw))
-            self._meet()
-
-    def see_rate(self, time: float, rate: float) -> None:
-        """Take a measured yaw rate [rad/s]; what lies between two readings is their mean."""
-        if not (math.isfinite(time) and math.isfinite(rate)):
-            return
-        if self._rate is None or not 0.0 < time - self._rate[0] < 0.5:
-            self.interrupt()
-            self._rate = (time, rate, 0.0)
-        else:
-            before, last, yaw = self._rate
-            self._rate = (time, rate, yaw + 0.5 * (last + rate) * (time - before))
-        self.see_yaw(time, self._rate[2])
-
-    def interrupt(self) -> None:
-        """Compare nothing across this instant."""
-        self._chain += 1
-
-    def phases(self) -> tuple[Phase, ...]:
-        """What is known of each phase so far; an unknown one has an infinite deviation."""
-        return self._rows.phases()
-
-    def _meet(self) -> None:
-        """Bring readings together with the steps at their times."""
-        while self._waiting and self._nodes and self._waiting[0][1] <= self._nodes[-1].time:
-            chain, time, yaw = self._waiting.popleft()
-            while len(self._nodes) > 2 and self._nodes[1].time <= time:
-                self._nodes.popleft()
-            before, after = self._nodes[0], self._nodes[min(1, len(self._nodes) - 1)]
-            if before.time <= time <= after.time and after.time > before.time:
-                share = (time - before.time) / (after.time - before.time)
-                sums = before.sums + share * (after.sums - before.sums)
-                self._rows.take(_Sample(chain, time, yaw, sums))
-
-
 def phases_of_run(
     robot: Robot,
     time: Floats,
@@ -319,7 +225,7 @@ def phases_of_run(
     effects = learnable(robot)
     left, right = wiring_of(robot.effects).wheels(left, right)
     steps = wheel_steps(robot, time, left, right, limits)
-    rows = _Rows(effects)
+    rows = Rows(effects)
     if steps.first_row < 0 or steps.time.size == 0:
         return rows.phases()
     taken = np.concatenate([[steps.first_row], steps.row])
@@ -337,5 +243,5 @@ def phases_of_run(
     at = reference_time[known]
     there = np.stack([np.interp(at, stamps, part) for part in sums], axis=-1)
     for when, yaw, row in zip(at.tolist(), reference_yaw[known].tolist(), there, strict=True):
-        rows.take(_Sample(0, when, yaw, row))
+        rows.take(Sample(0, when, yaw, row))
     return rows.phases()

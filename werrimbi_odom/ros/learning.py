@@ -18,7 +18,8 @@ from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import Imu
 
 from werrimbi_odom.model.effect import AppliedEffect
-from werrimbi_odom.model.phases import KNOWN_WELL_ENOUGH, Phase, PhaseLearner, learnable
+from werrimbi_odom.model.phase_learner import PhaseLearner
+from werrimbi_odom.model.phases import KNOWN_WELL_ENOUGH, Phase, learnable
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros import inputs
 from werrimbi_odom.ros.tracker import Tracker

@@ -1,0 +1,111 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`phases`, reading by reading: steps of the odometry and a measured heading come as they come."""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from dataclasses import replace
+from typing import NamedTuple
+
+import numpy as np
+
+from werrimbi_odom.model.driving import DrivenStep
+from werrimbi_odom.model.phases import Phase, Rows, Sample, Turning, learnable
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+
+class _Node(NamedTuple):
+    time: float
+    sums: Floats
+
+
+class PhaseLearner:
+    """Learns the phases of a robot's effects while it drives.
+
+    Steps of the odometer and readings of the reference come in any order, stamped by one clock;
+    its memory does not grow.
+
+    Parameters
+    ----------
+    robot : Robot
+        With at least one `learnable` effect.
+    """
+
+    MEMORY = 1000
+    """Steps, and readings, that wait for each other."""
+
+    def __init__(self, robot: Robot) -> None:
+        self.effects = learnable(robot)
+        self._rows = Rows(self.effects)
+        self._turning = Turning(robot, self.effects)
+        self._nodes: deque[_Node] = deque(maxlen=self.MEMORY)
+        self._waiting: deque[tuple[int, float, float]] = deque(maxlen=self.MEMORY)
+        self._chain = 0
+        self._rate: tuple[float, float, float] | None = None
+
+    def retune(self, robot: Robot) -> None:
+        """Go on with other values of the robot; what was learnt stays.
+
+        Phases to be learnt count as unknown still, whatever the robot has for them.
+        """
+        unknown = {applied.name: applied.unknown for applied in self.effects}
+        effects = tuple(replace(e, unknown=unknown.get(e.name, e.unknown)) for e in robot.effects)
+        self.effects = self._rows.effects = tuple(e for e in effects if e.name in unknown)
+        self._turning = Turning(replace(robot, effects=effects), self.effects)
+
+    def step(self, time: float, step: DrivenStep) -> None:
+        """Take a step of the odometer that ends at `time` [s]."""
+        drive = step.drive
+        begin = time - drive.duration
+        if not self._nodes or abs(self._nodes[-1].time - begin) > 1e-6:
+            self.interrupt()
+            self._nodes.clear()
+            self._waiting.clear()  # a clock was set: what waits has stamps of the other time
+            nothing = [0.0] * (1 + 2 * len(self.effects))
+            angles = [drive.left_angle.start, drive.right_angle.start]
+            self._nodes.append(_Node(begin, np.array([*nothing, *angles])))
+        turned = [drive.left_angle.change, drive.right_angle.change]
+        change = np.array([*self._turning.of(step.raw, drive), *turned])
+        self._nodes.append(_Node(time, self._nodes[-1].sums + change))
+        self._meet()
+
+    def see_yaw(self, time: float, yaw: float) -> None:
+        """Take a measured heading [rad]."""
+        if math.isfinite(time) and math.isfinite(yaw):
+            self._waiting.append((self._chain, time, yaw))
+            self._meet()
+
+    def see_rate(self, time: float, rate: float) -> None:
+        """Take a measured yaw rate [rad/s]; what lies between two readings is their mean."""
+        if not (math.isfinite(time) and math.isfinite(rate)):
+            return
+        if self._rate is None or not 0.0 < time - self._rate[0] < 0.5:
+            self.interrupt()
+            self._rate = (time, rate, 0.0)
+        else:
+            before, last, yaw = self._rate
+            self._rate = (time, rate, yaw + 0.5 * (last + rate) * (time - before))
+        self.see_yaw(time, self._rate[2])
+
+    def interrupt(self) -> None:
+        """Compare nothing across this instant."""
+        self._chain += 1
+
+    def phases(self) -> tuple[Phase, ...]:
+        """What is known of each phase so far; an unknown one has an infinite deviation."""
+        return self._rows.phases()
+
+    def _meet(self) -> None:
+        """Bring readings together with the steps at their times."""
+        while self._waiting and self._nodes and self._waiting[0][1] <= self._nodes[-1].time:
+            chain, time, yaw = self._waiting.popleft()
+            while len(self._nodes) > 2 and self._nodes[1].time <= time:
+                self._nodes.popleft()
+            before, after = self._nodes[0], self._nodes[min(1, len(self._nodes) - 1)]
+            if before.time <= time <= after.time and after.time > before.time:
+                share = (time - before.time) / (after.time - before.time)
+                sums = before.sums + share * (after.sums - before.sums)
+                self._rows.take(Sample(chain, time, yaw, sums))
