@@ -98,7 +98,7 @@ def test_a_set_up_mistake_is_only_listed(tmp_path: Path) -> None:
 
 
 def test_no_effects_are_none_at_all(tmp_path: Path) -> None:
-    for text in (BARE, BARE + "    effects: []\n", BARE + "    effects:\n"):
+    for text in (BARE, BARE + "    effects: []\n"):
         assert file(tmp_path, text).effects == ()
 
 

@@ -135,6 +135,10 @@ def complaint(path: Path, text: str | bytes) -> str:
             _with("effects: [wheels_swapped]\n    wheels_swapped: {yes: 1}"),
             ", line 8: wheels_swapped has no parameter yes; it is a set-up mistake, made or not",
         ),
+        (
+            _with("effects:"),
+            ", line 7: effects must be a list of names, [] for none, not 'nothing'",
+        ),
         (_with("effects: lateral_slip"), ", line 7: effects must be a list of names, [] for none"),
         (_with("wheel_radius: 0.06"), ', line 7: this is not YAML: found duplicate key "wheel_rad'),
         (

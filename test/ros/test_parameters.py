@@ -154,6 +154,12 @@ def test_effects_come_with_their_values_and_what_is_not_given_is_unknown() -> No
     assert drift == find("radius_drift").using()
 
 
+def test_an_empty_block_is_a_block() -> None:
+    """{} arrives as a parameter that is not set."""
+    (slip,) = settings_of({**BARE, "effects": ["lateral_slip"], "lateral_slip": None}).effects
+    assert slip == find("lateral_slip").using()
+
+
 def test_an_effect_that_needs_a_channel_does_not_run_live(monkeypatch: pytest.MonkeyPatch) -> None:
     slip = find("lateral_slip")
     fed = replace(slip, name="fed_slip", channels=("payload_kg",))

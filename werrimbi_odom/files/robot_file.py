@@ -193,7 +193,8 @@ def _understood(text: str, path: Path, find_effect: Find | None = None) -> Robot
     node, block = _parameter_block(load(text, path), path)
     given: dict[str, Value] = {}
     try:
-        effects = named_effects(plain(block.get(EFFECTS, [])) or [], find_effect)
+        names = plain(block.get(EFFECTS, []))
+        effects = named_effects("nothing" if names is None else names, find_effect)
     except InputError as error:
         raise InputError(f"{path}, line {line_of(block, EFFECTS)}: {error}") from None
     for name, raw in block.items():

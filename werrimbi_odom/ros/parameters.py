@@ -225,9 +225,10 @@ def _named(names: object, wrong: list[str]) -> Named:
 
 
 def _take_of_effect(effects: Named, name: str, value: object) -> None:
-    if "." not in name:
+    if "." in name:
+        effects.take(name, _plain(value))
+    elif value is not None:  # an empty block, {}, arrives from ROS as a parameter that is not set
         raise effects.refuse_value(name, value)
-    effects.take(name, _plain(value))
 
 
 def _without_channels(effects: Named) -> list[str]:
