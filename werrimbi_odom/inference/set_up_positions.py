@@ -32,8 +32,8 @@ from werrimbi_odom.model.robot import Robot
 WINDOW = 12
 """Cuts in a window."""
 
-MOST_WINDOWS = 60
-"""Windows looked at while searching, spread over all drives."""
+COARSE, FINE = 20, 60
+"""Windows looked at, spread over all drives: over the whole range, and while refining."""
 
 LONGEST = 6.0
 """Longest lever arm that is believed, in half bases."""
@@ -117,14 +117,14 @@ def _scale(gone: Complexes, move: Complexes) -> float:
     return float(np.median(match[moved] / size[moved])) if moved.any() else 0.0
 
 
-def windows_of(cuts: Cuts) -> Windows | None:
+def windows_of(cuts: Cuts, most: int = FINE) -> Windows | None:
     """Windows spread over all drives; None where there is not one."""
     starts = np.arange(0, cuts.count - WINDOW + 1, WINDOW // 2)
     starts = starts[cuts.run[starts] == cuts.run[starts + WINDOW - 1]]
     if starts.size == 0:
         return None
-    if starts.size > MOST_WINDOWS:
-        starts = starts[np.linspace(0, starts.size - 1, MOST_WINDOWS).astype(int)]
+    if starts.size > most:
+        starts = starts[np.linspace(0, starts.size - 1, most).astype(int)]
     inside = starts[:, None] + np.arange(WINDOW)
     begin = np.repeat(cuts.begin[starts], WINDOW)
     move = np.cumsum(cuts.move[inside], axis=1).ravel()
@@ -162,12 +162,13 @@ def search_positions(
     records: Sequence[Record], robot: Robot
 ) -> tuple[list[SetUpFinding], Setting | None]:
     """What is wrong, and the sizes that were measured."""
-    windows = windows_of(cut(records, robot, "positions", fewest=60))
-    if windows is None:
+    cuts = cut(records, robot, "positions", fewest=60)
+    windows, some = windows_of(cuts), windows_of(cuts, COARSE)
+    if windows is None or some is None:
         return [], None
     track = effective_track(robot)
     tried = sorted(
-        (windows.misfit(left / track, right / track), left, right) for left, right in _grid()
+        (some.misfit(left / track, right / track), left, right) for left, right in _grid()
     )
     best = min(_refined(windows, left / track, right / track) for _, left, right in tried[:6])
     given = _refined(windows, 1.0 / track, 1.0 / track)
