@@ -22,7 +22,7 @@ from werrimbi_odom.inference.knobs import CALIBRATION, MULTIPLIERS, Model, chang
 from werrimbi_odom.inference.likelihood import ReferenceKind
 from werrimbi_odom.inference.matching import QUARTER_TURN, match
 from werrimbi_odom.inference.ownership import Grasp, grasp_of
-from werrimbi_odom.inference.search import Round, first_fit, search_round
+from werrimbi_odom.inference.search import Round, first_fit, jumps_anew, search_round
 from werrimbi_odom.inference.selection import RIVAL, Fitted
 from werrimbi_odom.inference.set_up import SetUp, look_for_mistakes
 from werrimbi_odom.inference.together import Together, together
@@ -88,6 +88,8 @@ class Diagnosis:
     train: Sides
     """Position error with the robot as given, and with everything found [m]."""
     holdout: Sides
+    medians: Sides
+    """Median position error on the held-out runs, outliers and all [m]."""
 
     @property
     def robot(self) -> Robot:
@@ -151,7 +153,7 @@ def diagnose(
             break
         if not judge.holds(fit.point.model, best.point.model, laid, kind):
             break
-        fit = best
+        fit = jumps_anew(laid, best, kind, set_up.robot, sigma)
     remaining = (
         rounds[-1].dependences
         if rounds[-1].before is fit
@@ -261,6 +263,7 @@ def _told(
         kind,
         Sides(start.train, last.train),
         Sides(start.holdout, last.holdout),
+        Sides(start.holdout_median, last.holdout_median),
     )
 
 

@@ -165,8 +165,14 @@ def _robustly(runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence
     return replace(point, excluded=_jumps(runs, point, kind))
 
 
+def without_jumps(runs: Together, point: Point, kind: ReferenceKind) -> Point:
+    """The point with the legs left out on which its model cannot believe the reference."""
+    return replace(point, excluded=_jumps(runs, point, kind))
+
+
 def _jumps(runs: Together, point: Point, kind: ReferenceKind) -> tuple[NDArray[np.bool_], ...]:
-    white, _ = unexpected(runs, point, kind).whitened()
+    nothing = tuple(np.zeros(size, dtype=np.bool_) for size in np.diff(runs.legs))
+    white, _ = unexpected(runs, replace(point, excluded=nothing), kind).whitened()
     deviation = np.sum(white**2, axis=-1)
     found = []
     for first, last in zip(runs.legs[:-1], runs.legs[1:], strict=True):

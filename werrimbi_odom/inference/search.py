@@ -18,7 +18,7 @@ from werrimbi_odom.inference.candidates import (
 )
 from werrimbi_odom.inference.design import Point
 from werrimbi_odom.inference.evidence import Dependence, dependences
-from werrimbi_odom.inference.fit import start_point
+from werrimbi_odom.inference.fit import fit_model, start_point, without_jumps
 from werrimbi_odom.inference.knobs import CALIBRATION, Knob, Model, changed, knobs_of
 from werrimbi_odom.inference.likelihood import ReferenceKind
 from werrimbi_odom.inference.selection import Fitted, fitted
@@ -57,7 +57,27 @@ def first_fit(
     """The robot as given, calibrated."""
     point = start_point(runs, robot, *sigma)
     point, knobs = with_own_values(runs, point, kind)
+    if kind == "incremental":
+        point = fit_model(runs, point, kind, (*CALIBRATION, *knobs), rounds=0).point
     return fitted(runs, point, kind, (), knobs, robot, rounds=3, sigma=sigma)
+
+
+def jumps_anew(
+    runs: Together,
+    fit: Fitted,
+    kind: ReferenceKind,
+    robot: Robot,
+    sigma: tuple[float | None, float | None] = (None, None),
+) -> Fitted:
+    """The fit with the reference's jumps found by its own, better model.
+
+    Only a reference that adds up has jumps that stay: of one whose poses are each their own, a bad
+    pose costs two legs and no more.
+    """
+    if kind != "incremental":
+        return fit
+    point = without_jumps(runs, fit.point, kind)
+    return fitted(runs, point, kind, fit.names, fit.knobs, robot, sigma=sigma)
 
 
 def with_own_values(
