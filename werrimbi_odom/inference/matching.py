@@ -271,7 +271,7 @@ def _leg_ends(
     progress = np.interp(at, counters.time, _summed(path + turned))
     progress -= progress[0]
     whole = np.arange(1.0, np.floor(progress[-1] * (1.0 + 1e-12)) + 1.0)
-    chosen = np.searchsorted(progress, whole - 1e-12)
+    chosen = np.minimum(np.searchsorted(progress, whole - 1e-12), at.size - 1)  # or rounding
     ends = np.unique(np.concatenate([[0], chosen]))
     if ends.size == 1:  # a run shorter than a leg is one leg
         ends = np.array([0, at.size - 1])
