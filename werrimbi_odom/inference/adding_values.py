@@ -138,9 +138,13 @@ def to_write(model: Model, given: Robot) -> Robot:
                 effects.append(held[applied.name])
             continue
         effects.append(_forgotten(applied, own))
+    effects = [
+        replace(item, values={name: rounded(value) for name, value in item.values.items()})
+        for item in effects
+    ]
     relative = [new / old for new, old in zip(sizes(model.robot), sizes(given), strict=True)]
     multipliers = {
-        name: float(getattr(given, name)) * share
+        name: rounded(float(getattr(given, name)) * share)
         for name, share in zip(MULTIPLIERS, relative, strict=True)
     }
     return replace(
@@ -150,6 +154,11 @@ def to_write(model: Model, given: Robot) -> Robot:
         left_wheel_radius_multiplier=multipliers[MULTIPLIERS[1]],
         right_wheel_radius_multiplier=multipliers[MULTIPLIERS[2]],
     )
+
+
+def rounded(value: float) -> float:
+    """Nine digits: more than any drive determines, and a file that can be read."""
+    return float(f"{value:.9g}")
 
 
 def _forgotten(applied: AppliedEffect, own: set[str]) -> AppliedEffect:

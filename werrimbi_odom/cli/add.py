@@ -1,0 +1,148 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi add`: one more physical effect in the model, fitted, judged, written."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shlex
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from werrimbi_odom.cli.recordings import Recordings, add_recording_arguments, read_recordings
+from werrimbi_odom.errors import InputError
+
+if TYPE_CHECKING:
+    from werrimbi_odom.inference.adding import Added
+
+HELP = "add a physical effect to the model: fit it, judge it on held-out drives, write it"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `werrimbi add`."""
+    parser.description = (
+        "Fits one physical effect together with all calibration parameters to recorded drives, "
+        "shows the error before and after on drives that took no part in the fit, and writes a new "
+        "robot file. An effect that does not lower that error is refused. Without --holdout some "
+        "of the drives are put aside for judging."
+    )
+    parser.add_argument("effect", metavar="EFFECT", help="its name; werrimbi explain lists all")
+    add_recording_arguments(parser, holdout=True)
+    parser.add_argument(
+        "--out", metavar="NEW", type=Path, required=True, help="robot file to write"
+    )
+    parser.add_argument(
+        "--force",
+        action="store_true",
+        help="write even an effect that does not help, and over an existing --out",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Read, fit, judge, write; 0 on success.
+
+    Raises
+    ------
+    InputError
+        When something cannot be used or written, or the effect does not lower the held-out error.
+    """
+    from werrimbi_odom.cli.progress import share_done
+    from werrimbi_odom.inference.adding import add_effect
+    from werrimbi_odom.report.adding_words import words_of
+
+    _refuse_out(arguments)
+    given = read_recordings(arguments)
+    effect = given.collection.find(arguments.effect)
+    with share_done("fitting") as show:
+        added = add_effect(
+            effect,
+            given.runs,
+            given.source.robot,
+            given.kind,
+            holdout=given.holdout,
+            leg=given.leg,
+            limits=given.source.limits,
+            sigma_xy=given.sigma_xy,
+            sigma_yaw=given.sigma_yaw,
+            show=show,
+        )
+    if added.objection is not None and not arguments.force:
+        raise InputError(f"{added.objection}; nothing is written (--force writes it all the same)")
+    print(words_of(added))
+    written = _write(arguments, given, added)
+    print(f"\nwritten: {', '.join(map(str, written))}")
+    print(f"Is more missing?  {_next(arguments)}")
+    return 0
+
+
+def _refuse_out(arguments: argparse.Namespace) -> None:
+    """Before any work: an --out that cannot be written."""
+    out: Path = arguments.out
+    if out.is_dir():
+        raise InputError(f"--out {out} is a folder; give a file name in it")
+    if out.exists() and not arguments.force:
+        raise InputError(f"{out} exists; --force overwrites it, another --out keeps it")
+    if out in (arguments.json, arguments.report):
+        raise InputError(f"--out {out} is given as another output too")
+
+
+def _write(arguments: argparse.Namespace, given: Recordings, added: Added) -> list[Path]:
+    """The robot file, then the JSON and the page that were asked for; returns what was written."""
+    from werrimbi_odom.cli.calibration_files import plain
+    from werrimbi_odom.files.replacing import replacing
+    from werrimbi_odom.files.robot_file import write_robot_file
+    from werrimbi_odom.inference.knobs import MULTIPLIERS
+    from werrimbi_odom.report.adding_words import json_of
+
+    changes = {name: float(getattr(added.robot, name)) for name in MULTIPLIERS}
+    if added.noise_written:
+        for name in ("left_wheel_noise", "right_wheel_noise"):
+            if added.noises[name].determined:
+                changes[name] = float(f"{added.noises[name].value:.4g}")
+    write_robot_file(
+        given.source,
+        changes,
+        arguments.out,
+        force=arguments.force,
+        effects=added.robot.effects,
+    )
+    written = [arguments.out]
+    if arguments.json is not None:
+        with replacing(arguments.json) as file:
+            json.dump(plain(json_of(added)), file, indent=2, allow_nan=False)
+            file.write("\n")
+        written.append(arguments.json)
+    if arguments.report is not None:
+        written.append(_page(arguments.report, added))
+    return written
+
+
+def _page(path: Path, added: Added) -> Path:
+    from werrimbi_odom.report.fit_figure import leg_figure
+    from werrimbi_odom.report.save import save_page
+
+    sides = added.holdout.sides
+    legs = added.holdout.before, added.holdout.after
+    figure = leg_figure(
+        *(part.errors.error[~part.outlier] for part in legs),
+        title=f"Errors of the held-out drives, before and with {added.effect.name}",
+        subtitle=f"legs of {legs[0].leg:g} m: rms {1e3 * sides.before:.2f} mm before, "
+        f"{1e3 * sides.after:.2f} mm after",
+    )
+    try:
+        save_page(figure, path)
+    except OSError as error:
+        raise InputError(f"{path} cannot be written: {error.strerror}") from error
+    return path
+
+
+def _next(arguments: argparse.Namespace) -> str:
+    """The command that looks for more in the same drives."""
+    words = ["werrimbi", "diagnose", "--robot", str(arguments.out)]
+    if arguments.reference_kind != "absolute":
+        words += ["--reference-kind", arguments.reference_kind]
+    for file in arguments.effects:
+        words += ["--effects", str(file)]
+    rest = " RUN..." + (" --holdout RUN..." if arguments.holdout else "")
+    return shlex.join(words) + rest

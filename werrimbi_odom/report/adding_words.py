@@ -1,0 +1,218 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What adding an effect did, in words, a table and JSON: what was added, fell, and is left."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from typing import Any
+
+from werrimbi_odom.inference.adding import Added, Side
+from werrimbi_odom.inference.adding_values import FittedParameter
+from werrimbi_odom.inference.candidates import CALIBRATED
+from werrimbi_odom.inference.knobs import MULTIPLIERS
+from werrimbi_odom.report.compare_tables import table
+
+WIDTH = 80
+_HONEST = (0.8, 1.25)  # NEES
+
+
+def words_of(added: Added) -> str:
+    """A few sentences, the parameters and the errors, in 80 columns."""
+    parts = [_headline(added), _parameters(added), _errors(added), *_remarks(added)]
+    return "\n\n".join(part for part in parts if part)
+
+
+def _headline(added: Added) -> str:
+    sides = added.holdout.sides
+    leg = added.holdout.after.leg
+    share = 100.0 * (1.0 - sides.after / sides.before) if sides.before > 0.0 else math.nan
+    change = f"{abs(share):.{0 if abs(share) >= 10 else 1}f} % {'lower' if share > 0 else 'higher'}"
+    text = (
+        f"With {added.effect.name} the error of the held-out drives is {_mm(sides.after)} mm where "
+        f"it was {_mm(sides.before)} mm ({change}; rms over legs of {leg:g} m)."
+    )
+    if added.also:
+        text += f" Put right with it, as one set-up: {', '.join(added.also)}."
+    if added.objection is not None:
+        text += f" Forced, against this objection: {added.objection}."
+    return _filled(text)
+
+
+def _parameters(added: Added) -> str:
+    lines = []
+    for name, item in added.parameters.items():
+        lines.append(f"  {name} = {value_told(item)}")
+        told = item.declared.says + remark_told(item)
+        lines.append(textwrap.fill(told, WIDTH, initial_indent="    ", subsequent_indent="    "))
+    if added.effect.name in CALIBRATED:
+        lines += ["", _filled("It is written as the robot file's own multipliers:")]
+        for name in MULTIPLIERS:
+            before, after = getattr(added.given, name), getattr(added.robot, name)
+            lines.append(f"  {name}: {before:.6g} -> {after:.6g}")
+    return "\n".join(lines)
+
+
+def value_told(item: FittedParameter) -> str:
+    """A value with its standard deviation, to the digits that this leaves, and its unit."""
+    unit = f" {item.declared.unit}" if item.declared.unit else ""
+    if item.value is None:
+        return "another one in each drive"
+    if item.std is None or not 0.0 < item.std < math.inf:
+        return f"{item.value:g}{unit}"
+    power = math.floor(math.log10(item.std)) - 1
+    size = math.floor(math.log10(max(abs(item.value), item.std)))
+    if power >= -5 and size < 6:
+        digits = max(-power, 0)
+        return f"{item.value:.{digits}f} ± {item.std:.{digits}f}{unit}"
+    digits = max(size - power, 0)
+    scaled, spread = item.value / 10.0**size, item.std / 10.0**size
+    return f"({scaled:.{digits}f} ± {spread:.{digits}f})e{size}{unit}"
+
+
+def remark_told(item: FittedParameter) -> str:
+    """What is to be known of a value, beside the value."""
+    if item.remark == "null":
+        return "; these drives show none of it, so it stays at null"
+    if item.remark == "undetermined":
+        return "; THESE DRIVES DO NOT DETERMINE IT"
+    if item.remark == "bound":
+        return "; AT THE LIMIT OF WHAT IS PHYSICALLY POSSIBLE"
+    if item.remark == "per run":
+        return "; not written: the node learns it anew in each drive"
+    return ""
+
+
+def _errors(added: Added) -> str:
+    sides = (("held-out drives", added.holdout), ("fitted drives", added.train))
+    columns = {"before": "before", "calibrated": "calibrated", "after": "with it"}
+    title = f"Position error, rms over legs of {added.holdout.after.leg:g} m"
+    if added.effect.name in CALIBRATED:
+        del columns["calibrated"]
+    else:
+        title += " (calibrated: all fitted but the effect)"
+    rows = [
+        [
+            name,
+            *(_mm(side.figures(which).rmse_position_m) for which in columns),
+            _mm(side.floor),
+        ]
+        for name, side in sides
+    ]
+    return table(title, ["[mm]", *columns.values(), "noise alone"], rows)
+
+
+def _remarks(added: Added) -> list[str]:
+    texts = [_rest(added), _noise(added)]
+    if added.set_aside:
+        judged = ", ".join(dict.fromkeys(added.set_aside))
+        texts.append(
+            f"Judged on {judged}, put aside for it"
+            + (
+                "; the values that are written were then fitted on all drives."
+                if added.written_from_all
+                else " (a last part of the drive); the written values are fitted on the rest."
+            )
+        )
+    else:
+        texts.append("The written values are fitted on RUN alone; --holdout only judged them.")
+    return ["\n".join(_filled(text) for text in texts)]
+
+
+def _rest(added: Added) -> str:
+    nees = added.holdout.figures("after").nees
+    if not added.remaining:
+        if _HONEST[0] < nees < _HONEST[1]:
+            return (
+                f"What remains is noise: nothing more is seen in the errors, and they are as large "
+                f"as the covariance says (NEES {nees:.2f}, honest is 1)."
+            )
+        return (
+            f"Nothing more is seen in the errors of the fitted drives; those of the held-out ones "
+            f"are {math.sqrt(nees):.1f} times what the covariance says (NEES {nees:.2f})."
+        )
+    first = added.remaining[0]
+    return (
+        f"Something is still missing: the {first.channel} error goes with {first.name} "
+        f"(p = {first.p_value:.0e}; NEES {nees:.2f}, honest is 1)."
+    )
+
+
+def _noise(added: Added) -> str:
+    if not added.noise_written:
+        return "The wheels' noise in the file is left alone until the model explains the drives."
+    wheels = []
+    for name, short in (("left_wheel_noise", "k_L"), ("right_wheel_noise", "k_R")):
+        item = added.noises[name]
+        wheels.append(
+            f"{short} = {item.value:.2e} ± {item.std:.0e} m^0.5"
+            if item.determined
+            else f"{short} not determined, left alone"
+        )
+    return f"The noise of the wheels was fitted too: {', '.join(wheels)}."
+
+
+def _mm(metres: float) -> str:
+    value = 1e3 * metres
+    return f"{value:.2f}" if value < 100.0 else f"{value:.0f}"
+
+
+def _filled(text: str) -> str:
+    return textwrap.fill(text, WIDTH, break_long_words=False, break_on_hyphens=False)
+
+
+def json_of(added: Added) -> dict[str, Any]:
+    """With the contract's names, and more."""
+    return {
+        "effect": added.effect.name,
+        "parameters": {
+            name: {
+                "value": item.value,
+                "std": item.std,
+                "unit": item.declared.unit,
+                "null": item.declared.null,
+                "remark": item.remark,
+                "of_runs": list(item.of_runs),
+                "says": item.declared.says,
+            }
+            for name, item in added.parameters.items()
+        },
+        "train": _side(added.train),
+        "holdout": {**_side(added.holdout), "set_aside": list(added.set_aside)},
+        "calibration": {
+            name: {"value": getattr(added.robot, name), "std": added.multiplier_stds[name]}
+            for name in MULTIPLIERS
+        },
+        "noise": {
+            "written": added.noise_written,
+            **{
+                name: {"value": item.value, "std": item.std, "determined": item.determined}
+                for name, item in added.noises.items()
+            },
+        },
+        "put_right_with_it": list(added.also),
+        "per_run": list(added.per_run),
+        "fitted_on_all": added.written_from_all,
+        "remaining": [
+            {"channel": cell.channel, "variable": cell.name, "p_value": cell.p_value}
+            for cell in added.remaining
+        ],
+        "objection": added.objection,
+    }
+
+
+def _side(side: Side) -> dict[str, Any]:
+    after = side.figures("after")
+    return {
+        "before": side.sides.before,
+        "after": side.sides.after,
+        "calibrated": side.figures("calibrated").rmse_position_m,
+        "noise_alone": side.floor,
+        "median_before": side.figures("before").median_position_m,
+        "median_after": after.median_position_m,
+        "nees": after.nees,
+        "coverage_95": after.coverage_95,
+        "legs": after.count,
+        "outliers": int(side.after.outlier.sum()),
+    }
