@@ -38,8 +38,10 @@ bench: setup  ## how fast, as ratios measured side by side
 	$(BIN)/python benchmark/core_speed.py
 	$(BIN)/python benchmark/piece_tolerance.py
 	$(BIN)/python benchmark/node_cost.py
+	$(BIN)/python benchmark/diagnosis_hour.py
 
-evidence: setup  ## the long tests: many seeds, soaks
+evidence: setup  ## the long tests: hidden effects (tables to docs/evidence.md), many seeds, soaks
+	$(BIN)/python -m test.hidden
 	$(BIN)/python -m pytest -m evidence
 
 pictures: setup  ## the pictures of the README, made anew (needs Chrome or Chromium)

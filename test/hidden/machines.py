@@ -37,8 +37,8 @@ from werrimbi_odom.simulation import (
 )
 from werrimbi_odom.simulation.chassis import SKID_BEHIND
 
-NOISE = {"left_wheel_noise": 4.0e-4, "right_wheel_noise": 5.8e-4}
-"""k_L, k_R of the robot of `werrimbi simulate` [m^0.5]."""
+OWN = TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
+"""The robot of `werrimbi simulate`."""
 
 SHORT = (
     "train/free_calm",
@@ -57,7 +57,7 @@ class Machine:
 
     drives: dict[str, Manoeuvre]
     """By the names of their run folders."""
-    robot: TrueRobot = field(default_factory=lambda: TrueRobot(**NOISE))
+    robot: TrueRobot = OWN
     reference: ReferenceSensor = field(default_factory=ReferenceSensor)
     ticks_rate_hz: float = 50.0
     skid_behind: float = SKID_BEHIND
@@ -129,7 +129,9 @@ def manoeuvre(name: str, seed: int) -> Manoeuvre:
     brisk = Pace(speed=0.7, acceleration=1.2, yaw_rate=2.0, yaw_acceleration=4.0)
     known = {
         "square": chain("square", square(1.5), square(1.5, "cw")),
-        "out_and_back": chain("to_and_fro", out_and_back(2.0, laps=2), out_and_back(2.0, pace=brisk)),
+        "out_and_back": chain(
+            "to_and_fro", out_and_back(2.0, laps=2), out_and_back(2.0, pace=brisk)
+        ),
         "start_stop": start_stop(3, laps=4),
         "hard": start_stop(3, laps=4),
         "figure_eight": chain("eights", figure_eight(0.6, pace=brisk), figure_eight(0.6)),
@@ -139,6 +141,7 @@ def manoeuvre(name: str, seed: int) -> Manoeuvre:
         "arc": chain("arcs", arcs((0.4, 0.8), angle=math.pi / 2), arcs((0.4, 0.8), pace=brisk)),
         "circle": chain("arcs", arcs((0.4, 0.8), angle=math.pi / 2), arcs((0.4, 0.8), pace=brisk)),
         "speed": free(60.0, seed=seed, speed=0.8, yaw_rate=2.0, acceleration=1.5),
+        "still": moves("stand_still", [(0.3, 0.0), (-0.3, 0.0)] * 2, Pace(pause=20.0)),
         "free": free(60.0, seed=seed, speed=0.8, yaw_rate=2.0, acceleration=1.5),
     }
     for word, found in known.items():

@@ -123,7 +123,9 @@ def poorer(seeds: int = 2) -> list[HiddenSet]:
         for effect in effects()
         if (effect.seed - 1000) % 20 < seeds
     ]
-    return found + [HiddenSet("poorer", (), seed, seen=seen) for seen in POORER for seed in CLEAN[:4]]
+    return found + [
+        HiddenSet("poorer", (), seed, seen=seen) for seen in POORER for seed in CLEAN[:4]
+    ]
 
 
 def rivals() -> list[HiddenSet]:

@@ -8,6 +8,7 @@ truth.json, which only the assertions read.
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -16,6 +17,7 @@ import tempfile
 from collections.abc import Iterable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from dataclasses import asdict, dataclass, replace
+from functools import cache as cache_once
 from functools import reduce
 from pathlib import Path
 
@@ -35,10 +37,24 @@ from werrimbi_odom.simulation import (
 
 ROOT = Path(__file__).parents[2]
 
+CODE = ("werrimbi_odom/simulation", "test/hidden/machines.py", "test/hidden/poorer.py")
+"""What the data depend on; when it changes, sets are made anew."""
+
 
 def cache() -> Path:
     """Where sets are kept: WERRIMBI_HIDDEN, or .hidden in the checkout."""
     return Path(os.environ.get("WERRIMBI_HIDDEN", ROOT / ".hidden"))
+
+
+@cache_once
+def code_mark(*places: str) -> str:
+    """A mark of the program in some files or packages."""
+    digest = hashlib.sha256()
+    for place in places:
+        path = ROOT / place
+        for file in sorted(path.rglob("*.py")) if path.is_dir() else [path]:
+            digest.update(file.relative_to(ROOT).as_posix().encode() + file.read_bytes())
+    return digest.hexdigest()[:12]
 
 
 @dataclass(frozen=True)
@@ -77,7 +93,7 @@ class HiddenSet:
     @property
     def path(self) -> Path:
         """Of its folder."""
-        return cache() / "sets" / self.name
+        return cache() / f"sets_{code_mark(*CODE)}" / self.name
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -1,0 +1,88 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Seconds for a diagnosis of an hour of driving at 50 Hz, against a quarter of an hour.
+
+Both are drives of five minutes through the physics engine with a reference at 20 Hz, made once and
+kept for this call alone. All effects of the library are candidates. Growth of 4 is linear.
+
+    python benchmark/diagnosis_hour.py [--hide EFFECT[=STRENGTH]]
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import tempfile
+import time
+from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.inference.diagnosis import diagnose
+from werrimbi_odom.simulation import (
+    TrueRobot,
+    free,
+    hide,
+    record,
+    write_robot_file,
+    write_run,
+)
+
+DRIVE = 300.0
+"""Of one drive [s]."""
+
+DRIVES = 12
+"""An hour of them."""
+
+LIMIT = 30.0
+"""The hour's diagnosis should take less on 2 idle cores [s]."""
+
+ROBOT = TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
+
+
+def drive(folder: Path, number: int, wish: str) -> Path:
+    """One drive, written as a run folder."""
+    name, _, strength = wish.partition("=")
+    odd = []
+    if name:
+        odd.append(hide(name, float(strength) if strength else None, seed=1).peculiarity)
+    speed = 0.4 if number % 2 else 0.8
+    manoeuvre = free(DRIVE, seed=number, speed=speed, yaw_rate=2.5 * speed, acceleration=speed)
+    recording = record(ROBOT, manoeuvre, seed=100 + number, hidden=odd)
+    return write_run(recording, folder / f"drive_{number:02}")
+
+
+def main() -> None:
+    """Measure, and print."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--hide", default="castor_kick=0.01", help="what is hidden; '' for nothing")
+    wish = parser.parse_args().hide
+    cores = os.cpu_count() or 1
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        file = read_robot_file(write_robot_file(ROBOT, folder / "robot.yaml"))
+        with ProcessPoolExecutor(cores) as pool:
+            jobs = [pool.submit(drive, folder, number, wish) for number in range(DRIVES)]
+            runs = [read_run(job.result(), file) for job in jobs]
+    rows = sum(run.ticks.rows for run in runs)
+    print(f"{rows} readings of the counters in {DRIVES} drives; hidden: {wish or 'nothing'}")
+    print(f"{'driving':>9} {'wall':>8} {'CPU':>8}  verdict, on {cores} cores")
+    walls = []
+    for count in (DRIVES // 4, DRIVES):
+        wall, cpu = time.perf_counter(), time.process_time()
+        found = diagnose(runs[:count], file.robot, LIBRARY, limits=file.limits)
+        wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
+        walls.append(wall)
+        minutes = count * DRIVE / 60.0
+        said = f"{found.verdict} {', '.join(found.found)}"
+        print(f"{minutes:5.0f} min {wall:6.1f} s {cpu:6.1f} s  {said}", flush=True)
+    print(f"growth {walls[1] / walls[0]:.1f} for 4 times as much; limit {LIMIT:.0f} s")
+    if walls[1] > LIMIT:
+        print("over the limit (was the machine idle?)", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    main()

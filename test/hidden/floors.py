@@ -1,0 +1,109 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The best that can be had: the model with what truly was hidden, fitted, judged on held-out runs.
+
+What is known here and nowhere else is which effect it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from test.hidden.right_laws import RIGHT_LAWS
+from werrimbi_odom.effects import find
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.candidates import (
+    CALIBRATED,
+    candidates,
+    knobs_of_candidate,
+    put_in,
+    scores,
+)
+from werrimbi_odom.inference.holdout import Judge, judge_of
+from werrimbi_odom.inference.knobs import CALIBRATION, Model
+from werrimbi_odom.inference.likelihood import ReferenceKind
+from werrimbi_odom.inference.matching import QUARTER_TURN, match
+from werrimbi_odom.inference.search import first_fit
+from werrimbi_odom.inference.selection import Fitted, fitted
+from werrimbi_odom.inference.together import Together, together
+from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.robot import Robot
+
+LEG = 1.0
+"""Of the legs that are judged [m]."""
+
+PARTS = 4
+"""Legs of the fit are shorter by this."""
+
+SHAPES = 3
+"""Shapes of one effect (thresholds, phases of each run or of all) that are fitted in full."""
+
+
+class Floor:
+    """Fits true models to the runs of a set, and judges them.
+
+    Parameters
+    ----------
+    runs, holdout
+        Read with the robot file.
+    robot : Robot
+        As the robot file has it.
+    kind : "absolute" or "incremental"
+    """
+
+    def __init__(
+        self,
+        runs: Sequence[Run],
+        holdout: Sequence[Run],
+        robot: Robot,
+        kind: ReferenceKind = "absolute",
+        limits: EncoderLimits | None = None,
+    ) -> None:
+        self.given = robot
+        self.limits = limits
+        self.kind: ReferenceKind = kind
+        self.judge: Judge = judge_of(runs, holdout, robot, kind, LEG, limits, None, None)
+        self.laid: Together = together(
+            [match(run, robot, LEG / PARTS, limits, QUARTER_TURN / PARTS) for run in runs]
+        )
+
+    def as_given(self) -> float:
+        """Held-out error of the robot file [m]."""
+        nothing = self.judge.nothing_of_own
+        return self.judge.of(Model(self.given, nothing), learn=True).holdout
+
+    def of(self, names: Sequence[str]) -> float:
+        """Held-out error of the model with these effects, calibration and all fitted [m]."""
+        mistakes = tuple(find(name).using() for name in names if _is_mistake(name))
+        robot = replace(self.given, effects=(*self.given.effects, *mistakes))
+        if len(mistakes) == len(names):
+            return self.judge.of(Model(robot, self.judge.nothing_of_own), learn=True).holdout
+        fit = first_fit(self.laid, robot, self.kind)
+        for name in names:
+            if name not in CALIBRATED and not _is_mistake(name):
+                laws = RIGHT_LAWS.get(name) or (find(name),)
+                fit = min((self._with(fit, law, robot) for law in laws), key=lambda one: one.cost)
+        return self.judge.of(fit.point.model, learn=True).holdout
+
+    def _with(self, fit: Fitted, effect: Effect, robot: Robot) -> Fitted:
+        """One effect more, whatever it is worth."""
+        held = {applied.name for applied in fit.point.model.robot.effects}
+        channels = set.intersection(*(set(run.counters.channels) for run in self.laid.runs))
+        shapes = candidates([effect], held, channels, len(self.laid.runs))
+        knobs = (*CALIBRATION, *fit.knobs)
+        found = scores(self.laid, fit.point, self.kind, knobs, shapes)
+        best = sorted(found, key=lambda score: -score.gain)[:SHAPES]
+        fits = []
+        for score in best:
+            start = replace(fit.point, model=put_in(fit.point.model, score))
+            own = (*fit.knobs, *knobs_of_candidate(score.candidate))
+            names = (*fit.names, effect.name)
+            fits.append(fitted(self.laid, start, self.kind, names, own, robot, rounds=3))
+        # A weak phase may differ from run to run or be one for all: the price tells.
+        return min(fits, key=lambda one: one.total) if fits else fit
+
+
+def _is_mistake(name: str) -> bool:
+    return name not in RIGHT_LAWS and find(name).is_mistake
