@@ -10,9 +10,12 @@ and the best of them is taken if it earns its price and its promise holds on the
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
+
+import numpy as np
 
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.candidates import CALIBRATED, Score
@@ -151,7 +154,7 @@ def diagnose(
         beyond = _beyond_the_library(this, best, laid)
         if best is None or beyond is not None:
             break
-        if not judge.holds(fit.point.model, best.point.model, laid, kind):
+        if not judge.holds(fit.point.model, best.point.model):
             break
         fit = jumps_anew(laid, best, kind, set_up.robot, sigma)
     remaining = (
@@ -200,16 +203,24 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Together) -> Dep
     ]
     if not named:
         return strongest
+    assert best is not None
     score = named[0]
     grasp = _grasp(score, runs, this.before.point.model)
+    data = int(np.isfinite(runs.finish).sum())
+    explained = max(_fall(score.gain, data), this.before.cost - best.cost)
     for cell in this.dependences:
         if cell.p_value > VERY_SURE:
             break
         own = cell.channel in grasp.channels and bool(grasp.fields & set(cell.variable.looks_at))
         factor = FAR_MORE_OF_ITS_OWN if own else FAR_MORE
-        if cell.gain - 2 * cell.degrees > factor * score.gain + 15.0:
+        if _fall(cell.gain - 2 * cell.degrees, data) > factor * explained + 15.0:
             return cell
     return None
+
+
+def _fall(gain: float, data: int) -> float:
+    """What the cost falls by when squared innovations fall by `gain`: the noise shrinks as well."""
+    return -data * math.log1p(-min(max(gain / data, 0.0), 0.999))
 
 
 def _grasp(score: Score, runs: Together, model: Model) -> Grasp:
