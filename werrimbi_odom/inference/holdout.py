@@ -87,20 +87,6 @@ class Judge:
         return costs[1] < costs[0] + 2.0
 
 
-def at_home(self, model: Model) -> Point:
-        """The model in the held-out runs: shared values as they are, the runs' own learnt."""
-        return at_home(model, self.fine, self.kind)
-
-    def holds(self, before: Model, after: Model, runs: Together, kind: ReferenceKind) -> bool:
-        """Whether the held-out runs are likelier with the one model than with the other."""
-        start = self.at_home(before)
-        costs = []
-        for model in (before, after):
-            point = replace(self.at_home(model), variances=start.variances)
-            costs.append(float(Costs(self.fine, point, kind)(point.variances)[0]))
-        return costs[1] < costs[0] + 2.0
-
-
 def at_home(model: Model, runs: Together, kind: ReferenceKind) -> Point:
     """A model in other runs: shared values stay, what those runs have of their own is fitted."""
     own = sorted({name for mine in model.own for name in mine if name not in NUISANCES})
