@@ -75,7 +75,6 @@ def _next_step(arguments: argparse.Namespace) -> str:
 def _write(arguments: argparse.Namespace, comparison: Comparison) -> list[Path]:
     """The JSON and the page that were asked for; returns what was written."""
     from werrimbi_odom.cli.calibration_files import plain
-    from werrimbi_odom.errors import InputError
     from werrimbi_odom.files.replacing import replacing
     from werrimbi_odom.report.compare_json import json_of
 
@@ -86,12 +85,13 @@ def _write(arguments: argparse.Namespace, comparison: Comparison) -> list[Path]:
             file.write("\n")
         written.append(arguments.json)
     if arguments.report is not None:
-        from werrimbi_odom.report.compare_figure import comparison_figure
-        from werrimbi_odom.report.save import save_page
+        from werrimbi_odom.cli.report_made import made_of
+        from werrimbi_odom.report.compare_page import write_compare_page
 
-        try:
-            save_page(comparison_figure(comparison), arguments.report)
-        except OSError as error:
-            raise InputError(f"{arguments.report} cannot be written: {error.strerror}") from error
-        written.append(arguments.report)
+        written += write_compare_page(
+            comparison,
+            arguments.report,
+            next_step=_next_step(arguments),
+            made=made_of(arguments),
+        )
     return written

@@ -1,13 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Figures to files: an interactive page always, a PNG where a browser is there to draw it."""
+"""Reports and figures to files: pages always, pictures where a browser is there to draw them."""
 
 from __future__ import annotations
 
 import logging
 import shutil
+import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.report.page import Page, write_page
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -50,3 +55,83 @@ def save_png(figure: go.Figure, path: Path, *, scale: float = 1.5) -> bool:
         logging.disable(logging.NOTSET)
     temporary.replace(path)
     return True
+
+
+def save_report(page: Page, path: Path) -> list[Path]:
+    """A report as a page (.html), or its main figures as pictures for a paper (.pdf, .png).
+
+    Pictures are a file for each figure: the first has the name that was asked for, the others have
+    the figure's name added to it.
+
+    Raises
+    ------
+    InputError
+        When a file cannot be written, its ending is another one, or no browser is installed.
+    """
+    kind = path.suffix.lower()
+    if kind in (".html", ".htm"):
+        write_page(page, path)
+        return [path]
+    if kind not in (".pdf", ".png"):
+        raise InputError(f"--report {path}: a report ends in .html, .pdf or .png")
+    main = [shown for shown in page.shown if shown.main and shown.figures]
+    files = [
+        path if number == 0 else path.with_name(f"{path.stem}-{shown.key}{path.suffix}")
+        for number, shown in enumerate(main)
+    ]
+    save_pictures(
+        [
+            (next(iter(shown.figures.values())), file)
+            for shown, file in zip(main, files, strict=True)
+        ]
+    )
+    return files
+
+
+def save_pictures(pictures: Sequence[tuple[go.Figure, Path]], *, scale: float = 2.0) -> None:
+    """Figures as they are on white paper, drawn by one browser; .pdf is made of lines, not dots.
+
+    Raises
+    ------
+    InputError
+        When no browser is installed, or a file cannot be written.
+    """
+    browser = find_browser()
+    if browser is None:
+        raise InputError(
+            f"--report {pictures[0][1]}: figures are drawn by Chrome or Chromium, and none is "
+            "installed (apt install chromium); a report that ends in .html needs none"
+        )
+    import kaleido
+
+    with tempfile.TemporaryDirectory(prefix="werrimbi-") as folder:
+        drawn = [
+            Path(folder) / f"{number}{file.suffix}" for number, (_, file) in enumerate(pictures)
+        ]
+        logging.disable(logging.CRITICAL)
+        try:
+            kaleido.write_fig_from_object_sync(
+                [
+                    {
+                        "fig": figure,
+                        "path": part,
+                        "opts": {
+                            "format": part.suffix[1:].lower(),
+                            "scale": scale,
+                            "width": 1000,
+                            "height": int(figure.layout.height or 600),
+                        },
+                    }
+                    for (figure, _), part in zip(pictures, drawn, strict=True)
+                ],
+                kopts={"path": browser},
+            )
+        finally:
+            logging.disable(logging.NOTSET)
+        for (_, file), part in zip(pictures, drawn, strict=True):
+            try:
+                beside = file.with_name(f".{file.name}.part")
+                beside.write_bytes(part.read_bytes())
+                beside.replace(file)
+            except OSError as error:
+                raise InputError(f"{file} cannot be written: {error.strerror}") from error

@@ -1,0 +1,106 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The report of a comparison: where the model fails, and whether its covariance is honest."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from werrimbi_odom.inference.compare import Comparison
+from werrimbi_odom.report.compare_figures import (
+    error_against_figure,
+    legs_by_motion_figure,
+    nees_figure,
+    path_figure,
+    variables_of,
+)
+from werrimbi_odom.report.compare_tables import tables_of
+from werrimbi_odom.report.compare_words import words_of
+from werrimbi_odom.report.page import Page, Shown
+from werrimbi_odom.report.save import save_report
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+_RUNS = 40  # that can be chosen one by one: more would make the file too large to mail
+
+
+def write_compare_page(
+    comparison: Comparison,
+    path: Path,
+    *,
+    next_step: str = "`werrimbi diagnose`",
+    made: Mapping[str, str] | None = None,
+) -> list[Path]:
+    """Write the report; returns the files, of which there are several where they are pictures.
+
+    Parameters
+    ----------
+    path
+        .html for a page, .pdf or .png for the main figures alone.
+    made
+        How it was made: command, files, options.
+    """
+    return save_report(compare_page(comparison, next_step=next_step, made=made or {}), path)
+
+
+def compare_page(comparison: Comparison, *, next_step: str, made: Mapping[str, str]) -> Page:
+    """The report as a page."""
+    against = {name: error_against_figure(comparison, name) for name in variables_of(comparison)}
+    shown = [
+        Shown(
+            "path",
+            "Where the model fails",
+            f"Each dot is a leg of {comparison.prepared.leg:g} m where it was driven, larger and "
+            "stronger in colour the more the model errs on it. Choose one drive to see where the "
+            "model alone would have ended, and whether the truth lies inside its ellipses.",
+            _paths(comparison),
+            "Drive:",
+        ),
+        Shown(
+            "motion",
+            "Errors by type of motion",
+            "Blue is what the errors were, the hatched bar what the covariance promised. Whiskers "
+            "that end where the bar ends are right; a box off zero is a systematic error.",
+            {"": legs_by_motion_figure(comparison)},
+        ),
+        Shown(
+            "nees",
+            "Is the covariance honest?",
+            "Marks inside the grey bars are what an honest covariance gives; above them the errors "
+            "are larger than promised, below them smaller. Marks that climb to the right tell of a "
+            "systematic error: it grows faster with the way than noise does.",
+            {"": nees_figure(comparison)},
+        ),
+        Shown(
+            "against",
+            "What the errors go with",
+            "Means that leave zero together, beyond their error bars, show what the error depends "
+            "on.",
+            against,
+            "Errors against:",
+        ),
+    ]
+    return Page(
+        "Model against measurement",
+        words_of(comparison, next_step=next_step),
+        shown,
+        tables_of(comparison),
+        made,
+    )
+
+
+def _paths(comparison: Comparison) -> dict[str, go.Figure]:
+    """All drives together, then each for itself."""
+    found = {}
+    count = len(comparison.runs)
+    if count > 1:
+        found[f"all {count} drives"] = path_figure(comparison)
+    for index, item in enumerate(comparison.runs[:_RUNS]):
+        name = item.run.name
+        found[name if name not in found else f"{name} ({index + 1})"] = path_figure(
+            comparison, index
+        )
+    return found

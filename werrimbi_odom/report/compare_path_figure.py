@@ -1,0 +1,249 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Model and measurement on the floor: legs coloured by error, dead reckoning with ellipses."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from werrimbi_odom.inference.compare import Comparison
+from werrimbi_odom.model.covariance import PoseCovariance
+from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.model.trajectory import trajectory
+from werrimbi_odom.report.decimate import MOST, along_path, small, spread_and_extremes
+from werrimbi_odom.report.path_figure import ellipse, spread_along_path
+from werrimbi_odom.report.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    PAPER,
+    RISING,
+    escaped,
+    paled,
+    plain,
+)
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+_FEW = 3  # runs, of which the dead reckoning is drawn too when all are shown at once
+_ELLIPSES = 12
+
+
+def path_figure(comparison: Comparison, run: int | None = None) -> go.Figure:
+    """Measured path with its legs coloured by position error; of one run the model's path too.
+
+    Parameters
+    ----------
+    run : int, optional
+        Index of one run; None: all of them, and the model's paths only where they are few.
+    """
+    import plotly.graph_objects as go
+
+    figure = go.Figure()
+    which = range(len(comparison.paths)) if run is None else (run,)
+    single = len(which) == 1
+    most = max(200, MOST // max(len(which), 1))
+    for index in which:
+        _paths(
+            figure, comparison, index, most, predicted=len(which) <= _FEW, first=index == which[0]
+        )
+    _legs(figure, comparison, run)
+    if single:
+        _ellipses(figure, comparison, which[0])
+    for index in which if len(which) <= _FEW else ():
+        _ends(figure, comparison, index, first=index == which[0])
+    figure.update_xaxes(title="x [m]", zeroline=False)
+    figure.update_yaxes(title="y [m]", zeroline=False, scaleanchor="x", scaleratio=1)
+    plain(figure, height=680)
+    figure.update_layout(dragmode="pan")
+    return figure
+
+
+def _paths(
+    figure: go.Figure,
+    comparison: Comparison,
+    index: int,
+    most: int,
+    *,
+    predicted: bool,
+    first: bool,
+) -> None:
+    path = comparison.paths[index]
+    name = escaped(comparison.runs[index].run.name)
+    measured = path.measured[along_path(path.measured, most)]
+    figure.add_scatter(
+        x=small(measured.real),
+        y=small(measured.imag),
+        mode="lines",
+        name="measured",
+        legendgroup="measured",
+        showlegend=first,
+        line={"color": paled(GREY, 0.5), "width": 7},
+        hovertemplate=f"{name}, measured<br>x %{{x:.3f}} m<br>y %{{y:.3f}} m<extra></extra>",
+    )
+    if not predicted:
+        return
+    model = path.predicted[along_path(path.predicted, most)]
+    figure.add_scatter(
+        x=small(model.real),
+        y=small(model.imag),
+        mode="lines",
+        name="model (dead reckoning from the start)",
+        legendgroup="model",
+        showlegend=first,
+        line={"color": BLUE, "width": 2},
+        hovertemplate=f"{name}, model<br>x %{{x:.3f}} m<br>y %{{y:.3f}} m<extra></extra>",
+    )
+
+
+def _ends(figure: go.Figure, comparison: Comparison, index: int, *, first: bool) -> None:
+    path = comparison.paths[index]
+    known = np.flatnonzero(np.isfinite(path.measured) & np.isfinite(path.predicted))
+    if known.size == 0:
+        return
+    begin, end = known[0], known[-1]
+    for at, name, symbol, colour in (
+        (path.measured[begin], "start", "circle", GREEN),
+        (path.measured[end], "end, measured", "x", GREY),
+        (path.predicted[end], "end, model", "square", BLUE),
+    ):
+        figure.add_scatter(
+            x=[float(at.real)],
+            y=[float(at.imag)],
+            mode="markers",
+            name=name,
+            legendgroup=name,
+            showlegend=first,
+            marker={
+                "symbol": symbol,
+                "size": 12,
+                "color": colour,
+                "line": {"width": 1.5, "color": PAPER},
+            },
+            hovertemplate=f"{name}<br>x %{{x:.3f}} m<br>y %{{y:.3f}} m<extra></extra>",
+        )
+
+
+def leg_errors_to_colour(comparison: Comparison) -> tuple[Floats, str]:
+    """Size of each leg's error as it is drawn, and its unit: positions, or headings alone."""
+    errors = comparison.legs.errors
+    if np.isfinite(errors.distance).any():
+        return 1e3 * errors.distance, "mm"
+    return np.degrees(np.abs(errors.error[:, 2])), "°"
+
+
+def _legs(figure: go.Figure, comparison: Comparison, run: int | None) -> None:
+    legs = comparison.legs
+    size, unit = leg_errors_to_colour(comparison)
+    kept = ~legs.outlier
+    finite = size[kept & np.isfinite(size)]
+    top = float(np.quantile(finite, 0.98)) if finite.size else 1.0
+    mine = np.isfinite(size) & (kept if run is None else kept & (legs.run == run))
+    rows = np.flatnonzero(mine)
+    rows = rows[spread_and_extremes(size[rows])]
+    # Small ones first, so that the large are on top.
+    rows = rows[np.argsort(size[rows])]
+    texts = [_told(comparison, row) for row in rows.tolist()]
+    figure.add_scatter(
+        x=small(0.5 * (legs.x + legs.end_x)[rows]),
+        y=small(0.5 * (legs.y + legs.end_y)[rows]),
+        mode="markers",
+        name="leg, coloured by its error",
+        text=texts,
+        hovertemplate="%{text}<extra></extra>",
+        marker={
+            "color": small(size[rows]),
+            "coloraxis": "coloraxis",
+            "size": small(8.0 + 8.0 * np.clip(size[rows] / max(top, 1e-9), 0.0, 1.0)),
+            "line": {"width": 1, "color": PAPER},
+        },
+    )
+    figure.update_layout(
+        coloraxis={
+            "colorscale": [list(stop) for stop in RISING],
+            "cmin": 0.0,
+            "cmax": max(top, 1e-9),
+            "colorbar": {"title": {"text": f"error of<br>a leg [{unit}]"}, "thickness": 14},
+        }
+    )
+
+
+def _told(comparison: Comparison, row: int) -> str:
+    """What the hover says of a leg."""
+    legs = comparison.legs
+    error = legs.errors.error[row]
+    promised = np.sqrt(np.diagonal(legs.errors.covariance[row]))
+    name = escaped(comparison.runs[int(legs.run[row])].run.name)
+    lines = [f"{name}, {legs.start_time[row]:.1f} to {legs.end_time[row]:.1f} s"]
+    lines.append(str(legs.errors.kind[row]))
+    for word, value, sigma, scale, unit in zip(
+        ("along", "sideways", "heading"),
+        error,
+        promised,
+        (1e3, 1e3, np.degrees(1.0)),
+        ("mm", "mm", "°"),
+        strict=True,
+    ):
+        if np.isfinite(value):
+            lines.append(f"{word} {scale * value:+.2f} {unit} (promised ± {scale * sigma:.2f})")
+    return "<br>".join(lines)
+
+
+def _ellipses(figure: go.Figure, comparison: Comparison, index: int) -> None:
+    """95 % ellipses of the dead reckoning, at equal distances along the model's path."""
+    path = comparison.paths[index]
+    if not np.isfinite(path.measured).any():
+        return
+    places = path.predicted
+    chosen = spread_along_path(places.real, places.imag, _ELLIPSES)
+    covariance = covariance_along(comparison, index)[chosen]
+    x: list[Floats] = []
+    y: list[Floats] = []
+    for at, shape in zip(places[chosen], covariance, strict=True):
+        outline = ellipse(float(at.real), float(at.imag), shape, points=49)
+        x += [outline[0], np.array([np.nan])]
+        y += [outline[1], np.array([np.nan])]
+    figure.add_scatter(
+        x=small(np.concatenate(x)),
+        y=small(np.concatenate(y)),
+        mode="lines",
+        name="where the truth should be (95 % ellipse)",
+        line={"color": ORANGE, "width": 1.5},
+        fill="toself",
+        fillcolor=paled(ORANGE, 0.13),
+        hoverinfo="skip",
+    )
+
+
+def covariance_along(comparison: Comparison, index: int) -> Floats:
+    """Covariance of the dead-reckoned position at every reference pose of a run, (n, 2, 2) [m²].
+
+    It begins with the noise of the measured pose that dead reckoning starts from. Of the axle's
+    midpoint; the point that the reference measures is near it.
+    """
+    run, path = comparison.prepared.runs[index], comparison.paths[index]
+    robot = comparison.model.of_run(index)
+    group = next(item for item in comparison.prepared.groups if index in item.index)
+    own = group.index.index(index)
+    time = group.every.runs[own].measured.time
+    xy, heading = float(group.sigma_xy[own]), float(group.sigma_yaw[own])
+    yaw = float(path.predicted_yaw[0]) - view_of(robot.effects).yaw
+    begin = int(np.clip(np.searchsorted(run.ticks.time, time[0]), 0, run.ticks.time.size - 2))
+    ticks = run.ticks
+    driven = trajectory(
+        robot,
+        ticks.time[begin:],
+        ticks.left[begin:],
+        ticks.right[begin:],
+        start=Pose(0.0, 0.0, yaw),
+        covariance=PoseCovariance(xy**2, 0.0, 0.0, xy**2, 0.0, heading**2),
+        channels={name: values[begin:] for name, values in ticks.channels.items()},
+    )
+    every = driven.covariance.matrix()[:, :2, :2]
+    rows = np.clip(np.searchsorted(driven.time, time), 0, driven.time.size - 1)
+    return np.asarray(every[rows])
