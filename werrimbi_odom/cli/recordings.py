@@ -43,13 +43,17 @@ class Recordings:
     """The same of its heading [rad]."""
 
 
-def add_recording_arguments(parser: argparse.ArgumentParser, holdout: bool = False) -> None:
+def add_recording_arguments(
+    parser: argparse.ArgumentParser, holdout: bool = False, report: bool = True
+) -> None:
     """RUN..., --robot and how to read and judge them, --json and --report.
 
     Parameters
     ----------
     holdout : bool
         Offer --holdout too.
+    report : bool
+        Offer --report.
     """
     parser.add_argument(
         "runs", metavar="RUN", nargs="+", type=Path, help="recorded drives: run folders or bags"
@@ -101,7 +105,8 @@ def add_recording_arguments(parser: argparse.ArgumentParser, holdout: bool = Fal
         help="file with effects of your own, to try them; may be given again",
     )
     parser.add_argument("--json", metavar="F", type=Path, help="write the figures to this file")
-    parser.add_argument("--report", metavar="F", type=Path, help="write a page with the plots")
+    if report:
+        parser.add_argument("--report", metavar="F", type=Path, help="write a page with the plots")
 
 
 def read_recordings(arguments: argparse.Namespace) -> Recordings:

@@ -90,9 +90,7 @@ def _arcs(size: float) -> list[Move]:
 
 
 def _out_and_back(size: float) -> list[Move]:
-    return [
-        (way * 3.0 * size, 0.0, pace) for pace in (0.25, 0.6, 1.0) * 2 for way in (1.0, -1.0)
-    ]
+    return [(way * 3.0 * size, 0.0, pace) for pace in (0.25, 0.6, 1.0) * 2 for way in (1.0, -1.0)]
 
 
 def _start_stop(size: float) -> list[Move]:

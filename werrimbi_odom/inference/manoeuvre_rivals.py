@@ -135,9 +135,7 @@ def unlike(pairs: Sequence[tuple[Look, Target]], rival: Candidate) -> float:
     return float(np.sum((rows[:, width] - rows[:, :width] @ solution) ** 2))
 
 
-def difference(
-    known: tuple[Look, Target], ahead: tuple[Look, Target], rival: Candidate
-) -> Floats:
+def difference(known: tuple[Look, Target], ahead: tuple[Look, Target], rival: Candidate) -> Floats:
     """Legs (m, 3) of drives ahead: the target less what the rival, known so far, would make."""
     names = (rival.name, *_beside(known[1].name, rival))
     squeezed, width = _squeezed(known[0], known[1], names, ())

@@ -90,9 +90,7 @@ def _sight(candidate: Candidate, look: Look) -> Sight:
     others = [look.white[name] for name in CALIBRATED if name in look.white]
     if candidate.name in CALIBRATED:
         others = [
-            look.white[name]
-            for name in CALIBRATED
-            if name in look.white and name != candidate.name
+            look.white[name] for name in CALIBRATED if name in look.white and name != candidate.name
         ]
     frame = orthonormal(np.concatenate([look.own, *others], axis=-1))
     marks = look.white[candidate.name]
@@ -119,9 +117,7 @@ def _sight(candidate: Candidate, look: Look) -> Sight:
     return best
 
 
-def _shown_by(
-    diagnosis: Diagnosis, hidden: Sequence[Candidate], *, better: bool
-) -> dict[str, str]:
+def _shown_by(diagnosis: Diagnosis, hidden: Sequence[Candidate], *, better: bool) -> dict[str, str]:
     """For each effect the first manoeuvre that shows it at its typical size within some minutes."""
     final = diagnosis.final
     pace = pace_of(diagnosis.runs, final.point.model.robot)

@@ -17,7 +17,6 @@ import numpy as np
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.diagnosis import Diagnosis
-from werrimbi_odom.inference.evidence import Dependence
 from werrimbi_odom.inference.manoeuvre_drives import MANOEUVRES, Ideal, pace_of
 from werrimbi_odom.inference.manoeuvre_imagined import imagined
 from werrimbi_odom.inference.manoeuvre_rivals import (
@@ -31,32 +30,20 @@ from werrimbi_odom.inference.manoeuvre_rivals import (
     target_at,
     unlike,
 )
+from werrimbi_odom.inference.manoeuvre_unknown import Manoeuvre, for_the_unknown, strongest
 from werrimbi_odom.inference.search import Round
 from werrimbi_odom.inference.selection import RIVAL
-from werrimbi_odom.inference.variables import CONSTANT
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+
+__all__ = ["Manoeuvre", "Promise", "next_manoeuvre", "promises", "strongest"]
 
 LONGEST = 30.0
 """Minutes of driving that one may ask for."""
 
 ENOUGH = 3.0 * RIVAL
 """Rise of the cost that settles it, chance allowed for."""
-
-
-@dataclass(frozen=True, slots=True)
-class Manoeuvre:
-    """What to do next, to know more."""
-
-    name: str
-    """As `werrimbi_odom.simulation` calls it, `remount_reference`, `turn_by_hand` or `push`."""
-    why: str
-    """One plain sentence."""
-    do: str
-    """What to drive, or to do."""
-    minutes: float
-    """How long it should take; 0 where it is no drive."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,7 +75,7 @@ def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
         weighed = promises(diagnosis)
         return _best(diagnosis.rivals, weighed) if weighed else None
     if diagnosis.verdict == "unknown":
-        return _for_the_unknown(diagnosis)
+        return for_the_unknown(diagnosis)
     return None
 
 
@@ -152,7 +139,9 @@ def promises(diagnosis: Diagnosis) -> list[Promise]:
         there = target_at(ahead, first)
         worst: tuple[float, Candidate] | None = None
         for rival in rivals[1:]:
-            old, new = (target_along(item, rival.name, sizes[rival.name]) for item in (before, ahead))
+            old, new = (
+                target_along(item, rival.name, sizes[rival.name]) for item in (before, ahead)
+            )
             rise = min(
                 _gained((before, target), (ahead, there), rival),
                 _gained((before, old), (ahead, new), rivals[0]),
@@ -179,7 +168,7 @@ def _best(rivals: Sequence[str], weighed: Sequence[Promise]) -> Manoeuvre | None
         f"{rivals[0]} and {best.against} look alike on these drives, but {best.ideal.where} "
         f"they differ by {_size(best.apart)}"
     )
-    return Manoeuvre(best.ideal.name, why, best.ideal.words, float(np.ceil(minutes)))
+    return Manoeuvre(best.ideal.name, why, f"drive {best.ideal.words}", float(np.ceil(minutes)))
 
 
 def _size(apart: Floats) -> str:
@@ -224,12 +213,12 @@ def _as_fitted(candidate: Candidate, this: Round, diagnosis: Diagnosis) -> Appli
     for fit in this.tried:
         if fit.names[-1] == candidate.name:
             return next(
-                item
-                for item in fit.point.model.of_run(0).effects
-                if item.name == candidate.name
+                item for item in fit.point.model.of_run(0).effects if item.name == candidate.name
             )
     sizes = sizes_of_calibration(diagnosis.robot, diagnosis.given)
-    return candidate.effect.using(**{next(iter(candidate.effect.parameters)): sizes[candidate.name]})
+    return candidate.effect.using(
+        **{next(iter(candidate.effect.parameters)): sizes[candidate.name]}
+    )
 
 
 def sizes_of_calibration(robot: Robot, given: Robot) -> dict[str, float]:
@@ -251,68 +240,3 @@ def sizes_of_calibration(robot: Robot, given: Robot) -> dict[str, float]:
 
 def _once(candidates: Sequence[Candidate]) -> list[Candidate]:
     return list({item.name: item for item in reversed(candidates)}.values())
-
-
-_VARYING = {
-    "speed": ("out_and_back", "speed"),
-    "wheel_speed": ("out_and_back", "speed"),
-    "acceleration": ("start_stop", "acceleration"),
-    "yaw_rate": ("arcs", "rate of turning"),
-    "yaw_rate_size": ("arcs", "rate of turning"),
-    "direction": ("out_and_back", "sense of driving"),
-    "travel_since_reversal": ("start_stop", "travel since the last reversal"),
-    "heading": ("square", "heading"),
-    "left_wheel_angle": ("out_and_back", "angle of the left wheel"),
-    "right_wheel_angle": ("out_and_back", "angle of the right wheel"),
-    "left_wheel_angle_twice": ("out_and_back", "angle of the left wheel"),
-    "right_wheel_angle_twice": ("out_and_back", "angle of the right wheel"),
-    "turn": ("spins", "turning"),
-    "travel": ("out_and_back", "travel"),
-    "path": ("out_and_back", "travel"),
-}
-"""Manoeuvre that varies a variable alone, as far as one can, and the variable in words."""
-
-
-def _for_the_unknown(diagnosis: Diagnosis) -> Manoeuvre | None:
-    """Vary what the error goes with, and hold the rest."""
-    found = strongest(diagnosis)
-    if found is None:
-        return None
-    name = found.name
-    if name in _VARYING:
-        manoeuvre, words = _VARYING[name]
-        ideal = next(item for item in MANOEUVRES if item.name == manoeuvre)
-        why = f"it varies the {words} and holds as much else as can be held, so that the law shows"
-        return Manoeuvre(manoeuvre, why, ideal.words, 2.0)
-    if name == "position":
-        return Manoeuvre(
-            "square",
-            "the same drive on different places of the floor shows where the error is and how wide",
-            "the same small square, in both senses, on and off the places where the error is "
-            "largest",
-            4.0,
-        )
-    if name in ("time", "duration", "distance"):
-        return Manoeuvre(
-            "out_and_back",
-            "the same line, repeated, shows how the error grows with time and whether it comes back "
-            "after a rest",
-            "one and the same line forwards and backwards for ten minutes; then after a rest again",
-            10.0,
-        )
-    return Manoeuvre(
-        "out_and_back",
-        f"the same short drive at different values of {name}, all else held, shows how the error "
-        "follows it",
-        f"one and the same line forwards and backwards, with {name} as low and as high as it gets, "
-        "and in between",
-        4.0,
-    )
-
-
-def strongest(diagnosis: Diagnosis) -> Dependence | None:
-    """The dependence that explains most; one that stands on a variable before a bare amount."""
-    sure = [cell for cell in diagnosis.depends_on if cell.p_value < 1e-3]
-    on_a_variable = [cell for cell in sure if cell.variable.name != CONSTANT]
-    ordered = sorted(on_a_variable or sure, key=lambda cell: 2 * cell.degrees - cell.gain)
-    return ordered[0] if ordered else None

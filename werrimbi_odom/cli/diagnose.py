@@ -1,0 +1,152 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi diagnose`: which physical effect is missing."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shlex
+from importlib import import_module
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
+
+if TYPE_CHECKING:
+    from werrimbi_odom.inference.diagnosis import Diagnosis
+    from werrimbi_odom.report.diagnosis_words import NextSteps
+
+HELP = "which physical effect is missing, how sure that is, and what to do about it"
+
+_LONG = 300  # letters of a command that is worth printing whole
+_PAGE = "werrimbi_odom.report.diagnosis_page"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `werrimbi diagnose`."""
+    parser.description = (
+        "Finds out which physical effect a model is missing: set-up mistakes first, then one "
+        "effect after the other, each judged on drives that took no part in its fit. It says what "
+        "is missing, how sure that is, how large, how to check it with a ruler, and what to do "
+        "next; or that nothing is missing, or that these drives cannot tell, or that no effect of "
+        "the library is what it is."
+    )
+    add_recording_arguments(parser, holdout=True, report=find_spec(_PAGE) is not None)
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Read, diagnose, tell; 0 on success.
+
+    Raises
+    ------
+    InputError
+        When robot file or runs cannot be used, or a file cannot be written.
+    """
+    from werrimbi_odom.cli.progress import share_done
+    from werrimbi_odom.inference.diagnosis import diagnose
+    from werrimbi_odom.inference.manoeuvre_sight import sight_of
+    from werrimbi_odom.inference.manoeuvres import next_manoeuvre
+    from werrimbi_odom.report.diagnosis_json import json_of
+    from werrimbi_odom.report.diagnosis_tables import tables_of
+    from werrimbi_odom.report.diagnosis_words import Told, words_of
+
+    given = read_recordings(arguments)
+    effects = given.collection.effects
+    with share_done("diagnosing") as show:
+        diagnosis = diagnose(
+            given.runs,
+            given.source.robot,
+            effects,
+            given.kind,
+            holdout=given.holdout,
+            leg=given.leg,
+            limits=given.source.limits,
+            sigma_xy=given.sigma_xy,
+            sigma_yaw=given.sigma_yaw,
+            show=show,
+        )
+        show(0.97, "the next step")
+        manoeuvre = next_manoeuvre(diagnosis)
+        sights = sight_of(diagnosis, effects)
+    told = Told(diagnosis, manoeuvre, sights, given.leg, bool(given.holdout))
+    print(words_of(told, _steps(arguments)))
+    print()
+    print(tables_of(diagnosis, sights))
+    written = _write(arguments, diagnosis, json_of(diagnosis, manoeuvre, sights))
+    if written:
+        print(f"\nwritten: {', '.join(map(str, written))}")
+    return 0
+
+
+def _steps(arguments: argparse.Namespace) -> NextSteps:
+    """The commands that follow, for the same files."""
+    from werrimbi_odom.report.diagnosis_words import NextSteps
+
+    same = ["--robot", str(arguments.robot)]
+    for option in ("reference_kind", "leg", "ticks_topic", "reference_topic"):
+        value = getattr(arguments, option)
+        if value not in (None, "absolute", 1.0):
+            same += [f"--{option.replace('_', '-')}", f"{value:g}" if option == "leg" else value]
+    for option in ("reference_sigma_xy", "reference_sigma_yaw"):
+        value = getattr(arguments, option)
+        if value is not None:
+            same += [f"--{option.replace('_', '-')}", f"{value:g}"]
+    for file in arguments.effects:
+        same += ["--effects", str(file)]
+    runs = [str(path) for path in arguments.runs]
+    holdout = [str(path) for path in arguments.holdout]
+    new = Path(arguments.robot)
+    better = str(new.with_name(f"{new.stem}_better{new.suffix}"))
+    return NextSteps(
+        add=_command(["werrimbi", "add", "EFFECT"], same, runs, holdout, better).replace(
+            "EFFECT", "{effect}", 1
+        ),
+        draft=_command(["werrimbi", "draft"], same, runs, [], "my_effect"),
+        diagnose="werrimbi diagnose",
+    )
+
+
+def _command(
+    verb: list[str], same: list[str], runs: list[str], holdout: list[str], out: str
+) -> str:
+    """A command over lines that a shell takes; drives by RUN... where they are many."""
+    lines = [shlex.join([*verb, *same])]
+    lines.append(_paths(runs))
+    if holdout:
+        lines.append(f"--holdout {_paths(holdout)}")
+    lines.append(shlex.join(["--out", out]))
+    return " \\\n      ".join(lines).replace("{", "{{").replace("}", "}}")
+
+
+def _paths(paths: list[str]) -> str:
+    """Paths as given; all of one folder as FOLDER/*."""
+    whole = shlex.join(paths)
+    folders = {str(Path(path).parent) for path in paths}
+    if len(paths) > 1 and len(folders) == 1:
+        (folder,) = folders
+        there = {path.name for path in Path(folder).iterdir() if not path.name.startswith(".")}
+        if there == {Path(path).name for path in paths}:
+            return f"{shlex.quote(folder)}/*"
+    return whole
+
+
+def _write(
+    arguments: argparse.Namespace, diagnosis: Diagnosis, figures: dict[str, Any]
+) -> list[Path]:
+    """The JSON and the page that were asked for; returns what was written."""
+    from werrimbi_odom.cli.calibration_files import plain
+    from werrimbi_odom.files.replacing import replacing
+
+    written = []
+    if arguments.json is not None:
+        with replacing(arguments.json) as file:
+            json.dump(plain(figures), file, indent=2, allow_nan=False)
+            file.write("\n")
+        written.append(arguments.json)
+    page = getattr(arguments, "report", None)
+    if page is not None:
+        import_module(_PAGE).write_diagnosis_page(diagnosis, page)
+        written.append(page)
+    return written

@@ -1,0 +1,112 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A diagnosis as JSON, field for field as the contract says; NaN where a figure does not exist."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from werrimbi_odom.inference.diagnosis import SURE, Diagnosis
+from werrimbi_odom.inference.evidence import Dependence
+from werrimbi_odom.inference.holdout import Sides
+from werrimbi_odom.inference.manoeuvre_sight import Sight
+from werrimbi_odom.inference.manoeuvres import Manoeuvre, strongest
+from werrimbi_odom.report.diagnosis_dependence import dependence_words
+from werrimbi_odom.report.diagnosis_values import values_of
+
+
+def json_of(
+    diagnosis: Diagnosis, manoeuvre: Manoeuvre | None, sights: Sequence[Sight] = ()
+) -> dict[str, Any]:
+    """Everything that was found."""
+    return {
+        "verdict": diagnosis.verdict,
+        "effect": diagnosis.effect,
+        "ranking": [
+            {
+                "effect": item.effect,
+                "p_value": item.p_value,
+                "train": _sides(item.train),
+                "holdout": _sides(item.holdout),
+            }
+            for item in diagnosis.ranking
+        ],
+        "rivals": list(diagnosis.rivals),
+        "depends_on": [_cell(cell) for cell in significant(diagnosis)],
+        "next_manoeuvre": None if manoeuvre is None else asdict(manoeuvre),
+        "found": [
+            {"effect": name, "parameters": _parameters(diagnosis, name)} for name in diagnosis.found
+        ],
+        "set_up": [
+            {
+                "effect": finding.effect,
+                "values": dict(finding.values),
+                "factor": finding.factor,
+                "words": finding.words,
+                "twins": list(finding.twins),
+            }
+            for finding in diagnosis.set_up.findings
+        ],
+        "train": _sides(diagnosis.train),
+        "holdout": _sides(diagnosis.holdout),
+        "remaining": [_cell(cell) for cell in _once(_sure(diagnosis.remaining))],
+        "could_have_been_seen": [{**asdict(sight), "hidden": sight.hidden} for sight in sights],
+    }
+
+
+def significant(diagnosis: Diagnosis) -> list[Dependence]:
+    """Cells of the evidence map that chance does not make, one for each channel and variable.
+
+    The best first; where no effect is what it is, first the one that explains most.
+    """
+    cells = _once(_sure(diagnosis.depends_on))
+    first = strongest(diagnosis) if diagnosis.verdict == "unknown" else None
+    if first is None:
+        return cells
+    others = [cell for cell in cells if (cell.channel, cell.name) != (first.channel, first.name)]
+    return [first, *others]
+
+
+def _sure(cells: Iterable[Dependence]) -> Iterator[Dependence]:
+    return (cell for cell in cells if cell.p_value < SURE)
+
+
+def _once(cells: Iterable[Dependence]) -> list[Dependence]:
+    found: dict[tuple[str, str], Dependence] = {}
+    for cell in cells:
+        found.setdefault((cell.channel, cell.name), cell)
+    return list(found.values())
+
+
+def _cell(cell: Dependence) -> dict[str, Any]:
+    return {
+        "channel": cell.channel,
+        "variable": cell.name,
+        "p_value": cell.p_value,
+        "per": cell.amount.per,
+        "form": cell.form,
+        "coefficients": np.asarray(cell.coefficients).tolist(),
+        "gain": cell.gain,
+        "degrees": cell.degrees,
+        "words": dependence_words(cell),
+    }
+
+
+def _sides(sides: Sides | None) -> dict[str, float | None]:
+    return {"before": None, "after": None} if sides is None else asdict(sides)
+
+
+def _parameters(diagnosis: Diagnosis, name: str) -> dict[str, Any]:
+    return {
+        parameter: {
+            "value": value.value,
+            "std": value.std,
+            "unit": value.unit,
+            "per_run": value.per_run,
+        }
+        for parameter, value in values_of(diagnosis, name).items()
+    }

@@ -1,0 +1,56 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Numbers in a diagnosis' words and tables."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+
+def length(value: float) -> str:
+    """Metres, in the unit that reads best."""
+    if not math.isfinite(value):
+        return "-"
+    millimetres = 1e3 * value
+    if millimetres >= 1e3:
+        return f"{value:.2f} m"
+    return f"{millimetres:.1f} mm" if millimetres < 100.0 else f"{millimetres:.0f} mm"
+
+
+def with_std(value: float, std: float) -> str:
+    """Value and standard deviation, to the two digits that this leaves."""
+    if not math.isfinite(value):
+        return "-"
+    if not (math.isfinite(std) and std > 0.0):
+        return f"{value:.4g}"
+    digits = 1 - math.floor(math.log10(std))
+    if not -3 <= digits <= 6:
+        return f"{value:.4g} ± {std:.2g}"
+    digits = max(digits, 0)
+    return f"{value:.{digits}f} ± {std:.{digits}f}"
+
+
+def chance_words(p_value: float) -> str:
+    """How often chance would do the same."""
+    if p_value < 1e-12:
+        return "beyond any chance"
+    if p_value < 1e-4:
+        return f"chance would show as much once in 10^{-math.ceil(math.log10(p_value))} diagnoses"
+    if p_value < 0.5:
+        return f"chance would show as much in {100.0 * p_value:.2g} % of diagnoses"
+    return "no more than chance shows"
+
+
+def p_words(p_value: float) -> str:
+    """For a table."""
+    if p_value >= 0.995:
+        return "1"
+    if p_value >= 0.01:
+        return f"{p_value:.2f}"
+    return "< 1e-12" if p_value < 1e-12 else f"{p_value:.0e}"
+
+
+def listed(words: Sequence[str], last: str = "and") -> str:
+    """a, b and c."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}"

@@ -1,0 +1,102 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A diagnosis in tables of plain text that fit into 80 columns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from werrimbi_odom.inference.diagnosis import SURE, Diagnosis
+from werrimbi_odom.inference.evidence import CHANNELS, Dependence
+from werrimbi_odom.inference.holdout import Sides
+from werrimbi_odom.inference.manoeuvre_sight import Sight
+from werrimbi_odom.report.compare_tables import table
+from werrimbi_odom.report.diagnosis_numbers import length, p_words, with_std
+from werrimbi_odom.report.diagnosis_values import values_of
+
+_RANKED = 8
+_MAPPED = 10
+
+
+def tables_of(diagnosis: Diagnosis, sights: Sequence[Sight] = ()) -> str:
+    """Parameters, ranking, evidence map, and what would have been seen; parted by empty lines."""
+    parts = [_parameters(diagnosis), _ranking(diagnosis), _map(diagnosis)]
+    if diagnosis.verdict == "none":
+        parts.append(_sights(sights))
+    return "\n\n".join(part for part in parts if part)
+
+
+def _parameters(diagnosis: Diagnosis) -> str:
+    names = list(dict.fromkeys([*diagnosis.found, *diagnosis.rivals]))
+    rows = [
+        [
+            f"{name}.{parameter}",
+            "each drive its own" if item.per_run else with_std(item.value, item.std),
+            item.unit,
+        ]
+        for name in names
+        for parameter, item in values_of(diagnosis, name).items()
+    ]
+    if not rows:
+        return ""
+    return table("Fitted values (± one standard deviation)", ("parameter", "value", "unit"), rows)
+
+
+def _ranking(diagnosis: Diagnosis) -> str:
+    ranked = diagnosis.ranking[:_RANKED]
+    rows = [
+        [item.effect, p_words(item.p_value), *_fall(item.train), *_fall(item.holdout)]
+        for item in ranked
+    ]
+    heads = ("effect", "chance", "train", "with it", "held out", "with it")
+    if not any(row[2] for row in rows):
+        return table("Effects, best first", heads[:2], [row[:2] for row in rows])
+    return table("Effects, best first (position error of legs without it and with it)", heads, rows)
+
+
+def _fall(sides: Sides | None) -> tuple[str, str]:
+    return ("", "") if sides is None else (length(sides.before), length(sides.after))
+
+
+def _map(diagnosis: Diagnosis) -> str:
+    """How strongly each error goes with each variable: the logarithm of the chance, in marks."""
+    title = "What the errors go with, before anything is put in"
+    cells = list(diagnosis.depends_on)
+    sure = list(dict.fromkeys(cell.name for cell in cells if cell.p_value < SURE))
+    if not sure:
+        return f"{title}: nothing."
+    rows = [
+        [name, *(_strength(cells, channel, name) for channel in CHANNELS)]
+        for name in sure[:_MAPPED]
+    ]
+    text = table(f"{title} (explained χ²)", ("goes with", *CHANNELS), rows)
+    rest = len(sure) - _MAPPED
+    return text if rest <= 0 else f"{text}\n  and {rest} more"
+
+
+def _strength(cells: Iterable[Dependence], channel: str, name: str) -> str:
+    best = max(
+        (cell.gain - cell.degrees for cell in cells
+         if cell.channel == channel and cell.name == name and cell.p_value < SURE),
+        default=0.0,
+    )  # fmt: skip
+    return f"{best:.0f}" if best > 0.0 else "."
+
+
+def _sights(sights: Sequence[Sight]) -> str:
+    rows = [
+        [
+            sight.effect,
+            sight.parameter,
+            f"{sight.seen_from:.2g} {sight.unit}".rstrip() if sight.seen_from < 1e3 else "never",
+            f"{sight.typical:.2g} {sight.unit}".rstrip(),
+        ]
+        for sight in sights
+    ]
+    if not rows:
+        return ""
+    return table(
+        "From which size on an effect would have been seen",
+        ("effect", "parameter", "seen from", "usual"),
+        rows,
+    )

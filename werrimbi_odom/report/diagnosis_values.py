@@ -1,0 +1,128 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Values of the effects that a diagnosis found, with standard deviations."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from werrimbi_odom.effects import find
+from werrimbi_odom.inference.candidates import CALIBRATED
+from werrimbi_odom.inference.diagnosis import Diagnosis, Ranked
+from werrimbi_odom.inference.knobs import MULTIPLIERS
+from werrimbi_odom.inference.manoeuvres import sizes_of_calibration
+from werrimbi_odom.inference.selection import Fitted
+from werrimbi_odom.inference.set_up import IN_DEGREES
+from werrimbi_odom.model.effect import Effect
+
+_SHARES = {
+    "track_width": (1.0, 0.0, 0.0),
+    "unequal_wheel_radii": (0.0, -1.0, 1.0),
+    "wheel_radius_scale": (0.0, 0.5, 0.5),
+}
+"""How the logarithm of each calibration effect is made of those of the three multipliers."""
+
+
+@dataclass(frozen=True, slots=True)
+class Value:
+    """A parameter of an effect that was found."""
+
+    value: float
+    """NaN for what each run has anew."""
+    std: float
+    """NaN where it is not known."""
+    unit: str
+    says: str
+    null: float
+    per_run: bool = False
+
+
+def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
+    """The parameters of an effect that was found; empty for a mistake, which has none."""
+    if name == IN_DEGREES:
+        return {}
+    if name in CALIBRATED:
+        return {next(iter(find(name).parameters)): _calibrated(diagnosis, name)}
+    fit = _fit_with(diagnosis, name)
+    if fit is None:
+        return {}
+    model = fit.point.model
+    applied = next(item for item in model.robot.effects if item.name == name)
+    spread = _spreads(fit)
+    anew = set(model.own[0]) if model.own else set()
+    found = {}
+    for parameter, item in applied.effect.parameters.items():
+        per_run = f"{name}.{parameter}" in anew
+        found[parameter] = Value(
+            math.nan if per_run else float(applied.values[parameter]),
+            math.nan if per_run else spread.get(f"{name}.{parameter}", math.nan),
+            item.unit,
+            item.says,
+            item.null,
+            per_run,
+        )
+    return found
+
+
+def effect_named(diagnosis: Diagnosis, name: str) -> Effect | None:
+    """The effect of a name, a user's own among them; None for a finding that is no effect."""
+    if name == IN_DEGREES:
+        return None
+    for this in diagnosis.rounds:
+        for score in this.scores:
+            if score.candidate.name == name:
+                return score.candidate.effect
+    for applied in diagnosis.robot.effects:
+        if applied.name == name:
+            return applied.effect
+    return find(name)
+
+
+def ranked_of(diagnosis: Diagnosis, name: str) -> Ranked | None:
+    """The line of the ranking about an effect."""
+    return next((item for item in diagnosis.ranking if item.effect == name), None)
+
+
+def _calibrated(diagnosis: Diagnosis, name: str) -> Value:
+    """A multiplier by its effect's name; what the set-up search put in and what was fitted."""
+    effect = find(name)
+    parameter, item = next(iter(effect.parameters.items()))
+    size = sizes_of_calibration(diagnosis.robot, diagnosis.given)[name]
+    before = [each.values[parameter] for each in diagnosis.given.effects if each.name == name]
+    now = [each.values[parameter] for each in diagnosis.robot.effects if each.name == name]
+    size *= math.prod(now) / math.prod(before)
+    names = [knob.name for knob, _ in diagnosis.final.design.columns]
+    std = math.nan
+    if set(MULTIPLIERS) <= set(names):
+        where = [names.index(multiplier) for multiplier in MULTIPLIERS]
+        scale = np.array([getattr(diagnosis.robot, multiplier) for multiplier in MULTIPLIERS])
+        share = np.array(_SHARES[name]) / scale
+        spread = diagnosis.final.covariance[np.ix_(where, where)]
+        std = size * math.sqrt(max(float(share @ spread @ share), 0.0))
+    return Value(size, std, item.unit, item.says, item.null)
+
+
+def _fit_with(diagnosis: Diagnosis, name: str) -> Fitted | None:
+    """The final fit if it holds an effect, else the cheapest one that was tried with it."""
+    tried = [fit for this in diagnosis.rounds for fit in this.tried if fit.names[-1] == name]
+    return next(
+        (
+            fit
+            for fit in (diagnosis.final, *tried)
+            if any(item.name == name for item in fit.point.model.robot.effects)
+        ),
+        None,
+    )
+
+
+def _spreads(fit: Fitted) -> dict[str, float]:
+    """Standard deviations of all shared knobs of a fit."""
+    return {
+        knob.name: math.sqrt(max(float(fit.covariance[index, index]), 0.0))
+        for index, (knob, run) in enumerate(fit.design.columns)
+        if run < 0
+    }
