@@ -32,6 +32,9 @@ from werrimbi_odom.model.robot import Robot
 SHARES = (0.002, 0.005, 0.01, 0.02, 0.04)
 """What a robot that is set up right may err by, of its path and turning; the likeliest counts."""
 
+STEPS = 4000
+"""In all drives together, some tenths of a second each."""
+
 MARGIN = 10.0
 """Log-likelihood by which a set-up must be better than the one entered ..."""
 
@@ -49,7 +52,7 @@ def search_sparse(
     records: Sequence[Record], robot: Robot, measured: Measured
 ) -> tuple[list[SetUpFinding], Setting | None]:
     """What is wrong; sizes are not measured, so the second is always None."""
-    cuts = cut(records, robot, measured)
+    cuts = _thinned(cut(records, robot, measured))
     track = effective_track(robot)
     if cuts.count == 0 or measured == "headings":
         return [], None
@@ -78,6 +81,18 @@ def search_sparse(
 
     found = findings_of(same[0], ways, misfit)
     return found, None
+
+
+def _thinned(cuts: Cuts) -> Cuts:
+    """Neighbouring steps taken together: so many set-ups are tried that fine steps cost time."""
+    together = max(1, cuts.left.size // STEPS)
+    nodes = np.union1d(np.arange(0, cuts.left.size, together), cuts.left.size)
+    nodes = np.union1d(nodes, np.concatenate([cuts.begin, cuts.end])).astype(np.intp)
+    left, right = (
+        np.diff(np.concatenate([[0.0], np.cumsum(side)])[nodes]) for side in (cuts.left, cuts.right)
+    )
+    begin, end = np.searchsorted(nodes, cuts.begin), np.searchsorted(nodes, cuts.end)
+    return replace(cuts, left=left, right=right, begin=begin, end=end)
 
 
 def _settings() -> Iterator[Setting]:
