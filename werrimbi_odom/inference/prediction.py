@@ -19,7 +19,7 @@ from werrimbi_odom.model.covariance import (
     noise_of_wheel_variances,
     piece_covariance,
 )
-from werrimbi_odom.model.driving import acts, after_effects
+from werrimbi_odom.model.driving import acts, after_effects, looks_at_pose
 from werrimbi_odom.model.effect import View, view_of
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats
@@ -145,14 +145,64 @@ def _path(
     raw, drive = runs.raw_drive(robot)
     if not acts(robot):
         return _from_motion(raw, wheels_to_body(raw, robot.track))
-    path = _from_motion(*after_effects(robot, raw, drive))
-    if not _looks_at_heading(robot):
-        return path
-    # The heading contains the effects, and an effect may look at it; but no effect's turn depends
-    # on it, so a pass with the heading of the first pass is the answer.
-    heading = headings_of(path, runs, view, start_yaws)
-    own_turn = drive.heading.end - drive.heading.start
-    return _from_motion(*after_effects(robot, raw, drive.with_heading(heading, own_turn)))
+    placed = looks_at_pose(robot)
+    if placed:
+        path = _from_motion(raw, wheels_to_body(raw, robot.track))
+    else:
+        path = _from_motion(*after_effects(robot, raw, drive))
+        if not _looks_at_heading(robot):
+            return path
+    # Heading and place contain the effects, and effects may look at them. Few effects turn the
+    # robot by its heading, so a pass with the heading of the first pass is mostly the answer.
+    plain = wheels_to_body(raw, robot.track)
+    for _ in range(_PASSES):
+        heading = headings_of(path, runs, view, start_yaws)
+        seen = drive.with_heading(heading, drive.heading.change)
+        if placed:
+            x, y = places_of(path, heading, runs, view)
+            seen = seen.with_place(x, y, displacement(plain, heading))
+        before, path = path, _from_motion(*after_effects(robot, raw, seen))
+        if _same(before, path, placed):
+            break
+    return path
+
+
+_PASSES = 30
+
+
+def _same(before: DrivenPath, after: DrivenPath, placed: bool) -> bool:
+    """Whether another pass would find the same poses."""
+    if not placed and np.array_equal(before.motion.turn, after.motion.turn):
+        return True
+    parts = after.motion if placed else (after.motion.turn,)
+    olds = before.motion if placed else (before.motion.turn,)
+    return all(
+        not np.max(np.abs(new - old), initial=0.0) > 1e-10
+        for new, old in zip(parts, olds, strict=True)
+    )
+
+
+def places_of(
+    path: DrivenPath, heading: Floats, runs: Together, view: View
+) -> tuple[Floats, Floats]:
+    """Where each step begins, in the reference's frame; arrays of shape (n,) [m].
+
+    Every leg starts from the measured position where there is one; else the path is followed from
+    the last one that was measured, or from zero.
+    """
+    start = right_handed(runs.start, view)
+    known = np.isfinite(start[:, 0]) & np.isfinite(start[:, 1])
+    first = runs.legs[:-1]
+    anchors = np.searchsorted(runs.begin, np.arange(heading.size), side="right") - 1
+    anchors = np.clip(anchors, first[runs.run_of_step], None)
+    latest = np.where(known, np.arange(runs.count), first[runs.run_of_leg])
+    anchor = np.maximum.accumulate(latest)[anchors]
+    begin = np.minimum(runs.begin[anchor], heading.size - 1)
+    frame = heading - path.yaw[:-1]
+    moved = np.exp(1j * frame) * (path.position[:-1] - path.position[begin])
+    arm = complex(view.ahead, view.left) * np.exp(1j * heading[begin])
+    placed = np.nan_to_num(start[anchor, 0] + 1j * start[anchor, 1]) - arm + moved
+    return np.asarray(placed.real), np.asarray(placed.imag)
 
 
 def _looks_at_heading(robot: Robot) -> bool:

@@ -9,6 +9,7 @@ same class holds floats (the node, step by step) and arrays (a whole run).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from typing import Generic, NamedTuple
@@ -85,12 +86,20 @@ class Drive(Generic[Number]):
     """The same for the right wheel."""
     heading: Span[Number]
     """Of the robot in the odometry frame [rad]."""
+    x: Span[Number]
+    """Where the axle's midpoint is, in the odometry frame [m]; NaN but for effects with `pose`."""
+    y: Span[Number]
+    """Likewise, across [m]."""
     channels: Mapping[str, Span[Number]] = field(default_factory=dict)
     """Extra measured channels of the record, by name, in their own units."""
 
     def with_heading(self, start: Number, turn: Number) -> Drive[Number]:
         """The same with the heading that the odometry has at the start of the step."""
         return replace(self, heading=Span(start, start + turn))
+
+    def with_place(self, x: Number, y: Number, moved: tuple[Number, Number]) -> Drive[Number]:
+        """The same with the place that the odometry has at the start of the step."""
+        return replace(self, x=Span(x, x + moved[0]), y=Span(y, y + moved[1]))
 
 
 class RawStep(NamedTuple):
@@ -224,6 +233,8 @@ class DriveMemory:
             float(self._left.reversals),
             float(self._right.reversals),
             Span(heading, heading + raw.turn),
+            Span(math.nan, math.nan),
+            Span(math.nan, math.nan),
             channels or {},
         )
 
@@ -268,6 +279,8 @@ def drive_of_run(
         left_side.reversals,
         right_side.reversals,
         _grown(0.0, turn),
+        _nowhere(turn),
+        _nowhere(turn),
         channels or {},
     )
 
@@ -282,6 +295,11 @@ def _grown(first: float, steps: Floats) -> Span[Floats]:
     """Running sum before and after each step."""
     sums = np.cumsum(np.concatenate([[first], steps]))
     return Span(sums[:-1], sums[1:])
+
+
+def _nowhere(steps: Floats) -> Span[Floats]:
+    """A place that nobody has told yet."""
+    return Span(np.full_like(steps, np.nan), np.full_like(steps, np.nan))
 
 
 def _lagged(means: Floats) -> Span[Floats]:

@@ -9,8 +9,8 @@ counters are read (Wiring -> Wiring).
 
 Laws that every effect keeps (`check_effect` holds them against it, a user's own too): at its null
 values it is the exact identity; a step's result depends on that step's row alone; it changes none
-of its arguments; it is finite at the bounds; splitting a step changes nothing; `turn` never depends
-on the heading.
+of its arguments; it is finite at the bounds; splitting a step changes nothing; a turn that depends
+on the heading does so gently.
 """
 
 from __future__ import annotations
@@ -128,6 +128,9 @@ class Effect:
         `to_fit`.
     channels : tuple of str
         Extra measured channels that it looks at; without them it cannot be applied.
+    pose : bool
+        It looks at where the robot stands (`Drive.x`, `Drive.y`), or acts on the wheels and looks
+        at the heading.
     """
 
     name: str
@@ -138,6 +141,7 @@ class Effect:
     twins: tuple[str, ...] = ()
     quadrature: tuple[str, str] | None = None
     channels: tuple[str, ...] = ()
+    pose: bool = False
 
     @property
     def summary(self) -> str:
@@ -239,10 +243,11 @@ def wheel_effect(
     twins: tuple[str, ...] = (),
     quadrature: tuple[str, str] | None = None,
     channels: tuple[str, ...] = (),
+    pose: bool = False,
     **parameters: Parameter,
 ) -> Callable[[Apply], Effect]:
     """Declare ``f(travel, drive, **parameters) -> WheelTravel`` as an effect on the wheels."""
-    return _declared("wheels", parameters, 2, twins, quadrature, channels)
+    return _declared("wheels", parameters, 2, twins, quadrature, channels, pose)
 
 
 def body_effect(
@@ -250,10 +255,11 @@ def body_effect(
     twins: tuple[str, ...] = (),
     quadrature: tuple[str, str] | None = None,
     channels: tuple[str, ...] = (),
+    pose: bool = False,
     **parameters: Parameter,
 ) -> Callable[[Apply], Effect]:
     """Declare ``f(motion, drive, **parameters) -> BodyMotion`` as an effect on the body."""
-    return _declared("body", parameters, 2, twins, quadrature, channels)
+    return _declared("body", parameters, 2, twins, quadrature, channels, pose)
 
 
 def reference_effect(
@@ -275,6 +281,7 @@ def _declared(
     twins: tuple[str, ...],
     quadrature: tuple[str, str] | None = None,
     channels: tuple[str, ...] = (),
+    pose: bool = False,
 ) -> Callable[[Apply], Effect]:
     def declare(apply: Apply) -> Effect:
         name = apply.__name__
@@ -292,7 +299,7 @@ def _declared(
             raise TypeError(
                 f"effect {name}: its quadrature names {quadrature}, no parameters of it"
             )
-        return Effect(name, stage, dict(parameters), apply, doc, twins, quadrature, channels)
+        return Effect(name, stage, dict(parameters), apply, doc, twins, quadrature, channels, pose)
 
     return declare
 

@@ -134,7 +134,7 @@ class Odometer:
                 self._begin(time, left, right, channels)
             return None
         raw = WheelTravel(step.left, step.right)
-        travel, motion = self._driving.step(step.duration, raw, self._pose.yaw, channels)
+        travel, motion = self._driving.step(step.duration, raw, self._pose, channels)
         pose = self._moved(motion)
         closed = self._cut(step, travel, motion, pose)
         self._time, self._counts, self._pose = time, (left, right), pose

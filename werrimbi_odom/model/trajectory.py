@@ -100,7 +100,7 @@ def trajectory(
     first_counts = float(left[steps.first_row]), float(right[steps.first_row])
     rows = np.concatenate([[steps.first_row], steps.row])
     spans = channel_spans(time[rows], channels or {}, rows)
-    travel, motion = _driven(robot, steps.duration, raw, first_counts, spans, start.yaw)
+    travel, motion = _driven(robot, steps.duration, raw, first_counts, spans, start)
     x, y, yaw = _integrated(start, motion)
     lost = noise_of_wheel_variances(steps.left_lost, steps.right_lost, robot.track)
     rule = PieceRule.of(robot, tolerance or PieceTolerance())
@@ -128,12 +128,13 @@ def _driven(
     raw: WheelTravel[Floats],
     first_counts: tuple[float, float],
     channels: Mapping[str, Span[Floats]],
-    yaw: float,
+    start: Pose,
 ) -> Driven:
     """Travel and motion of the steps; nothing is worked out for effects that are not there."""
     if not acts(robot):
         return Driven(raw, wheels_to_body(raw, robot.track))
-    return driven(robot, raw, features(robot, duration, raw, first_counts, channels), yaw)
+    drive = features(robot, duration, raw, first_counts, channels)
+    return driven(robot, raw, drive, start.yaw, (start.x, start.y))
 
 
 def channel_spans(

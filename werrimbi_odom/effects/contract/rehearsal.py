@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from werrimbi_odom.model.drive import Drive, DriveMemory, RawStep, Span, drive_of_run
-from werrimbi_odom.model.motion import BodyMotion, WheelTravel, wheels_to_body
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats
 
 TRACK, RADIUS, FLICKER = 0.35, 0.05, 2.5e-4
@@ -78,7 +78,7 @@ class Rehearsal:
     def drive(self) -> Drive[Floats]:
         """All steps at once."""
         motion = self.motion
-        return drive_of_run(
+        drive = drive_of_run(
             self.duration,
             self.left,
             self.right,
@@ -90,19 +90,32 @@ class Rehearsal:
             first_angles=FIRST_ANGLES,
             channels=self._measured(),
         )
+        x, y = self._places()
+        moved = displacement(motion, drive.heading.start)
+        return drive.with_place(x, y, moved)
+
+    def _places(self) -> tuple[Floats, Floats]:
+        """Where each step begins [m]."""
+        motion = self.motion
+        heading = np.cumsum(motion.turn) - motion.turn
+        dx, dy = displacement(motion, heading)
+        return np.cumsum(dx) - dx, np.cumsum(dy) - dy
 
     def steps(self) -> Iterator[Moment]:
         """Step by step, through the causal memory that the node has."""
         memory = DriveMemory(FLICKER, *FIRST_ANGLES)
         motion, heading = self.motion, 0.0
-        measured = self._measured()
+        measured, (x, y) = self._measured(), self._places()
         for i, (duration, left, right) in enumerate(
             zip(self.duration.tolist(), self.left.tolist(), self.right.tolist(), strict=True)
         ):
             one = BodyMotion(*(float(part[i]) for part in motion))
             raw = RawStep(duration, left, right, one.along, one.turn, left / RADIUS, right / RADIUS)
             now = {name: Span(float(s.start[i]), float(s.end[i])) for name, s in measured.items()}
-            yield Moment(WheelTravel(left, right), one, memory.step(raw, heading, now))
+            seen = memory.step(raw, heading, now)
+            moved = displacement(one, heading)
+            seen = seen.with_place(float(x[i]), float(y[i]), moved)
+            yield Moment(WheelTravel(left, right), one, seen)
             heading += one.turn
 
     def split(self, shares: tuple[float, ...]) -> Rehearsal:

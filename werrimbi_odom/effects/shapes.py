@@ -1,0 +1,101 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Shapes of a dependence, as means over a step: a square, a step, a curve, a wave, a spot.
+
+A quantity runs straight from a step's start to its end; the mean of a shape over it is exact, so it
+does not matter how often the counters are read.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+
+from werrimbi_odom.effects.functions import cos, limited, share, sin, sinc
+from werrimbi_odom.model.drive import Span
+from werrimbi_odom.model.motion import Number
+from werrimbi_odom.model.pose import Floats
+
+__all__ = ["mean_cos", "mean_curve", "mean_sin", "mean_square", "mean_step", "share_inside"]
+
+
+def mean_square(span: Span[Number]) -> Number:
+    """Mean of the square of a quantity."""
+    return (span.start * span.start + span.start * span.end + span.end * span.end) / 3.0
+
+
+def mean_cos(span: Span[Number]) -> Number:
+    """Mean of the cosine of an angle [rad]."""
+    return sinc(0.5 * span.change) * cos(span.mean)
+
+
+def mean_sin(span: Span[Number]) -> Number:
+    """Mean of the sine of an angle [rad]."""
+    return sinc(0.5 * span.change) * sin(span.mean)
+
+
+def mean_step(span: Span[Number], edge: float, width: float) -> Number:
+    """Mean of a step from 0 to 1 that rises straight over `width` around `edge`."""
+    return mean_curve(span, (edge - 0.5 * width, edge + 0.5 * width), (0.0, 1.0))
+
+
+def mean_curve(span: Span[Number], knots: Sequence[float], heights: Sequence[float]) -> Number:
+    """Mean of a curve with `heights` at `knots`, straight in between, level beyond both ends."""
+    change = span.change
+    area = _area(span.end, knots, heights) - _area(span.start, knots, heights)
+    here = _height(span.mean, knots, heights)
+    if isinstance(change, np.ndarray):
+        moving = abs(change) > _STILL
+        return np.where(moving, np.divide(area, change, out=here.copy(), where=moving), here)
+    return area / change if abs(change) > _STILL else here
+
+
+_STILL = 1e-7
+"""A change of a quantity (in its unit) below which its mean value is all that matters."""
+
+
+def _height(value: Number, knots: Sequence[float], heights: Sequence[float]) -> Number:
+    found = heights[0] + 0.0 * value
+    for i in range(len(knots) - 1):
+        slope = (heights[i + 1] - heights[i]) / (knots[i + 1] - knots[i])
+        found = found + slope * (limited(value, knots[i], knots[i + 1]) - knots[i])
+    return found
+
+
+def _area(value: Number, knots: Sequence[float], heights: Sequence[float]) -> Number:
+    """Under the curve, from the first knot to a value."""
+    found = heights[0] * (value - knots[0])
+    for i in range(len(knots) - 1):
+        slope = (heights[i + 1] - heights[i]) / (knots[i + 1] - knots[i])
+        within = limited(value, knots[i], knots[i + 1]) - knots[i]
+        beyond = value - limited(value, -math.inf, knots[i + 1])
+        width = knots[i + 1] - knots[i]
+        found = found + slope * (0.5 * within * within + width * beyond)
+    return found
+
+
+def share_inside(
+    x: Span[Number], y: Span[Number], centre_x: float, centre_y: float, radius: float
+) -> Number:
+    """Share of the straight way from (x, y) at a step's start to its end inside a circle."""
+    if isinstance(x.start, np.ndarray):
+        return _inside(x, y, centre_x, centre_y, radius)
+    one_x, one_y = (Span(np.array([s.start]), np.array([s.end])) for s in (x, y))
+    return float(_inside(one_x, one_y, centre_x, centre_y, radius)[0])
+
+
+def _inside(x: Span[Floats], y: Span[Floats], at_x: float, at_y: float, radius: float) -> Floats:
+    way_x, way_y = x.change, y.change
+    from_x, from_y = x.start - at_x, y.start - at_y
+    # Points of the way are (from + u * way), u from 0 to 1; the circle is where
+    # way² u² + 2 (from · way) u + from² - radius² < 0.
+    square = way_x * way_x + way_y * way_y
+    along = from_x * way_x + from_y * way_y
+    apart = from_x * from_x + from_y * from_y - radius * radius
+    still = square < 1e-18
+    middle = share(-along, square)
+    root = np.sqrt(np.maximum(middle * middle - share(apart, square), 0.0))
+    inside = limited(middle + root, 0.0, 1.0) - limited(middle - root, 0.0, 1.0)
+    return np.asarray(np.where(still, np.where(apart < 0.0, 1.0, 0.0), inside))
