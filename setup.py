@@ -18,6 +18,7 @@ TOOLS = ["rich>=13.7", "rosbags>=0.11", "scipy>=1.11", "plotly>=6.1", "kaleido>=
 SIMULATION = ["mujoco>=3.2", "rich>=13.7", "rosbags>=0.11"]
 TEST = [
     "pytest>=8.0",
+    "filterpy>=1.4.5",
     "hypothesis>=6.100",
     "mpmath>=1.3",
     "mypy>=1.10",
@@ -35,7 +36,7 @@ def data_files() -> list[tuple[str, list[str]]]:
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (str(share), ["package.xml"]),
     ]
-    for folder in ("config", "launch"):
+    for folder in ("config", "launch", "rviz"):
         files = sorted(str(path) for path in Path(folder).glob("*") if path.is_file())
         if files:
             found.append((str(share / folder), files))
@@ -62,6 +63,7 @@ setup(
     zip_safe=False,
     entry_points={
         "console_scripts": [
+            f"compare_node = {PACKAGE}.ros.compare_node:main",
             f"odom_node = {PACKAGE}.ros.odom_node:main",
             f"werrimbi = {PACKAGE}.cli.main:main",
         ],

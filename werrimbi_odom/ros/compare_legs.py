@@ -1,0 +1,127 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Legs, live: measured relative pose against that of the odometry, and what was promised for it.
+
+As in `werrimbi compare`, but that what the odometry promises is all in its messages: of two of its
+covariances P₁ and P₂ the stretch between them has P₂ - J P₁ Jᵀ (docs/model.md).
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from werrimbi_odom.inference.legs import squared_deviation
+from werrimbi_odom.model.covariance import PoseCovariance, carried
+from werrimbi_odom.model.pose import Floats, between, wrap
+from werrimbi_odom.ros.compare_track import Reading
+
+QUARTER_TURN = 0.5 * math.pi
+
+_ROUNDING = 1e-9  # of a covariance: what the difference of two large ones may leave
+_SHARE = 0.1  # of its largest entry, which pieces may be off by; a constant's growth is -1 of it
+
+
+class Both(NamedTuple):
+    """What odometry and reference say of one instant, each in its own frame."""
+
+    odometry: Reading
+    reference: Reading
+
+
+@dataclass(frozen=True, slots=True)
+class LegError:
+    """Measured minus predicted relative pose, in the frame of the robot at the end.
+
+    x is along the robot's heading, y to its left [m], and yaw anticlockwise [rad].
+    """
+
+    time: float
+    error: Floats
+    """Shape (3,)."""
+    covariance: Floats
+    """Of the error, odometry's and reference's together, shape (3, 3)."""
+    grows: bool
+    """Whether the odometry's covariance grew as that of a path does."""
+
+    @property
+    def deviation(self) -> float:
+        """Squared Mahalanobis distance error' Σ⁻¹ error: chi-squared if honest."""
+        return float(squared_deviation(self.error[None], self.covariance[None])[0])
+
+
+class LegCutter:
+    """Cuts a drive into legs, each of which begins at the pose after the end of the last.
+
+    No pose of the reference is in two legs, so that their errors are independent.
+
+    Parameters
+    ----------
+    length : float
+        Path of a leg [m].
+    turn : float
+        Turning on the spot that makes a leg too [rad]; path and turning add up.
+    """
+
+    def __init__(self, length: float, turn: float = QUARTER_TURN) -> None:
+        self._length, self._turn = length, turn
+        self._start: Both | None = None
+
+    def restart(self) -> None:
+        """Forget the leg that has begun."""
+        self._start = None
+
+    def take(self, both: Both) -> tuple[LegError | None, bool]:
+        """The error so far of the leg that is being driven, and whether this pose ends it."""
+        start = self._start
+        if start is None:
+            self._start = both
+            return None, False
+        path = both.odometry.path - start.odometry.path
+        turned = both.odometry.turned - start.odometry.turned
+        ends = path / self._length + turned / self._turn >= 1.0
+        if ends:
+            self._start = None
+        return leg_error(start, both), ends
+
+
+def leg_error(start: Both, end: Both) -> LegError:
+    """The error between two instants."""
+    predicted = between(start.odometry.pose, end.odometry.pose)
+    measured = between(start.reference.pose, end.reference.pose)
+    error = np.array(
+        [
+            measured.x - predicted.x,
+            measured.y - predicted.y,
+            wrap(measured.yaw - predicted.yaw),
+        ]
+    )
+    odometry = _of_stretch(start.odometry, end.odometry, sign=-1.0)
+    scale = float(np.abs(end.odometry.covariance).max())
+    floor = _ROUNDING * scale + _SHARE * float(np.abs(odometry).max())
+    grows = bool(np.linalg.eigvalsh(odometry)[0] >= -floor and np.trace(odometry) > 0.0)
+    both = odometry + _of_stretch(start.reference, end.reference, sign=1.0)
+    return LegError(end.odometry.time, *_turned(error, both, -(predicted.yaw)), grows)
+
+
+def _of_stretch(start: Reading, end: Reading, sign: float) -> Floats:
+    """Covariance of the pose at `end` as seen from `start`, in the frame of `start`.
+
+    `sign` is -1 where the end's error holds the start's (odometry), and +1 where both are
+    independent (a reference that measures each pose anew).
+    """
+    dx, dy = end.pose.x - start.pose.x, end.pose.y - start.pose.y
+    swung = np.array(carried(start.covariance, dx, dy))
+    entries: list[float] = (np.array(end.covariance) + sign * swung).tolist()
+    matrix = PoseCovariance(*entries).matrix()
+    return _turned(np.zeros(3), matrix, -start.pose.yaw)[1]
+
+
+def _turned(error: Floats, covariance: Floats, angle: float) -> tuple[Floats, Floats]:
+    """An error and its covariance in a frame that is turned by -`angle` against theirs."""
+    cos, sin = math.cos(angle), math.sin(angle)
+    turn = np.array([[cos, -sin, 0.0], [sin, cos, 0.0], [0.0, 0.0, 1.0]])
+    return turn @ error, turn @ covariance @ turn.T

@@ -1,0 +1,267 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Odometry against a reference, live: the error, and whether the covariance promised it.
+
+    ros2 run werrimbi_odom compare_node --ros-args -r reference:=/vrpn/robot/pose
+
+`CompareNode._compare` is the whole way of a reference pose; everything else is set-up and reports.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections import Counter, deque
+from collections.abc import Callable
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from geometry_msgs.msg import PoseWithCovarianceStamped, Vector3Stamped
+from nav_msgs.msg import Odometry
+from rclpy.clock import Clock, ClockType
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
+from rclpy.qos_overriding_options import QoSOverridingOptions
+from std_msgs.msg import Float64
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.model.covariance import PoseCovariance
+from werrimbi_odom.ros import compare_parameters, inputs
+from werrimbi_odom.ros.compare_inputs import (
+    REFERENCE_TYPES,
+    Clockwork,
+    odometry_of,
+    reference_reader,
+)
+from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError
+from werrimbi_odom.ros.compare_track import OdometryTrack, Reading
+from werrimbi_odom.ros.compare_window import Window
+from werrimbi_odom.ros.running import run
+
+WAITING = 1_000
+"""Reference poses that may wait for the odometry of their instant."""
+SILENT = 2.0
+"""Seconds without a message after which a topic counts as silent."""
+PERIOD = 1.0
+"""Seconds from one /diagnostics to the next."""
+
+
+class CompareNode(Node):  # type: ignore[misc]
+    """Compares `odom` with `reference`, leg by leg.
+
+    Raises
+    ------
+    InputError
+        When a parameter or a QoS override is wrong.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("compare_node")
+        values = compare_parameters.declared(self)
+        xy, yaw = (
+            compare_parameters.squared(values, f"reference_sigma_{part}") for part in ("xy", "yaw")
+        )
+        kind = str(values["reference_type"])
+        self._read = reference_reader(kind, PoseCovariance(xy, 0.0, 0.0, xy, 0.0, yaw))
+        self._clockwork = Clockwork()
+        self._track = OdometryTrack()
+        self._cutter = LegCutter(float(values["leg"]))  # type: ignore[arg-type]
+        self._window = Window(int(values["window"]))  # type: ignore[arg-type]
+        self._waiting: deque[Reading] = deque()
+        self._base_frame = ""
+        self._counts: Counter[str] = Counter()
+        self._told: set[str] = set()
+        self._heard = {"odom": -math.inf, "reference": -math.inf}
+        self._latest = math.nan
+        self._level = DiagnosticStatus.OK
+        self._steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self._error = self._publisher(Vector3Stamped, "~/error")
+        self._pose = self._publisher(PoseWithCovarianceStamped, "~/error_with_covariance")
+        self._leg_nees, self._nees, self._low, self._high, self._coverage = (
+            self._publisher(Float64, f"~/{name}")
+            for name in ("leg_nees", "nees", "nees_low", "nees_high", "coverage")
+        )
+        self._diagnostics = self._publisher(DiagnosticArray, "/diagnostics")
+        self._subscribe(Odometry, "odom", self._on_odometry)
+        self._subscribe(REFERENCE_TYPES[kind], "reference", self._on_reference)
+        self.create_timer(PERIOD, self._report, clock=self._steady)
+        topics = [self.resolve_topic_name(name) for name in self._heard]
+        self.get_logger().info(
+            f"{topics[0]} against {kind} on {topics[1]}, legs of {values['leg']} m"
+        )
+
+    # ------------------------------------------------------------------------- messages
+
+    def _on_odometry(self, message: Any) -> None:
+        self._hear("odom")
+        try:
+            reading, twist = odometry_of(message, self._clockwork)
+        except InputError as error:
+            self._refuse("odom", *error.args)
+            return
+        self._base_frame = message.child_frame_id
+        happened = self._track.add(reading, twist)
+        if happened in ("set", "back"):
+            self._counts["poses set" if happened == "set" else "clock jumps"] += 1
+            self._cutter.restart()
+        if happened == "back":
+            self._waiting.clear()
+        while self._waiting and self._waiting[0].time <= self._track.newest:
+            self._compare(self._waiting.popleft())
+
+    def _on_reference(self, message: Any) -> None:
+        self._hear("reference")
+        try:
+            reading = self._read(message, self._clockwork)
+        except InputError as error:
+            self._refuse("reference", *error.args)
+            return
+        if math.isfinite(self._latest) and reading.time <= self._latest:
+            if reading.time > self._latest - 1.0:
+                self._counts["old references"] += 1
+                return
+            self._waiting.clear()  # its clock was put back
+            self._cutter.restart()
+        self._latest = reading.time
+        if reading.time <= self._track.newest:
+            self._compare(reading)
+            return
+        self._waiting.append(reading)
+        if len(self._waiting) > WAITING:
+            self._waiting.popleft()
+            self._counts["without odometry"] += 1
+
+    def _compare(self, reference: Reading) -> None:
+        """The whole way of a reference pose, from the odometry at its instant to the verdict."""
+        odometry = self._track.at(reference.time)
+        if odometry is None:
+            self._counts["without odometry"] += 1
+            return
+        self._counts["compared"] += 1
+        leg, ends = self._cutter.take(Both(odometry, reference))
+        if leg is None:
+            return
+        self._publish_error(leg)
+        if ends:
+            self._window.take(leg.deviation, leg.grows)
+            self._publish_statistics(leg)
+
+    # ------------------------------------------------------------------------- out
+
+    def _publish_error(self, leg: LegError) -> None:
+        x, y, yaw = leg.error.tolist()
+        error, pose = Vector3Stamped(), PoseWithCovarianceStamped()
+        error.header.stamp = self._clockwork.stamp(leg.time)
+        error.header.frame_id = self._base_frame
+        error.vector.x, error.vector.y, error.vector.z = x, y, yaw
+        self._error.publish(error)
+        if not self._pose.get_subscription_count():
+            return
+        pose.header = error.header
+        place, turn = pose.pose.pose.position, pose.pose.pose.orientation
+        place.x, place.y = x, y
+        turn.z, turn.w = math.sin(0.5 * yaw), math.cos(0.5 * yaw)
+        covariance = pose.pose.covariance.reshape(6, 6)
+        for row, entries in zip((0, 1, 5), leg.covariance, strict=True):
+            covariance[row, [0, 1, 5]] = entries
+        self._pose.publish(pose)
+
+    def _publish_statistics(self, leg: LegError) -> None:
+        window = self._window
+        if not leg.grows:
+            return
+        low, high = window.bounds()
+        self._leg_nees.publish(Float64(data=leg.deviation / 3.0))
+        self._nees.publish(Float64(data=window.nees))
+        self._low.publish(Float64(data=low))
+        self._high.publish(Float64(data=high))
+        self._coverage.publish(Float64(data=window.coverage))
+
+    def _report(self) -> None:
+        level, words = self._verdict()
+        if level != self._level:
+            self._level = level
+            # Two lines, because rclpy knows a logging call by its line and its severity.
+            if level == DiagnosticStatus.OK:
+                self.get_logger().info(words)
+            else:
+                self.get_logger().warning(words)
+        window = self._window
+        low, high = window.bounds()
+        told = {
+            "legs": window.count,
+            "NEES": f"{window.nees:.3f}",
+            "NEES low": f"{low:.3f}",
+            "NEES high": f"{high:.3f}",
+            "coverage": f"{window.coverage:.3f}",
+            **self._counts,
+        }
+        status = DiagnosticStatus(
+            level=level,
+            name=f"{self.get_name()}: honesty of the covariance",
+            message=words,
+            hardware_id="wheel encoders",
+            values=[KeyValue(key=key, value=str(value)) for key, value in told.items()],
+        )
+        array = DiagnosticArray(status=[status])
+        array.header.stamp = self.get_clock().now().to_msg()
+        self._diagnostics.publish(array)
+
+    def _verdict(self) -> tuple[bytes, str]:
+        now = self._now()
+        silent = [name for name, at in self._heard.items() if now - at > SILENT]
+        if silent:
+            topics = " and ".join(self.resolve_topic_name(name) for name in silent)
+            before = f"; before, {self._window.verdict()[1]}" if self._window.count else ""
+            return DiagnosticStatus.STALE, f"nothing to compare: {topics} silent{before}"
+        if not self._counts["compared"]:
+            apart = self._latest - self._track.newest
+            return DiagnosticStatus.WARN, (
+                "no stamp of the reference falls between two of the odometry; its last is "
+                f"{apart:+.1f} s from the odometry's: are both on one clock (use_sim_time)?"
+            )
+        honest, words = self._window.verdict()
+        return DiagnosticStatus.OK if honest else DiagnosticStatus.WARN, words
+
+    # ------------------------------------------------------------------------- set-up
+
+    def _hear(self, topic: str) -> None:
+        self._heard[topic] = self._now()
+
+    def _now(self) -> float:
+        return 1e-9 * float(self._steady.now().nanoseconds)
+
+    def _refuse(self, topic: str, cause: str, detail: str) -> None:
+        key = f"{topic} refused: {cause}"
+        if key not in self._told:
+            self._told.add(key)
+            self.get_logger().warning(f"{key}: {detail} (from now on only counted on /diagnostics)")
+        self._counts[key] += 1
+
+    def _publisher(self, message_type: type, topic: str) -> Publisher:
+        callbacks = PublisherEventCallbacks(use_default_callbacks=False)
+        return self.create_publisher(
+            message_type, topic, QoSProfile(depth=100), event_callbacks=callbacks
+        )
+
+    def _subscribe(self, message_type: type, topic: str, take: Callable[[Any], None]) -> None:
+        with inputs.qos_errors_of(topic):
+            self.create_subscription(
+                message_type,
+                topic,
+                take,
+                inputs.sensor_qos(),
+                event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+                qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+            )
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is told to stop; returns the exit code."""
+    return run(CompareNode, "compare_node", args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
