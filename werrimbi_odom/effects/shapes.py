@@ -14,11 +14,19 @@ from collections.abc import Sequence
 import numpy as np
 
 from werrimbi_odom.effects.functions import cos, limited, share, sin, sinc
-from werrimbi_odom.model.drive import Span
+from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.motion import Number
 from werrimbi_odom.model.pose import Floats
 
-__all__ = ["mean_cos", "mean_curve", "mean_sin", "mean_square", "mean_step", "share_inside"]
+__all__ = [
+    "mean_cos",
+    "mean_curve",
+    "mean_sin",
+    "mean_square",
+    "mean_step",
+    "share_inside",
+    "standing",
+]
 
 
 def mean_square(span: Span[Number]) -> Number:
@@ -84,6 +92,15 @@ def share_inside(
         return _inside(x, y, centre_x, centre_y, radius)
     one_x, one_y = (Span(np.array([s.start]), np.array([s.end])) for s in (x, y))
     return float(_inside(one_x, one_y, centre_x, centre_y, radius)[0])
+
+
+def standing(drive: Drive[Number], left: float) -> tuple[Span[Number], Span[Number]]:
+    """Where a point `left` of the axle's midpoint [m] (a wheel) stands: spans of x and y [m]."""
+    start, end = drive.heading
+    return (
+        Span(drive.x.start - left * sin(start), drive.x.end - left * sin(end)),
+        Span(drive.y.start + left * cos(start), drive.y.end + left * cos(end)),
+    )
 
 
 def _inside(x: Span[Floats], y: Span[Floats], at_x: float, at_y: float, radius: float) -> Floats:

@@ -98,8 +98,9 @@ def _does_not_mind_splitting(effect: Effect, rehearsal: Rehearsal) -> None:
         if isinstance(whole, WheelTravel):
             apart = [abs(p.reshape(shape).sum(1) - w) for p, w in zip(pieces, whole, strict=True)]
             if effect.pose:  # places lie on the chords of steps, and an arc has chords of its own
-                motion = rehearsal.motion
-                apart = [np.maximum(a - abs(motion.along * motion.turn), 0.0) for a in apart]
+                turn = abs(rehearsal.motion.turn)
+                sides = zip(apart, rehearsal.travel, strict=True)
+                apart = [np.maximum(a - abs(side) * turn, 0.0) for a, side in sides]
         else:
             apart = _apart_when_split(rehearsal, whole, pieces, shape)
         worst = float(np.max(apart))
