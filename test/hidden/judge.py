@@ -12,6 +12,7 @@ import subprocess
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -213,7 +214,7 @@ def _nothing_hidden(what: HiddenSet) -> float:
 def _drafted(said: Told) -> float | None:
     """Held-out error with the effect that `werrimbi draft` writes, fitted [m]."""
     try:
-        from werrimbi_odom.inference import drafting
+        drafting = import_module("werrimbi_odom.inference.drafting")
     except ImportError:
         return None
     judge = getattr(drafting, "held_out_error", None)

@@ -98,7 +98,7 @@ def _weak(line: Judged) -> bool:
 
 
 def _own_law(line: Judged) -> bool:
-    return line.own_law is not None
+    return line.group == "outsider" and line.own_law is not None
 
 
 def _as_good_as_nothing(line: Judged) -> bool:
