@@ -86,7 +86,7 @@ def test_namespace_names_and_remapping(launch: Launch, robot: Robot) -> None:
             break
     assert (odometry[0].header.frame_id, odometry[0].child_frame_id) == ("k/odom", "k/base")
     assert node.report()[0] == b"\x00"
-    assert node.diagnostics[-1].name == "legs: wheel encoders"
+    assert node.diagnostics[-1].name == "kangaroo/legs: wheel encoders"
     services = [name for name, _ in node.node.get_service_names_and_types()]
     assert "/kangaroo/legs/reset" in services
     assert node.node.count_publishers("/kangaroo/legs/status") == 1

@@ -38,6 +38,7 @@ from werrimbi_odom.ros.compare_inputs import (
 from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError
 from werrimbi_odom.ros.compare_track import OdometryTrack, Reading
 from werrimbi_odom.ros.compare_window import Window
+from werrimbi_odom.ros.odom_node import full_name
 from werrimbi_odom.ros.running import run
 
 WAITING = 1_000
@@ -200,7 +201,7 @@ class CompareNode(Node):  # type: ignore[misc]
         }
         status = DiagnosticStatus(
             level=level,
-            name=f"{self.get_name()}: honesty of the covariance",
+            name=f"{full_name(self)}: honesty of the covariance",
             message=words,
             hardware_id="wheel encoders",
             values=[KeyValue(key=key, value=str(value)) for key, value in told.items()],

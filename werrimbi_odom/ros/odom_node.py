@@ -191,7 +191,7 @@ class OdomNode(Node):  # type: ignore[misc]
         )
 
     def _publish_status(self) -> None:
-        tracker, name = self._tracker, f"{self.get_name()}: estimate"
+        tracker, name = self._tracker, f"{full_name(self)}: estimate"
         self._status.publish(
             status_of(
                 name,
@@ -204,7 +204,7 @@ class OdomNode(Node):  # type: ignore[misc]
         )
 
     def _publish_diagnostics(self) -> None:
-        name = f"{self.get_name()}: wheel encoders"
+        name = f"{full_name(self)}: wheel encoders"
         effects = told(self._effects, self._learning)
         status = self._health.report(name, self._tracker.tally, self._input.tally(), effects)
         if status.level != self._level:
@@ -251,6 +251,11 @@ class OdomNode(Node):  # type: ignore[misc]
             f"{self._values['input_type']} on {' and '.join(self._topics)}, odometry on "
             f"{self._odometry.topic_name} from {self._frame} to {self._values['base_frame_id']}"
         )
+
+
+def full_name(node: Node) -> str:
+    """Name with namespace, as the diagnostics of several robots need it to be told apart."""
+    return str(node.get_fully_qualified_name().lstrip("/"))
 
 
 def _transform_sender(node: Node) -> SendTransform:
