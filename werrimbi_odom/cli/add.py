@@ -114,27 +114,11 @@ def _write(arguments: argparse.Namespace, given: Recordings, added: Added) -> li
             file.write("\n")
         written.append(arguments.json)
     if arguments.report is not None:
-        written.append(_page(arguments.report, added))
+        from werrimbi_odom.cli.report_made import made_of
+        from werrimbi_odom.report.adding_page import write_adding_page
+
+        written += write_adding_page(added, arguments.report, made=made_of(arguments))
     return written
-
-
-def _page(path: Path, added: Added) -> Path:
-    from werrimbi_odom.report.fit_figure import leg_figure
-    from werrimbi_odom.report.save import save_page
-
-    sides = added.holdout.sides
-    legs = added.holdout.before, added.holdout.after
-    figure = leg_figure(
-        *(part.errors.error[~part.outlier] for part in legs),
-        title=f"Errors of the held-out drives, before and with {added.effect.name}",
-        subtitle=f"legs of {legs[0].leg:g} m: rms {1e3 * sides.before:.2f} mm before, "
-        f"{1e3 * sides.after:.2f} mm after",
-    )
-    try:
-        save_page(figure, path)
-    except OSError as error:
-        raise InputError(f"{path} cannot be written: {error.strerror}") from error
-    return path
 
 
 def _next(arguments: argparse.Namespace) -> str:

@@ -7,21 +7,17 @@ from __future__ import annotations
 import argparse
 import json
 import shlex
-from importlib import import_module
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 
 if TYPE_CHECKING:
-    from werrimbi_odom.inference.diagnosis import Diagnosis
-    from werrimbi_odom.report.diagnosis_words import NextSteps
+    from werrimbi_odom.report.diagnosis_words import NextSteps, Told
 
 HELP = "which physical effect is missing, how sure that is, and what to do about it"
 
 _LONG = 300  # letters of a command that is worth printing whole
-_PAGE = "werrimbi_odom.report.diagnosis_page"
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "next; or that nothing is missing, or that these drives cannot tell, or that no effect of "
         "the library is what it is."
     )
-    add_recording_arguments(parser, holdout=True, report=find_spec(_PAGE) is not None)
+    add_recording_arguments(parser, holdout=True)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -74,7 +70,7 @@ def run(arguments: argparse.Namespace) -> int:
     print(words_of(told, _steps(arguments)))
     print()
     print(tables_of(diagnosis, sights))
-    written = _write(arguments, diagnosis, json_of(diagnosis, manoeuvre, sights))
+    written = _write(arguments, told, json_of(diagnosis, manoeuvre, sights))
     if written:
         print(f"\nwritten: {', '.join(map(str, written))}")
     return 0
@@ -132,9 +128,7 @@ def _paths(paths: list[str]) -> str:
     return whole
 
 
-def _write(
-    arguments: argparse.Namespace, diagnosis: Diagnosis, figures: dict[str, Any]
-) -> list[Path]:
+def _write(arguments: argparse.Namespace, told: Told, figures: dict[str, Any]) -> list[Path]:
     """The JSON and the page that were asked for; returns what was written."""
     from werrimbi_odom.cli.calibration_files import plain
     from werrimbi_odom.files.replacing import replacing
@@ -145,8 +139,15 @@ def _write(
             json.dump(plain(figures), file, indent=2, allow_nan=False)
             file.write("\n")
         written.append(arguments.json)
-    page = getattr(arguments, "report", None)
-    if page is not None:
-        import_module(_PAGE).write_diagnosis_page(diagnosis, page)
-        written.append(page)
+    if arguments.report is not None:
+        from werrimbi_odom.cli.report_made import made_of
+        from werrimbi_odom.report.diagnosis_page import write_diagnosis_page
+
+        written += write_diagnosis_page(
+            told.diagnosis,
+            arguments.report,
+            told=told,
+            steps=_steps(arguments),
+            made=made_of(arguments),
+        )
     return written

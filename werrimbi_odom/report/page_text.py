@@ -6,33 +6,59 @@ from __future__ import annotations
 
 import html
 import re
+import textwrap
 
 WIDTH = 80
 """Columns that printed words are filled to."""
 
+COMMAND = "    "
+"""What a line of a command begins with."""
+
 
 def paragraphs(text: str) -> str:
-    """Paragraphs and "- " points of filled text; the first paragraph is the headline."""
+    """Printed text: sentences, "- " points, commands, and tables between empty lines.
+
+    The first paragraph is the headline.
+    """
+    parts: list[str] = []
+    for block in re.split(r"\n\s*\n", text.strip("\n")):
+        lines = block.splitlines()
+        if (
+            len(lines) > 2
+            and all(line.startswith("  ") for line in lines[1:])
+            and _cells(lines[1:])
+        ):
+            parts.append(_table(lines))
+        elif all(line.startswith("  ") for line in lines):
+            parts.append(_verbatim(lines))
+        else:
+            parts += _sentences(block, first=not parts)
+    return "\n".join(parts)
+
+
+def _sentences(text: str, *, first: bool) -> list[str]:
     parts: list[str] = []
     points: list[str] = []
-    for item in unwrapped(text):
+    for item in [*unwrapped(text), ""]:
         if item.startswith("- "):
             points.append(f"<li>{_inline(item[2:])}</li>")
             continue
         if points:
             parts.append(f"<ul>{''.join(points)}</ul>")
             points = []
-        mark = ' class="headline"' if not parts else ""
-        parts.append(f"<p{mark}>{_inline(item)}</p>")
-    if points:
-        parts.append(f"<ul>{''.join(points)}</ul>")
-    return "\n".join(parts)
+        if item.startswith(COMMAND):
+            parts.append(_verbatim(item.splitlines()))
+        elif item:
+            mark = ' class="headline"' if first and not parts else ""
+            parts.append(f"<p{mark}>{_inline(item)}</p>")
+    return parts
 
 
 def unwrapped(text: str) -> list[str]:
     """Paragraphs of text that was filled to `WIDTH` columns, without their line breaks.
 
-    A line goes on with the one before it when its first word had no room there any more.
+    A line goes on with the one before it when its first word had no room there any more, or when it
+    is indented; lines that begin with four blanks are a command and are left as they are.
     """
     found: list[str] = []
     before = ""
@@ -41,14 +67,23 @@ def unwrapped(text: str) -> list[str]:
         if not words:
             before = ""
             continue
+        command = line.startswith(COMMAND)
+        point = line.startswith("- ")
         full = len(before) + 1 + len(words[0]) > WIDTH
-        hanging = line.startswith(" ") and not line.lstrip().startswith("- ")
-        if before and not line.lstrip().startswith("- ") and (full or hanging):
+        if command and found and found[-1].startswith(COMMAND):
+            found[-1] += f"\n{line}"
+        elif command:
+            found.append(line)
+        elif before and not point and not before.startswith(COMMAND) and (full or line[0] == " "):
             found[-1] += " " + " ".join(words)
         else:
             found.append(" ".join(words))
         before = line
     return found
+
+
+def _verbatim(lines: list[str]) -> str:
+    return f"<pre>{html.escape(textwrap.dedent(chr(10).join(lines)))}</pre>"
 
 
 def _inline(text: str) -> str:
@@ -61,9 +96,23 @@ def tables(text: str) -> str:
     return "\n".join(_table(block.splitlines()) for block in re.split(r"\n\s*\n", text.strip("\n")))
 
 
+def _cells(lines: list[str]) -> list[list[str]]:
+    """Cells of a plain table: columns are parted by two blanks or more in all of its lines.
+
+    Empty where there are no such columns.
+    """
+    width = max(map(len, lines))
+    filled = [line.ljust(width) for line in lines]
+    used = "".join("x" if any(line[at] != " " for line in filled) else " " for at in range(width))
+    columns = [match.span() for match in re.finditer(r"x+(?: x+)*", used)]
+    if len(columns) < 2 or len(lines) < 2:
+        return []
+    return [[line[begin:end].strip() for begin, end in columns] for line in filled]
+
+
 def _table(lines: list[str]) -> str:
-    rows = [re.split(r"\s{2,}", line.strip()) for line in lines[1:]]
-    if len(rows) < 2 or any(len(row) != len(rows[0]) for row in rows):
+    rows = _cells(lines[1:]) if len(lines) > 2 else []
+    if not rows:
         if all(not line.startswith(" ") for line in lines):
             return f"<p>{_inline(' '.join(lines))}</p>"
         return f"<pre>{html.escape(chr(10).join(lines))}</pre>"
@@ -75,6 +124,6 @@ def _table(lines: list[str]) -> str:
         for row in rows[1:]
     )
     return (
-        f"<div class='wide'><table><caption>{html.escape(lines[0])}</caption>"
+        f'<div class="wide"><table><caption>{html.escape(lines[0])}</caption>'
         f"<thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table></div>"
     )

@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The error falling as effects are added, bar by bar, and the floor that noise leaves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from werrimbi_odom.inference.adding import Added
+from werrimbi_odom.inference.candidates import CALIBRATED
+from werrimbi_odom.report.decimate import MOST, small, spread_and_extremes
+from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, escaped, paled, plain
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """The error of one model on the way."""
+
+    name: str
+    """What was done last: as given, calibrated, + an effect."""
+    train: float
+    """Root mean square position error of the drives of the fit [m]."""
+    holdout: float
+    """Of the drives held out [m]."""
+
+
+def steps_of(added: Added) -> list[Step]:
+    """As given, calibrated alone, and with the effect."""
+    names = [("as given", "before"), (f"+ {added.effect.name}", "after")]
+    if added.effect.name not in CALIBRATED:
+        names.insert(1, ("calibrated", "calibrated"))
+    return [
+        Step(
+            name,
+            added.train.figures(which).rmse_position_m,
+            added.holdout.figures(which).rmse_position_m,
+        )
+        for name, which in names
+    ]
+
+
+def error_falling_figure(steps: Sequence[Step], floor: float = float("nan")) -> go.Figure:
+    """One pair of bars for each step; a line where the noise of the final model ends.
+
+    Parameters
+    ----------
+    floor : float
+        Position error of the held-out drives that noise alone would make [m]; NaN: not drawn.
+    """
+    import plotly.graph_objects as go
+
+    figure = go.Figure()
+    largest = max(
+        (value for step in steps for value in (step.train, step.holdout) if np.isfinite(value)),
+        default=1.0,
+    )
+    unit, factor = ("m", 1.0) if largest > 0.1 else ("mm", 1e3)
+    names = [escaped(step.name) for step in steps]
+    for name, values, look in (
+        (
+            "drives of the fit",
+            [factor * step.train for step in steps],
+            {"color": paled(GREY, 0.25), "line": {"color": GREY, "width": 1.5}},
+        ),
+        ("held-out drives", [factor * step.holdout for step in steps], {"color": BLUE}),
+    ):
+        figure.add_bar(
+            x=names,
+            y=values,
+            name=name,
+            marker=look,
+            text=[f"{value:.2f}" if np.isfinite(value) else "" for value in values],
+            textposition="outside",
+            cliponaxis=False,
+            hovertemplate=f"%{{x}}, {name}<br>%{{y:.3g}} {unit}<extra></extra>",
+        )
+    if np.isfinite(floor):
+        figure.add_hline(y=factor * floor, line={"color": GREEN, "width": 2.5, "dash": "dash"})
+        figure.add_scatter(
+            x=[None],
+            y=[None],
+            mode="lines",
+            line={"color": GREEN, "width": 2.5, "dash": "dash"},
+            name=f"floor: what noise alone leaves, {factor * floor:.2f} {unit}",
+        )
+    figure.update_yaxes(title=f"error of a leg, rms [{unit}]", range=[0.0, 1.16 * factor * largest])
+    figure.update_xaxes(showgrid=False)
+    plain(figure, height=420)
+    return figure.update_layout(barmode="group", bargap=0.35)
+
+
+def held_out_legs_figure(added: Added) -> go.Figure:
+    """Errors of the held-out legs along and sideways, as given and with the effect."""
+    import plotly.graph_objects as go
+
+    figure = go.Figure()
+    for name, legs, colour, symbol in (
+        ("as given", added.holdout.before, ORANGE, "x"),
+        (f"with {added.effect.name}", added.holdout.after, BLUE, "circle"),
+    ):
+        error = 1e3 * legs.errors.error[~legs.outlier]
+        error = error[np.isfinite(error[:, :2]).all(axis=1)]
+        if error.size == 0:
+            continue
+        size = np.hypot(error[:, 0], error[:, 1])
+        drawn = error[spread_and_extremes(size, MOST // 2)]
+        figure.add_scatter(
+            x=small(drawn[:, 0]),
+            y=small(drawn[:, 1]),
+            mode="markers",
+            name=f"{name}: median {np.median(size):.2f} mm",
+            marker={"color": paled(colour, 0.75), "symbol": symbol, "size": 8},
+            hovertemplate=(
+                f"{escaped(name)}<br>along %{{x:.2f}} mm<br>sideways %{{y:.2f}} mm<extra></extra>"
+            ),
+        )
+    figure.update_xaxes(title="error along [mm]")
+    figure.update_yaxes(title="error sideways [mm]", scaleanchor="x", scaleratio=1)
+    return plain(figure, height=560)

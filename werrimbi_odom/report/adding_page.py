@@ -1,0 +1,78 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The report of adding an effect: the error before and after, and what is left."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from werrimbi_odom.inference.adding import Added
+from werrimbi_odom.report.adding_figures import (
+    error_falling_figure,
+    held_out_legs_figure,
+    steps_of,
+)
+from werrimbi_odom.report.adding_words import words_of
+from werrimbi_odom.report.diagnosis_page import effect_card
+from werrimbi_odom.report.evidence_figures import evidence_map_figure
+from werrimbi_odom.report.page import Page, Shown
+from werrimbi_odom.report.save import save_report
+
+
+def write_adding_page(
+    added: Added, path: Path, *, made: Mapping[str, str] | None = None
+) -> list[Path]:
+    """Write the report; returns the files, of which there are several where they are pictures.
+
+    Parameters
+    ----------
+    path
+        .html for a page, .pdf or .png for the main figures alone.
+    made
+        How it was made: command, files, options.
+    """
+    return save_report(adding_page(added, made or {}), path)
+
+
+def adding_page(added: Added, made: Mapping[str, str]) -> Page:
+    """The report as a page."""
+    name = added.effect.name
+    shown = [
+        Shown(
+            "falling",
+            "The error, step by step",
+            "Blue is the error of drives that took no part in the fit. It should fall with the "
+            "effect, and reach the dashed line where nothing but noise is left.",
+            {"": error_falling_figure(steps_of(added), added.holdout.floor)},
+        ),
+        Shown(
+            "legs",
+            "Errors of the held-out drives",
+            "Each mark is a leg; with the effect the cloud should be smaller and about zero.",
+            {"": held_out_legs_figure(added)},
+        ),
+    ]
+    card = effect_card(name)
+    if card:
+        shown.append(
+            Shown(
+                "physics",
+                "What was added",
+                "The physics, what it does to the data, and how to check it on the robot.",
+                html=f'<div class="cards">{card}</div>',
+                main=False,
+            )
+        )
+    if added.remaining:
+        shown.append(
+            Shown(
+                "remaining",
+                "What the errors still go with",
+                "Fields beyond chance are left to explain: `werrimbi diagnose` with the new robot "
+                "file looks for what they are.".replace("`", ""),
+                {"": evidence_map_figure(added.remaining)},
+                main=False,
+            )
+        )
+    return Page(f"Added: {name}", words_of(added), shown, made=made)

@@ -1,0 +1,195 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A diagnosis in figures: the ranking with what each effect gains, and set-up mistakes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from werrimbi_odom.inference.diagnosis import Diagnosis, Ranked
+from werrimbi_odom.inference.holdout import Sides
+from werrimbi_odom.inference.knobs import Model
+from werrimbi_odom.inference.prediction import legs_shown, right_handed
+from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.pose import Floats, wrap_all
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.before_after_figure import before_after, before_after_figure
+from werrimbi_odom.report.decimate import MOST, small
+from werrimbi_odom.report.evidence_figures import (
+    dependence_figure,
+    evidence_map_figure,
+    ordered_cells,
+)
+from werrimbi_odom.report.manoeuvre_figure import ideal_of, manoeuvre_figure
+from werrimbi_odom.report.sketches import effect_sketch
+from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, escaped, paled, plain
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+__all__ = [
+    "before_after",
+    "before_after_figure",
+    "dependence_figure",
+    "effect_sketch",
+    "evidence_map_figure",
+    "ideal_of",
+    "manoeuvre_figure",
+    "ordered_cells",
+    "ranking_figure",
+    "set_up_figure",
+]
+
+_MOST_BARS = 10
+
+
+def ranking_figure(diagnosis: Diagnosis) -> go.Figure:
+    """Effects that were fitted, the best first: by how much each lowers the error of the legs.
+
+    A filled bar is the error of held-out drives, the outlined one that of the drives of the fit.
+    """
+    import plotly.graph_objects as go
+
+    ranked = [item for item in diagnosis.ranking if item.holdout or item.train][:_MOST_BARS]
+    figure = go.Figure()
+    names = [_label(item, diagnosis) for item in ranked]
+    for word, side, look in (
+        (
+            "drives of the fit",
+            "train",
+            {"color": paled(GREY, 0.25), "line": {"color": GREY, "width": 1.5}},
+        ),
+        ("held-out drives", "holdout", {"color": [_colour(item, diagnosis) for item in ranked]}),
+    ):
+        sides: list[Sides | None] = [getattr(item, side) for item in ranked]
+        gains = [_gain(each) for each in sides]
+        figure.add_bar(
+            y=names,
+            x=gains,
+            orientation="h",
+            name=word,
+            marker=look,
+            text=[_text(each) if side == "holdout" else "" for each in sides],
+            textposition="outside",
+            cliponaxis=False,
+            customdata=[item.effect for item in ranked],
+            hovertext=[
+                f"{item.effect}, {word}: {_text(each)}<br>p = {item.p_value:.1e}"
+                for item, each in zip(ranked, sides, strict=True)
+            ],
+            hovertemplate="%{hovertext}<extra></extra>",
+        )
+    finite = [
+        gain
+        for item in ranked
+        for gain in (_gain(item.holdout), _gain(item.train))
+        if np.isfinite(gain)
+    ]
+    low, high = min([0.0, *finite]), max([5.0, *finite])
+    figure.update_xaxes(
+        title="error lowered by [%]",
+        range=[max(low, -60.0) * 1.15, high + 0.35 * (high - max(low, -60.0))],
+    )
+    figure.update_yaxes(autorange="reversed", showgrid=False)
+    plain(figure, height=130 + 52 * max(len(ranked), 2))
+    return figure.update_layout(barmode="group", bargap=0.3)
+
+
+def _label(item: Ranked, diagnosis: Diagnosis) -> str:
+    name = escaped(item.effect)
+    return f"<b>{name}</b>" if item.effect in (*diagnosis.found, *diagnosis.rivals) else name
+
+
+def _colour(item: Ranked, diagnosis: Diagnosis) -> str:
+    if item.effect in diagnosis.rivals:
+        return ORANGE
+    return BLUE if item.effect in diagnosis.found else GREY
+
+
+def _gain(sides: Sides | None) -> float:
+    if sides is None or not sides.before > 0.0:
+        return float("nan")
+    return 100.0 * (1.0 - sides.after / sides.before)
+
+
+def _text(sides: Sides | None) -> str:
+    if sides is None or not np.isfinite(sides.before):
+        return ""
+    unit, factor = ("m", 1.0) if sides.before > 0.1 else ("mm", 1e3)
+    return f"{factor * sides.before:.2f} → {factor * sides.after:.2f} {unit}"
+
+
+def set_up_figure(diagnosis: Diagnosis) -> go.Figure:
+    """Turn and travel of each leg, measured against predicted: as given, and put right.
+
+    Whatever is set up rightly lies on the diagonal; a wrong sign or factor is another line.
+    """
+    from plotly.subplots import make_subplots
+
+    figure = make_subplots(
+        rows=1,
+        cols=2,
+        subplot_titles=("turn of a leg [°]", "travel ahead [m]"),
+        horizontal_spacing=0.12,
+    )
+    runs = diagnosis.runs
+    for name, robot, colour, symbol in (
+        ("as the robot file says", diagnosis.given, ORANGE, "x"),
+        ("with the mistake put right", diagnosis.set_up.robot, BLUE, "circle"),
+    ):
+        measured, predicted = _legs(diagnosis, robot)
+        rows = np.linspace(0, runs.count - 1, min(runs.count, MOST // 4)).astype(int)
+        for place, column, factor, unit in ((1, 2, float(np.degrees(1.0)), "°"), (2, 0, 1.0, "m")):
+            figure.add_scatter(
+                x=small(factor * predicted[rows, column]),
+                y=small(factor * measured[rows, column]),
+                mode="markers",
+                name=name,
+                legendgroup=name,
+                showlegend=place == 1,
+                marker={"color": paled(colour, 0.7), "symbol": symbol, "size": 7},
+                hovertemplate=(
+                    f"{name}<br>predicted %{{x:.2f}} {unit}, measured %{{y:.2f}} {unit}"
+                    "<extra></extra>"
+                ),
+                row=1,
+                col=place,
+            )
+    for place in (1, 2):
+        spans = [
+            np.abs(np.asarray(values, dtype=np.float64))
+            for trace in figure.data
+            if (trace.xaxis or "x") == ("x" if place == 1 else "x2")
+            for values in (trace.x, trace.y)
+        ]
+        largest = max((float(np.nanmax(span, initial=0.0)) for span in spans), default=1.0)
+        figure.add_scatter(
+            x=[-largest, largest],
+            y=[-largest, largest],
+            mode="lines",
+            line={"color": GREEN, "width": 2, "dash": "dash"},
+            name="measured as predicted",
+            legendgroup="right",
+            showlegend=place == 1,
+            hoverinfo="skip",
+            row=1,
+            col=place,
+        )
+        figure.update_xaxes(title="predicted", row=1, col=place)
+        figure.update_yaxes(title="measured", row=1, col=place)
+    plain(figure, height=470)
+    return figure.update_layout(margin={"t": 80}, legend={"y": 1.12})
+
+
+def _legs(diagnosis: Diagnosis, robot: Robot) -> tuple[Floats, Floats]:
+    """Measured and predicted relative pose of all legs, (m, 3); each in its own start's frame."""
+    runs = diagnosis.runs
+    view = view_of(robot.effects)
+    start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
+    moved = (finish[:, 0] - start[:, 0]) + 1j * (finish[:, 1] - start[:, 1])
+    moved = moved * np.exp(-1j * start[:, 2])
+    turn = wrap_all(finish[:, 2] - start[:, 2])
+    predicted = legs_shown(Model(robot, tuple({} for _ in runs.runs)), runs)
+    return np.stack([moved.real, moved.imag, turn], axis=-1), predicted

@@ -1,0 +1,244 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The report of a diagnosis: what is missing, what speaks for it, what to do next."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Mapping
+from pathlib import Path
+
+from werrimbi_odom.effects.collection import find
+from werrimbi_odom.effects.page import page_of
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference.diagnosis import Diagnosis
+from werrimbi_odom.inference.evidence import Dependence
+from werrimbi_odom.inference.manoeuvre_drives import pace_of
+from werrimbi_odom.inference.manoeuvres import Manoeuvre
+from werrimbi_odom.report.diagnosis_figures import (
+    before_after,
+    before_after_figure,
+    dependence_figure,
+    effect_sketch,
+    evidence_map_figure,
+    ideal_of,
+    manoeuvre_figure,
+    ordered_cells,
+    ranking_figure,
+    set_up_figure,
+)
+from werrimbi_odom.report.diagnosis_tables import tables_of
+from werrimbi_odom.report.diagnosis_words import NextSteps, Told, words_of
+from werrimbi_odom.report.evidence_figures import variable_words
+from werrimbi_odom.report.page import Page, Shown
+from werrimbi_odom.report.save import save_report
+
+_LISTED = 8
+
+
+def write_diagnosis_page(
+    diagnosis: Diagnosis,
+    path: Path,
+    *,
+    told: Told | None = None,
+    steps: NextSteps | None = None,
+    made: Mapping[str, str] | None = None,
+) -> list[Path]:
+    """Write the report; returns the files, of which there are several where they are pictures.
+
+    Parameters
+    ----------
+    path
+        .html for a page, .pdf or .png for the main figures alone.
+    told
+        The diagnosis with the next manoeuvre; without it none is drawn.
+    made
+        How it was made: command, files, options.
+    """
+    told = told or Told(diagnosis, None, ())
+    return save_report(diagnosis_page(told, steps or NextSteps(), made or {}), path)
+
+
+def diagnosis_page(told: Told, steps: NextSteps, made: Mapping[str, str]) -> Page:
+    """The report as a page."""
+    diagnosis = told.diagnosis
+    shown = [
+        *_effects(diagnosis),
+        *_before_after(diagnosis),
+        *_ranking(diagnosis),
+        *_evidence(diagnosis),
+        *_next(diagnosis, told.manoeuvre),
+        *_sketches(diagnosis),
+    ]
+    title = {
+        "none": "Nothing is missing",
+        "named": f"What is missing: {', '.join(diagnosis.found)}",
+        "ambiguous": f"What is missing: {' or '.join(diagnosis.rivals)}",
+        "unknown": "Something is missing that the library does not hold",
+    }[diagnosis.verdict]
+    return Page(title, words_of(told, steps), shown, tables_of(diagnosis, told.sights), made)
+
+
+def _effects(diagnosis: Diagnosis) -> list[Shown]:
+    """What was found, or its rivals, drawn and described."""
+    names = list(dict.fromkeys([*diagnosis.found, *diagnosis.rivals]))
+    cards = [card for name in names if (card := effect_card(name))]
+    if not cards:
+        return []
+    many = len(diagnosis.rivals) > 1
+    return [
+        Shown(
+            "physics",
+            "The rivals" if many else "What it is",
+            "These drives cannot tell them apart; the next manoeuvre below can."
+            if many
+            else "The physics, what it does to the data, and how to check it on the robot.",
+            html=f'<div class="cards">{"".join(cards)}</div>',
+            main=False,
+        )
+    ]
+
+
+def effect_card(name: str) -> str:
+    """An effect as a small panel: sketch, summary, how to check it; empty where it is unknown."""
+    try:
+        effect = find(name)
+    except InputError:
+        return ""
+    page = page_of(effect)
+    parts = [f"<h3>{html.escape(name)}</h3>", effect_sketch(name) or ""]
+    if page.physics:
+        parts.append(f"<p>{html.escape(page.physics[0])}</p>")
+    for section, word in (("Signature", "In the data"), ("Ruler", "On the robot")):
+        if section in page.sections:
+            text = html.escape(" ".join(page.sections[section].split()))
+            parts.append(f"<p><strong>{word}:</strong> {text}.</p>")
+    return f'<div class="card">{"".join(parts)}</div>'
+
+
+def _before_after(diagnosis: Diagnosis) -> list[Shown]:
+    if diagnosis.set_up.findings:
+        return [
+            Shown(
+                "set-up",
+                "The set-up, as given and put right",
+                "Each mark is a short leg. What is set up rightly lies on the dashed line; a "
+                "wrong sign or a wrong factor lies on another one.",
+                {"": set_up_figure(diagnosis)},
+            )
+        ]
+    found = before_after(diagnosis)
+    if found is None:
+        return []
+    variable = variable_words(found.cell.variable.name)
+    if found.effect is None:
+        title = f"What the error does over {variable}"
+        see = (
+            "No effect of the library explains it, so there is no name and no after; but this is "
+            "how the error goes with it. Bars are 2 standard errors."
+        )
+    else:
+        title = f"{found.effect}: its error before and after"
+        see = (
+            f"Over {variable}, the error before shows the effect's own pattern; with the effect in "
+            "the model it should be flat on zero. Bars are 2 standard errors."
+        )
+    return [Shown("before-after", title, see, {"": before_after_figure(found)})]
+
+
+def _ranking(diagnosis: Diagnosis) -> list[Shown]:
+    if not any(item.holdout or item.train for item in diagnosis.ranking):
+        return []
+    count = len(diagnosis.ranking)
+    return [
+        Shown(
+            "ranking",
+            "What each effect would gain",
+            f"The longer a filled bar, the more the effect lowers the error of drives that it was "
+            f"not fitted to. Of {count} effects those that looked promising were fitted; bold is "
+            "what the verdict names.",
+            {"": ranking_figure(diagnosis)},
+        )
+    ]
+
+
+def _evidence(diagnosis: Diagnosis) -> list[Shown]:
+    cells = ordered_cells(diagnosis.depends_on)
+    if not cells:
+        return []
+    names = [run.name for run in diagnosis.runs.runs]
+    maps = {"with the robot as given": evidence_map_figure(diagnosis.depends_on, opens="cell")}
+    if diagnosis.found:
+        maps["with everything found put in"] = evidence_map_figure(diagnosis.remaining)
+    return [
+        Shown(
+            "evidence",
+            "Evidence map: which error goes with what",
+            "The stronger a field, the more of the misfit goes with that variable; dots are beyond "
+            "chance, the star is the strongest. Click a field to see the dependence below.",
+            maps,
+            "Map:",
+            _strongest(cells),
+        ),
+        Shown(
+            "cell",
+            "The dependence behind a field",
+            "How the chosen error follows its variable, as the map has fitted it.",
+            {_cell_name(cell): dependence_figure(cell, names) for cell in cells},
+            "Field:",
+            main=False,
+        ),
+    ]
+
+
+def _cell_name(cell: Dependence) -> str:
+    return f"{cell.channel} with {html.unescape(variable_words(cell.variable.name))}"
+
+
+def _strongest(cells: list[Dependence]) -> str:
+    """The strongest fields again as buttons, for the keyboard and for those who do not see."""
+    buttons = "".join(
+        f'<li><button type="button" data-open="cell:{number}">{html.escape(_cell_name(cell))}'
+        f"</button> χ² falls by {cell.gain:.0f}</li>"
+        for number, cell in enumerate(cells[:_LISTED])
+    )
+    return (
+        '<details class="toolbar"><summary>The strongest fields</summary>'
+        f"<ol>{buttons}</ol></details>"
+    )
+
+
+def _next(diagnosis: Diagnosis, manoeuvre: Manoeuvre | None) -> list[Shown]:
+    if manoeuvre is None:
+        return []
+    ideal = ideal_of(manoeuvre.name)
+    why = manoeuvre.why[:1].upper() + manoeuvre.why[1:]
+    time = f" For about {manoeuvre.minutes:.0f} min." if manoeuvre.minutes else ""
+    do = f"<p><strong>Do this:</strong> {html.escape(manoeuvre.do)}.{time}</p>"
+    if ideal is None:
+        return [Shown("next", "What to do next", f"{why}.", html=do, main=False)]
+    robot = diagnosis.robot
+    figure = manoeuvre_figure(ideal, robot, pace_of(diagnosis.runs, robot))
+    return [Shown("next", "What to drive next, to scale", f"{why}.", {"": figure}, html=do)]
+
+
+def _sketches(diagnosis: Diagnosis) -> list[Shown]:
+    """All other effects that were weighed, to look up."""
+    said = {*diagnosis.found, *diagnosis.rivals}
+    cards = [
+        card
+        for item in diagnosis.ranking
+        if item.effect not in said and (card := effect_card(item.effect))
+    ]
+    if not cards:
+        return []
+    return [
+        Shown(
+            "others",
+            "The other effects that were weighed",
+            "What each of them is; none was needed, or none fits.",
+            html=f'<details class="toolbar"><summary>Show {len(cards)} sketches</summary>'
+            f'<div class="cards">{"".join(cards)}</div></details>',
+            main=False,
+        )
+    ]
