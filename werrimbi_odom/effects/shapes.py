@@ -29,6 +29,11 @@ __all__ = [
 ]
 
 
+def steady(value: Number) -> Span[Number]:
+    """A quantity that keeps its value through the step."""
+    return Span(value, value)
+
+
 def mean_square(span: Span[Number]) -> Number:
     """Mean of the square of a quantity."""
     return (span.start * span.start + span.start * span.end + span.end * span.end) / 3.0
