@@ -61,7 +61,17 @@ def run(arguments: argparse.Namespace) -> int:
         if result.noises[name].determined:
             changes[name] = result.noises[name].value
     figure = _figure(runs, source, result) if arguments.report is not None else None
-    write_all(arguments, source, changes, figures, figure)
+    write_all(
+        arguments,
+        source,
+        changes,
+        figures,
+        figure,
+        title="Calibration by maximum likelihood",
+        words=_verdict(result),
+        see="Each mark is a short leg, seen by the robot: the error along, and to its left. After "
+        "the calibration the cloud should be smaller and lie about the origin.",
+    )
     return 0
 
 
@@ -80,6 +90,19 @@ def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) 
         title="Errors of short legs, before and after calibration",
         subtitle=verdict,
     )
+
+
+def _verdict(result: Calibration) -> str:
+    """For the report, what `_say` prints."""
+    if result.trusted:
+        return "The model explains these drives to their noise."
+    lines = ["Something else is missing: calibration does not explain these drives."]
+    lines += [f"- {words}" for words in result.strange]
+    lines += [
+        f"- the {cell.channel} error still goes with {cell.name} (p = {cell.p_value:.0e})"
+        for cell in result.misfit[:5]
+    ]
+    return "\n".join([*lines, "Next: `werrimbi diagnose` says which physical effect explains it."])
 
 
 def _matched(runs: Sequence[Run], given: Recordings, parts: int) -> list[MatchedRun]:

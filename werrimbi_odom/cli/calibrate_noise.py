@@ -74,7 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
         fit = fit_noise(errors, model)
     except InputError as error:
         raise InputError(f"{arguments.results}: {error}") from None
-    print(noise_in_words(fit, arguments.distance, track, turn_round=arguments.turn_round))
+    words = noise_in_words(fit, arguments.distance, track, turn_round=arguments.turn_round)
+    print(words)
     figure = noise_figure(
         errors,
         fit.data,
@@ -87,7 +88,17 @@ def run(arguments: argparse.Namespace) -> int:
         "left_wheel_noise": float(f"{fit.left.value:.6g}"),
         "right_wheel_noise": float(f"{fit.right.value:.6g}"),
     }
-    write_all(arguments, source, changes, _json(fit, arguments.distance), figure)
+    write_all(
+        arguments,
+        source,
+        changes,
+        _json(fit, arguments.distance),
+        figure,
+        title="Noise of the wheels from drives out and back",
+        words=words,
+        see="Each mark is a drive out and back. The solid ellipse of the model should be as large "
+        "and lie as the dashed one of the drives themselves.",
+    )
     return 0
 
 

@@ -69,8 +69,11 @@ def run(arguments: argparse.Namespace) -> int:
     again = recomputed(squares, old, result.factors) if squares.driven_cw else None
     multipliers = result.multipliers(old)
 
-    print(found_in_words(squares, result, old))
-    print(gained_in_words(result, squares, later, again))
+    words = [
+        found_in_words(squares, result, old),
+        gained_in_words(result, squares, later, again),
+    ]
+    print("\n".join(words))
 
     shown, name = (later, "after") if later else (again, "same runs, corrected")
     gain = f", {1e3 * e_max_syst(shown):.1f} mm {name}" if shown else ""
@@ -81,7 +84,17 @@ def run(arguments: argparse.Namespace) -> int:
         subtitle=f"E<sub>max,syst</sub> {1e3 * result.e_max:.1f} mm before{gain}",
     )
     changes = {name: _rounded(estimate.value) for name, estimate in multipliers.items()}
-    write_all(arguments, source, changes, _json(squares, result, old, later, again), figure)
+    write_all(
+        arguments,
+        source,
+        changes,
+        _json(squares, result, old, later, again),
+        figure,
+        title="UMBmark: base and radii from squares",
+        words="\n\n".join(words),
+        see="Where squares ended, clockwise and anticlockwise, by what the odometry said. After "
+        "the calibration both clouds should lie about the origin; the circle is the larger offset.",
+    )
     return 0
 
 

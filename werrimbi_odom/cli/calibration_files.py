@@ -11,8 +11,6 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from werrimbi_odom.errors import InputError
-
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
@@ -38,11 +36,20 @@ def write_all(
     changes: Mapping[str, float],
     figures: Mapping[str, Any],
     figure: go.Figure | None,
+    *,
+    title: str = "Calibration",
+    words: str = "",
+    see: str = "",
 ) -> None:
-    """The new robot file, then the JSON and the page that were asked for; says what it wrote."""
+    """The new robot file, then the JSON and the page that were asked for; says what it wrote.
+
+    Parameters
+    ----------
+    title, words, see
+        Of the page: its heading, what was found, and what to see in the figure.
+    """
     from werrimbi_odom.files.replacing import replacing
     from werrimbi_odom.files.robot_file import write_robot_file
-    from werrimbi_odom.report.save import save_page
 
     write_robot_file(source, changes, arguments.out, force=arguments.force)
     written = [arguments.out]
@@ -52,11 +59,17 @@ def write_all(
             file.write("\n")
         written.append(arguments.json)
     if arguments.report is not None and figure is not None:
-        try:
-            save_page(figure, arguments.report)
-        except OSError as error:
-            raise InputError(f"{arguments.report} cannot be written: {error.strerror}") from error
-        written.append(arguments.report)
+        from werrimbi_odom.cli.report_made import made_of
+        from werrimbi_odom.report.calibration_page import calibration_page
+        from werrimbi_odom.report.save import save_report
+
+        before_after = {
+            name: (float(getattr(source.robot, name)), value)
+            for name, value in changes.items()
+            if hasattr(source.robot, name)
+        }
+        page = calibration_page(title, words, see, figure, before_after, made_of(arguments))
+        written += save_report(page, arguments.report)
     print(f"\nwritten: {', '.join(str(path) for path in written)}")
 
 

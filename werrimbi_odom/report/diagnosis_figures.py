@@ -17,6 +17,7 @@ from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.before_after_figure import before_after, before_after_figure
 from werrimbi_odom.report.decimate import MOST, small
+from werrimbi_odom.report.diagnosis_numbers import length
 from werrimbi_odom.report.evidence_figures import (
     dependence_figure,
     evidence_map_figure,
@@ -117,8 +118,7 @@ def _gain(sides: Sides | None) -> float:
 def _text(sides: Sides | None) -> str:
     if sides is None or not np.isfinite(sides.before):
         return ""
-    unit, factor = ("m", 1.0) if sides.before > 0.1 else ("mm", 1e3)
-    return f"{factor * sides.before:.2f} → {factor * sides.after:.2f} {unit}"
+    return f"{length(sides.before)} → {length(sides.after)}"
 
 
 def set_up_figure(diagnosis: Diagnosis) -> go.Figure:

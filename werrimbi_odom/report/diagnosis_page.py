@@ -76,6 +76,9 @@ def diagnosis_page(told: Told, steps: NextSteps, made: Mapping[str, str]) -> Pag
         "ambiguous": f"What is missing: {' or '.join(diagnosis.rivals)}",
         "unknown": "Something is missing that the library does not hold",
     }[diagnosis.verdict]
+    if diagnosis.set_up.findings:
+        mistakes = ", ".join(item.effect for item in diagnosis.set_up.findings)
+        title = f"What is set up wrongly: {mistakes}"
     return Page(title, words_of(told, steps), shown, tables_of(diagnosis, told.sights), made)
 
 

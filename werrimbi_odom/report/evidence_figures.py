@@ -163,7 +163,7 @@ def evidence_map_figure(
     figure.update_yaxes(autorange="reversed", title="error of", showgrid=False)
     figure.update_xaxes(tickangle=-40, title="goes with", showgrid=False)
     plain(figure, height=height, legend=False)
-    figure.update_layout(dragmode=False, margin={"t": 15})
+    figure.update_layout(dragmode=False, margin={"t": 40})
     return figure
 
 
@@ -303,6 +303,7 @@ def _floor(cell: Dependence, unit: str, factor: float) -> go.Figure:
                 "size": small(5.0 + 7.0 * np.abs(error[which]) / largest),
                 "color": small(np.abs(error[which])),
                 "coloraxis": "coloraxis",
+                "line": {"width": 0},
             },
             customdata=small(error[which]),
             hovertemplate=f"x %{{x:.2f}} m, y %{{y:.2f}} m<br>%{{customdata:+.3g}} {unit}"
