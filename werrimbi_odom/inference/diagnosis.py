@@ -15,8 +15,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
+from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.candidates import CALIBRATED, Score
 from werrimbi_odom.inference.evidence import Dependence, dependences
@@ -27,7 +26,7 @@ from werrimbi_odom.inference.matching import QUARTER_TURN, match
 from werrimbi_odom.inference.ownership import Grasp, grasp_of
 from werrimbi_odom.inference.search import Round, first_fit, jumps_anew, search_round
 from werrimbi_odom.inference.selection import RIVAL, Fitted
-from werrimbi_odom.inference.set_up import SetUp, look_for_mistakes
+from werrimbi_odom.inference.set_up import SetUp, SetUpFinding, look_for_mistakes
 from werrimbi_odom.inference.together import Together, together
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -93,6 +92,8 @@ class Diagnosis:
     holdout: Sides
     medians: Sides
     """Median position error on the held-out runs, outliers and all [m]."""
+    headings: Sides
+    """Heading error on the held-out runs [rad]: a reference of headings alone is judged by it."""
 
     @property
     def robot(self) -> Robot:
@@ -175,7 +176,7 @@ def chance(fit: Fitted, before: Fitted, tried: int) -> float:
     """How often chance would lower the cost as much, all that was tried counted."""
     from scipy.stats import chi2
 
-    gain = before.cost + before.needless - fit.cost - fit.needless
+    gain = (before.cost + before.needless - fit.cost - fit.needless) / fit.scatter
     numbers = round((fit.price - before.price) / fit.price_of_one)
     return float(min(1.0, chi2.sf(max(gain, 0.0), max(numbers, 1)) * max(tried, 1)))
 
@@ -185,7 +186,8 @@ def _best(this: Round) -> Fitted | None:
     for fit in this.tried:
         if fit.at_bound:
             continue
-        if fit.total < this.before.total and chance(fit, this.before, this.number) < SURE:
+        before = this.before.cost + this.before.needless + this.before.price * fit.scatter
+        if fit.total < before and chance(fit, this.before, this.number) < SURE:
             return fit
         return None
     return None
@@ -206,7 +208,7 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Together) -> Dep
     assert best is not None
     score = named[0]
     grasp = _grasp(score, runs, this.before.point.model)
-    data = int(np.isfinite(runs.finish).sum())
+    data = runs.data
     explained = max(_fall(score.gain, data), this.before.cost - best.cost)
     for cell in this.dependences:
         if cell.p_value > VERY_SURE:
@@ -246,7 +248,8 @@ def _told(
     found = tuple(dict.fromkeys([*mistakes, *effects]))
     rivals: tuple[str, ...] = ()
     if mistakes:
-        rivals = (mistakes[0], *set_up.findings[0].twins) if set_up.findings[0].twins else ()
+        twins = _possible_twins(set_up.findings[0])
+        rivals = (mistakes[0], *twins) if twins else ()
     elif found:
         rivals = _rivals(found[0], rounds, final)
     verdict: Verdict
@@ -275,7 +278,15 @@ def _told(
         Sides(start.train, last.train),
         Sides(start.holdout, last.holdout),
         Sides(start.holdout_median, last.holdout_median),
+        Sides(start.holdout_yaw, last.holdout_yaw),
     )
+
+
+def _possible_twins(finding: SetUpFinding) -> tuple[str, ...]:
+    """What else it could be, as far as physics allows: no axle is askew by a quarter turn."""
+    angle = abs(finding.values.get("angle", 0.0))
+    possible = find("sideways_drift").parameters["angle"].bounds[1]
+    return tuple(name for name in finding.twins if name != "sideways_drift" or angle <= possible)
 
 
 def _plain(fit: Fitted, given: Robot) -> Model:
@@ -298,7 +309,7 @@ def _rivals(first: str, rounds: tuple[Round, ...], final: Fitted) -> tuple[str, 
         best = next((fit for fit in fits if fit.names[-1] == first), None)
         if best is None:
             continue
-        near = [fit.names[-1] for fit in fits if fit.total - best.total < RIVAL]
+        near = [fit.names[-1] for fit in fits if fit.total - best.total < RIVAL * best.scatter]
         named = list(dict.fromkeys([first, *near]))
         return tuple(named) if len(named) > 1 else ()
     return ()

@@ -31,6 +31,9 @@ from werrimbi_odom.inference.variables import (
 from werrimbi_odom.model.effect import View, view_of
 from werrimbi_odom.model.pose import Floats
 
+BATCH = 2_000_000
+"""Numbers of legs times columns that go through the filter at once."""
+
 CHANNELS = ("left", "right", "along", "sideways", "heading")
 
 
@@ -102,12 +105,11 @@ def dependences(
     found: list[tuple[Amount, Variable, Form, Floats, float, int]] = []
     path = path_of(point.model, runs)
     pushes = {amount: _pushes(runs, path, amount, point) for amount in AMOUNTS}
-    for variable in variables_of(runs, point.model):
-        blocks = list(_blocks(runs, variable, pushes))
-        change = np.concatenate([block for _, _, block in blocks], axis=-1)
+    for cells_of in _batches(runs, variables_of(runs, point.model), pushes):
+        change = np.concatenate([block for *_, block in cells_of], axis=-1)
         marks = unexpected(runs, point, kind, change, prediction).whitened()[1]
         first = 0
-        for amount, form, block in blocks:
+        for amount, variable, form, block in cells_of:
             own = marks[..., first : first + block.shape[-1]]
             first += block.shape[-1]
             if variable.per_run:
@@ -118,22 +120,9 @@ def dependences(
                     ],
                     axis=-1,
                 )
-            flat = own.reshape(white.size, -1)
-            free = flat - frame @ (frame.T @ flat)
-            size = np.sqrt(np.sum(flat**2, axis=0))
-            heard = size > 1e-9
-            if not heard.any():
-                continue
-            left, values, right = np.linalg.svd(free[:, heard] / size[heard], full_matrices=False)
-            alive = values > 1e-3
-            if not alive.any():
-                continue
-            shares = left[:, alive].T @ rest
-            solution = np.zeros(flat.shape[-1])
-            solution[heard] = -(right[alive].T @ (shares / values[alive])) / size[heard]
-            found.append(
-                (amount, variable, form, solution, float(shares @ shares), int(alive.sum()))
-            )
+            tested = _tested(own.reshape(white.size, -1), frame, rest)
+            if tested is not None:
+                found.append((amount, variable, form, *tested))
     cells = [
         Dependence(
             amount,
@@ -147,6 +136,43 @@ def dependences(
         for amount, variable, form, solution, gain, degrees in found
     ]
     return tuple(sorted(cells, key=lambda cell: (cell.p_value, -cell.gain / cell.degrees)))
+
+
+def _tested(flat: Floats, frame: Floats, rest: Floats) -> tuple[Floats, float, int] | None:
+    """Coefficients of some columns, what they explain, and how many they are; None if mute."""
+    free = flat - frame @ (frame.T @ flat)
+    size = np.sqrt(np.sum(flat**2, axis=0))
+    heard = size > 1e-9
+    if not heard.any():
+        return None
+    left, values, right = np.linalg.svd(free[:, heard] / size[heard], full_matrices=False)
+    alive = values > 1e-3
+    if not alive.any():
+        return None
+    shares = left[:, alive].T @ rest
+    solution = np.zeros(flat.shape[-1])
+    solution[heard] = -(right[alive].T @ (shares / values[alive])) / size[heard]
+    return solution, float(shares @ shares), int(alive.sum())
+
+
+Cell = tuple[Amount, Variable, Form, Floats]
+
+
+def _batches(
+    runs: Together, variables: Sequence[Variable], pushes: dict[Amount, tuple[Floats, Floats]]
+) -> Iterator[list[Cell]]:
+    """Cells with their changes of the legs, as many as memory bears at once."""
+    batch: list[Cell] = []
+    width = 0
+    for variable in variables:
+        for amount, form, block in _blocks(runs, variable, pushes):
+            batch.append((amount, variable, form, block))
+            width += block.shape[-1]
+        if width * runs.count > BATCH:
+            yield batch
+            batch, width = [], 0
+    if batch:
+        yield batch
 
 
 def _blocks(

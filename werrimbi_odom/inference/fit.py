@@ -34,6 +34,9 @@ from werrimbi_odom.model.robot import Robot
 JUMP = 40.0
 """Squared deviation, in units of what is usual for the run, above which the reference jumped."""
 
+FEW = 60
+"""Fewer measured coordinates than this cannot tell the noise; it is then taken as it was given."""
+
 _MEDIAN_CHI2_3 = 2.366
 _TAIL = 4.0  # degrees of freedom of the Student-t that weighs legs until the jumps are known
 
@@ -112,7 +115,9 @@ def fit_model(
     held = (sigma_xy is not None, sigma_yaw is not None)
     free, covariance = _shared(knobs), np.zeros((0, 0))
     for _ in range(rounds):
-        point = replace(point, variances=likeliest(Costs(laid, point, kind), point.variances, held))
+        if laid.data >= FEW:
+            variances = likeliest(Costs(laid, point, kind), point.variances, held)
+            point = replace(point, variances=variances)
         free, covariance = _determined(stacked(laid, point, kind, knobs))
         mute = {knob.name: given.value(knob) for knob in _shared(knobs) if knob not in free}
         point = replace(point, model=point.model.turned(mute, [{}] * len(laid.runs)))

@@ -13,7 +13,14 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.compare_legs import Prepared, judged_legs, prepare
 from werrimbi_odom.inference.design import Point
 from werrimbi_odom.inference.fit import Costs, fit_model, start_point
-from werrimbi_odom.inference.knobs import NUISANCES, Knob, Model, knobs_of
+from werrimbi_odom.inference.knobs import (
+    DRIFT_OF_YAW,
+    NUISANCES,
+    YAW_DRIFT,
+    Knob,
+    Model,
+    knobs_of,
+)
 from werrimbi_odom.inference.legs import statistics
 from werrimbi_odom.inference.likelihood import ReferenceKind
 from werrimbi_odom.inference.matching import QUARTER_TURN, match
@@ -44,6 +51,8 @@ class Errors:
     holdout: float
     train_median: float
     holdout_median: float
+    holdout_yaw: float
+    """Root mean square heading error [rad]."""
 
 
 @dataclass(frozen=True)
@@ -69,7 +78,7 @@ class Judge:
         there = self.at_home(model)
         train = _figures(self.train, _without_nuisances(model))
         holdout = _figures(self.holdout, _without_nuisances(there.model))
-        return Errors(train[0], holdout[0], train[1], holdout[1])
+        return Errors(train[0], holdout[0], train[1], holdout[1], holdout[2])
 
     def at_home(self, model: Model) -> Point:
         """The model in the held-out runs: shared values as they are, the runs' own learnt."""
@@ -102,7 +111,7 @@ def at_home(model: Model, runs: Together, kind: ReferenceKind) -> Point:
     )
     point = start_point(runs, replace(model.robot, effects=effects))
     point, _ = with_own_values(runs, point, kind)
-    knobs: list[Knob] = []
+    knobs: list[Knob] = [DRIFT_OF_YAW] if any(YAW_DRIFT in own for own in point.model.own) else []
     for applied in effects:
         knobs += [
             knob
@@ -184,8 +193,8 @@ def _without_nuisances(model: Model) -> Model:
     return Model(model.robot, own)
 
 
-def _figures(prepared: Prepared, model: Model) -> tuple[float, float]:
+def _figures(prepared: Prepared, model: Model) -> tuple[float, float, float]:
     legs = judged_legs(prepared, model, prepared.leg)
     figures = statistics(legs.errors.chosen(~legs.outlier))
     whole = statistics(legs.errors)
-    return figures.rmse_position_m, whole.median_position_m
+    return figures.rmse_position_m, whole.median_position_m, figures.rmse_yaw_rad

@@ -19,7 +19,7 @@ import numpy as np
 
 from werrimbi_odom.inference.candidates import CALIBRATED, orthonormal
 from werrimbi_odom.inference.design import Design, Point, stacked
-from werrimbi_odom.inference.fit import fit_model
+from werrimbi_odom.inference.fit import FEW, fit_model
 from werrimbi_odom.inference.knobs import (
     CALIBRATION,
     DRIFT_OF_YAW,
@@ -56,6 +56,8 @@ class Fitted:
     """For all that was free, its needless multipliers put back."""
     price_of_one: float
     """Of one free number."""
+    scatter: float
+    """Factor by which its costs are too large, where few data could not tell the noise."""
     needless: float
     """What it costs to put them back."""
     at_bound: tuple[str, ...]
@@ -69,13 +71,20 @@ class Fitted:
     @property
     def total(self) -> float:
         """Cost, price and what the needless multipliers were worth."""
-        return self.cost + self.needless + self.price
+        return self.cost + self.needless + self.price * self.scatter
 
 
 def price_of_one(runs: Together) -> float:
     """What one free number must be worth: the logarithm of the number of data (BIC)."""
-    data = int(np.isfinite(runs.finish).sum())
-    return max(6.0, math.log(max(data, 2)))
+    return max(6.0, math.log(max(runs.data, 2)))
+
+
+def scatter_of(runs: Together, design: Design) -> float:
+    """By how much costs are too large where few data could not tell the noise; else 1."""
+    if runs.data >= FEW:
+        return 1.0
+    free = max(runs.data - len(design.columns), 1)
+    return max(1.0, float(np.sum(design.white**2)) / free)
 
 
 def fitted(
@@ -102,10 +111,10 @@ def fitted(
         sigma_yaw=sigma[1],
     )
     design = stacked(runs, result.point, kind, [*CALIBRATION, *_own(every), *_shared(knobs)])
-    price = price_of_one(runs)
+    price, scatter = price_of_one(runs), scatter_of(runs, design)
     weighed = sorted(
         (
-            (rise + price * len(kept), rise, kept)
+            (rise / scatter + price * len(kept), rise, kept)
             for kept, rise in calibration_rises(design, result.robot, given)
         ),
         key=lambda item: item[0],
@@ -116,7 +125,7 @@ def fitted(
     importance = {name: _rise_without(name, design, covariance, result.point) for name in names}
     for name in kept:
         without = tuple(other for other in kept if other != name)
-        importance[name] = rises[without] - rise
+        importance[name] = (rises[without] - rise) / scatter
     counted = sum(
         1
         for knob, _ in design.columns
@@ -135,6 +144,7 @@ def fitted(
         ),
         price * (len(kept) + counted),
         price,
+        scatter,
         rise,
         tuple(knob.name for knob in result.at_bound if knob.name not in MULTIPLIERS),
         importance,

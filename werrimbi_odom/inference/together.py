@@ -58,6 +58,11 @@ class Together:
         return self.begin.size
 
     @property
+    def data(self) -> int:
+        """Number of measured coordinates at the legs' ends."""
+        return int(np.isfinite(self.finish).sum())
+
+    @property
     def inside(self) -> NDArray[np.intp]:
         """Steps that belong to a leg."""
         marks = np.zeros(int(self.steps[-1]) + 1)
