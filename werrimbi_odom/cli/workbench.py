@@ -1,0 +1,129 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi workbench`: compare, diagnose, add and save on one local page."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import tempfile
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from werrimbi_odom.cli.recordings import Recordings, add_recording_arguments, read_recordings
+from werrimbi_odom.errors import InputError
+
+if TYPE_CHECKING:
+    from werrimbi_odom.workbench.tab import Shared
+
+HELP = "a local page: compare, diagnose, add an effect, watch the error fall, save"
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `werrimbi workbench`."""
+    parser.description = (
+        "Serves one page on this machine alone (127.0.0.1) until Ctrl-C: where the model fails, "
+        "which effect is missing, what adding it does to the error of held-out drives, undo, and "
+        "the new robot file. Reads and writes nothing but what is given here. Without --holdout "
+        "some of the drives are put aside for judging."
+    )
+    add_recording_arguments(parser, holdout=True, report=False)
+    parser.add_argument(
+        "--out",
+        metavar="NEW",
+        type=Path,
+        help="robot file to save to; if not given, R_new.yaml beside R",
+    )
+    parser.add_argument("--force", action="store_true", help="overwrite --out if it exists")
+    parser.add_argument(
+        "--port", metavar="N", type=_port, default=0, help="a free one if not given, or 0"
+    )
+    parser.add_argument("--open", action="store_true", help="open the page in the browser")
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Read, compare, serve until interrupted; 0 then.
+
+    Raises
+    ------
+    InputError
+        When something cannot be used, or the port is taken.
+    """
+    if find_spec("nicegui") is None:
+        raise InputError(
+            "the workbench needs NiceGUI, which is not installed: pip install 'nicegui>=3.0'"
+        )
+    # It would keep a folder .nicegui where the command is run, and ask the network for a relay.
+    os.environ["NICEGUI_STORAGE_PATH"] = str(Path(tempfile.gettempdir()) / ".werrimbi_none")
+    os.environ.pop("NICEGUI_REDIS_URL", None)
+    from werrimbi_odom.workbench.saving import refuse
+    from werrimbi_odom.workbench.server import listening, serve
+
+    if arguments.out is not None:
+        refuse(arguments.out, arguments.force)
+    at = listening(arguments.port)
+    shared = _shared(arguments, read_recordings(arguments))
+
+    def ready(address: str) -> None:
+        if arguments.json is not None:
+            _tell(arguments.json, address, shared)
+        print(f"{address}  (this machine only; Ctrl-C ends it)", flush=True)
+        if arguments.open:
+            import webbrowser
+
+            webbrowser.open(address)
+
+    serve(shared, at, ready)
+    return 0
+
+
+def _shared(arguments: argparse.Namespace, given: Recordings) -> Shared:
+    """Everything opened and compared once, before anybody looks."""
+    from werrimbi_odom.cli.progress import share_done
+    from werrimbi_odom.workbench.opened import Given, Told, opened
+    from werrimbi_odom.workbench.saving import Target, beside
+    from werrimbi_odom.workbench.tab import Shared
+
+    told = Told(
+        given.kind,
+        given.leg,
+        given.source.limits,
+        given.sigma_xy,
+        given.sigma_yaw,
+        tuple(arguments.effects),
+    )
+    with share_done("comparing") as show:
+        robot = given.source.robot
+        found = opened(Given(robot, given.runs, given.holdout, told))
+        look = found.look(robot, show)
+    out = arguments.out or beside(Path(arguments.robot))
+    force = arguments.force and arguments.out is not None
+    return Shared(found, look, given.source, given.collection, Target(out, force))
+
+
+def _tell(path: Path, address: str, shared: Shared) -> None:
+    """For programs: where the page is, and the error that it begins with."""
+    from werrimbi_odom.cli.calibration_files import plain
+    from werrimbi_odom.files.replacing import replacing
+
+    found = {
+        "address": address,
+        "out": str(shared.target.path),
+        "holdout": {"rmse_position_m": shared.look.holdout_error},
+        "train": {"rmse_position_m": shared.look.train_error},
+    }
+    with replacing(path) as file:
+        json.dump(plain(found), file, indent=2, allow_nan=False)
+        file.write("\n")
+
+
+def _port(text: str) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        value = -1
+    if not 0 <= value < 65536:
+        raise argparse.ArgumentTypeError(f"{text!r} is no port (0 to 65535)")
+    return value

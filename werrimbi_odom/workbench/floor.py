@@ -1,0 +1,152 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The floor: every leg where it was driven, told apart by how far it errs from what was promised.
+
+Colour, width and dash tell the same, so that no eye needs the colour. A long drive is drawn with
+fewer points; every figure is counted with all.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.compare import Comparison
+from werrimbi_odom.inference.legs import CHI2_95
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.style import BLUE, GREY, ORANGE, plain
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+YELLOW = "#E69F00"
+CHI2_9999 = np.array([np.inf, 15.136705226623606, 18.420680743952367, 21.107513466160785])
+"""99.99 % quantiles of chi-squared by its degrees of freedom."""
+
+CLASSES = (
+    ("as promised", BLUE, 2.0, "solid"),
+    ("more than promised (outside 95 %)", YELLOW, 4.0, "solid"),
+    ("far more (outside 99.99 %)", ORANGE, 6.5, "solid"),
+    ("left out: the reference jumped", GREY, 2.0, "dot"),
+)
+
+_POINTS = 6000
+"""Of all paths, that are drawn."""
+
+_TEXTS = 1500
+"""Legs, beyond which only those that err tell their figures under the pointer."""
+
+
+def classes_of(comparison: Comparison) -> NDArray[np.intp]:
+    """Index into `CLASSES` of every leg, shape (m,)."""
+    errors = comparison.legs.errors
+    deviation = np.nan_to_num(errors.deviation)
+    grade = (deviation > CHI2_95[errors.freedom]).astype(np.intp)
+    grade += deviation > CHI2_9999[errors.freedom]
+    return np.asarray(np.where(comparison.legs.outlier, 3, grade))
+
+
+def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None) -> go.Figure:
+    """The legs on the floor; where `which` is given, those stand out and the rest is faint."""
+    import plotly.graph_objects as go
+
+    figure = go.Figure()
+    lines = _lines(comparison)
+    grade = classes_of(comparison)
+    if which is not None:
+        x, y = _joined(lines, np.flatnonzero(~which))
+        figure.add_scatter(
+            x=x,
+            y=y,
+            mode="lines",
+            name="other legs",
+            line={"color": "rgba(128, 128, 128, 0.35)", "width": 1.5},
+            hoverinfo="skip",
+        )
+    chosen = np.ones(grade.size, dtype=np.bool_) if which is None else which
+    for index, (name, colour, width, dash) in enumerate(CLASSES):
+        members = np.flatnonzero(chosen & (grade == index))
+        if members.size == 0:
+            continue
+        x, y = _joined(lines, members)
+        figure.add_scatter(
+            x=x,
+            y=y,
+            mode="lines",
+            name=f"{name}: {members.size}",
+            line={"color": colour, "width": width, "dash": dash},
+            hoverinfo="skip",
+        )
+    _add_texts(figure, comparison, chosen, grade)
+    figure.update_xaxes(title="x [m]")
+    figure.update_yaxes(title="y [m]", scaleanchor="x", scaleratio=1)
+    plain(figure, height=480)
+    figure.update_xaxes(zeroline=False)
+    figure.update_yaxes(zeroline=False)
+    figure.update_layout(dragmode="pan", margin={"l": 60, "r": 10, "t": 10, "b": 50})
+    return figure
+
+
+def _add_texts(
+    figure: Any, comparison: Comparison, chosen: NDArray[np.bool_], grade: NDArray[np.intp]
+) -> None:
+    """Points in the middle of the legs, unseen, that tell their figures under the pointer."""
+    legs = comparison.legs
+    told = np.flatnonzero(chosen & np.isfinite(legs.x) & np.isfinite(legs.end_x))
+    if told.size > _TEXTS:
+        told = told[np.argsort(-grade[told], kind="stable")[:_TEXTS]]
+    figure.add_scatter(
+        x=0.5 * (legs.x + legs.end_x)[told],
+        y=0.5 * (legs.y + legs.end_y)[told],
+        mode="markers",
+        showlegend=False,
+        marker={"size": 16, "opacity": 0.0},
+        text=[leg_told(comparison, int(index)) for index in told],
+        hovertemplate="%{text}<extra></extra>",
+    )
+
+
+def leg_told(comparison: Comparison, index: int) -> str:
+    """One leg in two lines."""
+    legs = comparison.legs
+    run = comparison.runs[legs.run[index]].run.name
+    along, sideways, heading = legs.errors.error[index]
+    return (
+        f"{run}, {legs.start_time[index]:.1f} to {legs.end_time[index]:.1f} s, "
+        f"{legs.errors.kind[index]}<br>measured − predicted: along {1e3 * along:+.1f} mm, "
+        f"sideways {1e3 * sideways:+.1f} mm, heading {np.degrees(heading):+.2f}°"
+    )
+
+
+def _lines(comparison: Comparison) -> list[tuple[Floats, Floats]]:
+    """The measured path of every leg, thinned."""
+    legs, paths = comparison.legs, comparison.paths
+    times: dict[int, Floats] = {}
+    for group in comparison.prepared.groups:
+        for index, run in zip(group.index, group.every.runs, strict=True):
+            times[index] = run.measured.time
+    total = sum(path.measured.size for path in paths)
+    every = max(1, total // _POINTS)
+    lines = []
+    for run, begin, end in zip(legs.run, legs.start_time, legs.end_time, strict=True):
+        time, measured = times[int(run)], paths[int(run)].measured
+        first, last = np.searchsorted(time, [begin, end])
+        places = np.unique(np.append(np.arange(first, last + 1, every), last))
+        points = measured[places[places < measured.size]]
+        points = points[np.isfinite(points)]
+        lines.append((points.real, points.imag))
+    return lines
+
+
+def _joined(lines: list[tuple[Floats, Floats]], which: NDArray[np.intp]) -> tuple[Floats, Floats]:
+    """Lines behind each other, parted by NaN."""
+    gap = np.array([np.nan])
+    parts = [lines[int(index)] for index in which]
+    if not parts:
+        return np.empty(0), np.empty(0)
+    return (
+        np.concatenate([piece for x, _ in parts for piece in (x, gap)]),
+        np.concatenate([piece for _, y in parts for piece in (y, gap)]),
+    )

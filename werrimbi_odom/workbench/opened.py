@@ -1,0 +1,140 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the workbench was started with, read and cut into legs once, shared by all who look."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.compare import Comparison, judged
+from werrimbi_odom.inference.compare_legs import Prepared
+from werrimbi_odom.inference.holdout import PARTS, Judge, at_home, judge_of
+from werrimbi_odom.inference.knobs import NUISANCES, Model
+from werrimbi_odom.inference.likelihood import ReferenceKind
+from werrimbi_odom.inference.matching import QUARTER_TURN, match
+from werrimbi_odom.inference.together import Together, together
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.robot import Robot
+
+Show = Callable[[float, str], None]
+
+
+@dataclass(frozen=True)
+class Told:
+    """What the user said of the drives and their reference."""
+
+    kind: ReferenceKind
+    leg: float
+    """[m]"""
+    limits: EncoderLimits
+    sigma_xy: float | None
+    """[m]"""
+    sigma_yaw: float | None
+    """[rad]"""
+    effect_files: tuple[Path, ...]
+
+
+@dataclass(frozen=True, eq=False)
+class Given:
+    """What was given: enough to open it again in another process, to the same legs."""
+
+    robot: Robot
+    runs: tuple[Run, ...]
+    holdout: tuple[Run, ...]
+    told: Told
+
+
+@dataclass(frozen=True, eq=False)
+class Drives:
+    """Drives cut into legs, by the travel of the robot as given."""
+
+    prepared: Prepared
+    fine: Together
+    """In the short legs of a fit: what each run has of its own is learnt there."""
+
+    def compared(self, robot: Robot, show: Show = lambda share, words: None) -> Comparison:
+        """How a robot does on these drives."""
+        return judged(self.prepared, self.at_home(robot), show=show)
+
+    def at_home(self, robot: Robot) -> Model:
+        """The robot with what each run has of its own (phases), learnt in that run."""
+        bare = Model(robot, tuple({} for _ in self.prepared.runs))
+        if all(applied.ready for applied in robot.effects):
+            return bare
+        model = at_home(bare, self.fine, self.prepared.kind).model
+        own = tuple(
+            {name: value for name, value in mine.items() if name not in NUISANCES}
+            for mine in model.own
+        )
+        return Model(model.robot, own)
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """A robot over all drives, cut into the same legs as every other robot."""
+
+    robot: Robot
+    train: Comparison
+    holdout: Comparison
+
+    @property
+    def holdout_error(self) -> float:
+        """Position error of the held-out legs, rms; NaN where no position was measured [m]."""
+        return self.holdout.main.all.figures.rmse_position_m
+
+    @property
+    def train_error(self) -> float:
+        """The same of the drives that are fitted [m]."""
+        return self.train.main.all.figures.rmse_position_m
+
+
+@dataclass(frozen=True, eq=False)
+class Opened:
+    """Drives to learn from, drives to judge on, and how they are to be read."""
+
+    given: Given
+    train: Drives
+    holdout: Drives
+    judged_on: tuple[str, ...]
+    """Names of the held-out drives, given or put aside."""
+
+    def look(self, robot: Robot, show: Show = lambda share, words: None) -> Look:
+        """Compare a robot on all drives."""
+        train = self.train.compared(robot, lambda share, words: show(0.6 * share, words))
+        show(0.6, "held-out drives")
+        return Look(robot, train, self.holdout.compared(robot))
+
+
+def opened(given: Given) -> Opened:
+    """Match and cut everything.
+
+    Raises
+    ------
+    InputError
+        When a run has no usable reference or no ticks.
+    """
+    robot, told = given.robot, given.told
+    judge = judge_of(
+        given.runs,
+        given.holdout,
+        robot,
+        told.kind,
+        told.leg,
+        told.limits,
+        told.sigma_xy,
+        told.sigma_yaw,
+    )
+    return Opened(
+        given,
+        Drives(judge.train, _fine(judge, robot, told)),
+        Drives(judge.holdout, judge.fine),
+        tuple(run.name for run in judge.kept_back),
+    )
+
+
+def _fine(judge: Judge, robot: Robot, told: Told) -> Together:
+    leg, turn = told.leg / PARTS, QUARTER_TURN / PARTS
+    return together([match(run, robot, leg, told.limits, turn) for run in judge.fitted_on])

@@ -1,0 +1,109 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The page: built for each browser tab, drawn again whenever its state has changed."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from nicegui import app, ui
+
+from werrimbi_odom.workbench.html import box, button, text
+from werrimbi_odom.workbench.tab import Shared, Tab, new_tab
+from werrimbi_odom.workbench.views.add import add_view
+from werrimbi_odom.workbench.views.compare import compare_view
+from werrimbi_odom.workbench.views.diagnose import diagnose_view
+from werrimbi_odom.workbench.views.save import save_view
+from werrimbi_odom.workbench.views.strip import strip, under_way
+
+STYLE = Path(__file__).with_name("page.css")
+VIEW = {
+    "compare": compare_view,
+    "diagnose": diagnose_view,
+    "add": add_view,
+    "save": save_view,
+}
+FOCUS = """<script>
+function werrimbiFocus(key) {
+  let tries = 20;
+  const look = () => {
+    const at = document.activeElement;
+    const found = document.querySelector('[data-key="' + key + '"]');
+    if (found && at !== found && (!at || at === document.body)) found.focus({preventScroll: true});
+    if (--tries) setTimeout(look, 40);
+  };
+  setTimeout(look, 40);
+}
+</script>"""
+"""Drawing takes place when the browser likes; until then the old element may still be there."""
+
+_SESSION, _DARK = "session", "dark"
+
+
+async def page(shared: Shared) -> None:
+    """Everything that a tab sees."""
+    ui.add_css(STYLE.read_text(encoding="utf-8"))
+    ui.add_head_html(FOCUS)
+    ui.page_title(f"{shared.source.path.name} · werrimbi workbench")
+    theme = ui.dark_mode()
+    status = text("p", "", "status", role="status", aria_live="polite")
+    top = box("header")
+    strip_place = box("div", "strip-place")
+    main = box("main", data_key="main")
+
+    def draw(focus: str | None) -> None:
+        with client:  # whoever asked may be gone: the button that was pressed is drawn anew
+            for place in (top, strip_place, main):
+                place.clear()
+            with top:
+                _head(tab, turn_theme)
+            with strip_place:
+                strip(tab)
+            with main:
+                under_way(tab)
+                VIEW[tab.view](tab)
+            status.set_text(tab.news)
+            status.classes(
+                add="trouble" if tab.trouble else "", remove="" if tab.trouble else "trouble"
+            )
+            kept[_SESSION], kept[_DARK] = tab.session, tab.dark
+            if focus is not None:
+                ui.run_javascript(f"werrimbiFocus({json.dumps(focus)})")
+
+    def turn_theme() -> None:
+        tab.dark = not tab.dark
+        theme.set_value(tab.dark)
+        draw("theme")
+
+    client = ui.context.client
+    tab = new_tab(shared, draw)
+    text("p", "Opening …", "opening").move(main)
+    client.on_delete(tab.cancel)
+    await client.connected()
+    if not client.has_socket_connection:
+        return  # something that only fetched the page
+    kept = app.storage.tab
+    tab.session = kept.get(_SESSION, tab.session)
+    dark = kept.get(_DARK)
+    if dark is None:
+        dark = await ui.run_javascript(
+            "matchMedia('(prefers-color-scheme: dark)').matches", timeout=5.0
+        )
+    tab.dark = bool(dark)
+    theme.set_value(tab.dark)
+    draw(None)
+
+
+def _head(tab: Tab, turn_theme: object) -> None:
+    shared = tab.shared
+    fitted, held = shared.opened.train.prepared.runs, shared.opened.holdout.prepared.runs
+    with box("div", "title"):
+        text("h1", "werrimbi workbench")
+        text(
+            "p",
+            f"{shared.source.path.name}: {len(fitted)} fitted and {len(held)} held-out drives. "
+            "Find out where the wheel odometry fails, why, and mend it: 1 to 4.",
+        )
+    assert callable(turn_theme)
+    button("Light" if tab.dark else "Dark", turn_theme, key="theme", aria_label="Light or dark")

@@ -1,0 +1,169 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Parts of the drives that can be pointed at, and the legs that belong to each."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.compare import KINDS, Comparison
+from werrimbi_odom.inference.legs import LegStatistics, statistics
+from werrimbi_odom.model.pose import Floats
+
+Which = NDArray[np.bool_]
+
+MOTIONS = {"line": "straight driving", "arc": "curves", "spin": "spins"}
+
+MOST_OF = 0.2
+"""Share of the legs that are shown for a cell of the evidence map: those that err the most."""
+
+CHANNELS = {
+    "left": "the left wheel's travel",
+    "right": "the right wheel's travel",
+    "along": "travel along the way",
+    "sideways": "sideways motion",
+    "heading": "the heading",
+}
+
+
+@dataclass(frozen=True)
+class MotionPart:
+    """All legs of one type of motion."""
+
+    kind: str
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return MOTIONS[self.kind]
+
+    def legs(self, comparison: Comparison) -> Which:
+        """Which legs, shape (m,)."""
+        return np.asarray(comparison.legs.errors.kind == self.kind)
+
+
+@dataclass(frozen=True)
+class BinPart:
+    """Legs within a range of one variable."""
+
+    variable: str
+    """With its unit."""
+    low: float
+    high: float
+    last: bool
+    """Whether `high` belongs to it too."""
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"legs with {self.variable.split(' [')[0]} {self.range}"
+
+    @property
+    def range(self) -> str:
+        """From what to what, with the unit."""
+        name, _, unit = self.variable.partition(" [")
+        unit = unit.rstrip("]")
+        low, high = self.low, self.high
+        if name == "heading":
+            low, high, unit = float(np.degrees(low)), float(np.degrees(high)), "°"
+            return f"{low:.0f} to {high:.0f}{unit}"
+        digits = max(0, 1 - math.floor(math.log10(max(high - low, 1e-9))))
+        return f"{low:.{digits}f} to {high:.{digits}f} {unit}".strip()
+
+    def legs(self, comparison: Comparison) -> Which:
+        """Which legs, shape (m,)."""
+        values = comparison.legs.variables.get(self.variable)
+        if values is None:
+            return np.zeros(comparison.legs.run.size, dtype=np.bool_)
+        if self.variable.startswith("heading"):
+            values = np.mod(values + np.pi, 2.0 * np.pi) - np.pi
+        below = values <= self.high if self.last else values < self.high
+        return np.asarray((values >= self.low) & below)
+
+
+@dataclass(frozen=True)
+class PlacePart:
+    """Legs about a place on the floor."""
+
+    x: float
+    y: float
+    side: float
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        return f"legs about x {self.x:.1f} m, y {self.y:.1f} m"
+
+    def legs(self, comparison: Comparison) -> Which:
+        """Which legs, shape (m,)."""
+        legs = comparison.legs
+        x, y = 0.5 * (legs.x + legs.end_x), 0.5 * (legs.y + legs.end_y)
+        half = 0.5 * self.side
+        return np.asarray((np.abs(x - self.x) <= half) & (np.abs(y - self.y) <= half))
+
+
+@dataclass(frozen=True)
+class CellPart:
+    """Legs on which one channel of the error is largest: a cell of the evidence map."""
+
+    channel: str
+    variable: str
+
+    @property
+    def words(self) -> str:
+        """What it is."""
+        share = round(100 * MOST_OF)
+        return f"the {share} % of legs with the largest error of {CHANNELS[self.channel]}"
+
+    def legs(self, comparison: Comparison) -> Which:
+        """Which legs, shape (m,)."""
+        size = np.abs(channel_error(comparison, self.channel))
+        size[comparison.legs.outlier] = np.nan
+        if not np.isfinite(size).any():
+            return np.zeros(size.size, dtype=np.bool_)
+        return np.asarray(size >= np.nanquantile(size, 1.0 - MOST_OF))
+
+
+Part = MotionPart | BinPart | PlacePart | CellPart
+
+
+def channel_error(comparison: Comparison, channel: str) -> Floats:
+    """Error of one channel of every leg, shape (m,) [m; heading: rad]."""
+    along, sideways, heading = comparison.legs.errors.error.T
+    if channel in ("left", "right"):
+        half = 0.5 * comparison.model.robot.track * heading
+        return np.asarray(along - half if channel == "left" else along + half)
+    return np.array({"along": along, "sideways": sideways, "heading": heading}[channel])
+
+
+def motion_parts(comparison: Comparison) -> list[MotionPart]:
+    """The types of motion that were driven."""
+    return [MotionPart(kind) for kind in KINDS if comparison.main.by_motion[kind].figures.count > 0]
+
+
+def bin_parts(comparison: Comparison) -> dict[str, list[tuple[BinPart, LegStatistics]]]:
+    """Ranges of each variable, with the figures of their legs."""
+    return {
+        item.name: [
+            (BinPart(item.name, part.low, part.high, index == len(item.bins) - 1), part.figures)
+            for index, part in enumerate(item.bins)
+        ]
+        for item in comparison.variables
+    }
+
+
+def figures_of(comparison: Comparison, which: Which) -> LegStatistics:
+    """Figures over some legs, those on which the reference jumped left out."""
+    return statistics(comparison.legs.errors.chosen(which & ~comparison.legs.outlier))
+
+
+def worst(comparison: Comparison, which: Which, most: int = 8) -> list[int]:
+    """Indices of the legs that err most against what was promised, the worst first."""
+    legs = comparison.legs
+    size = np.where(which & ~legs.outlier, legs.errors.deviation, -np.inf)
+    order = np.argsort(-size, kind="stable")[:most]
+    return [int(index) for index in order if np.isfinite(size[index])]

@@ -1,0 +1,197 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""One browser tab: its session, its long work, and what of the page it looks at."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from werrimbi_odom.effects.collection import Collection
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.inference.compare import Comparison
+from werrimbi_odom.workbench.job import CancelledError, Job
+from werrimbi_odom.workbench.opened import Look, Opened
+from werrimbi_odom.workbench.parts import Part
+from werrimbi_odom.workbench.saving import Target, saved
+from werrimbi_odom.workbench.steps import Session, begun
+from werrimbi_odom.workbench.work import Add, Diagnose, Task
+
+VIEWS = ("compare", "diagnose", "add", "save")
+
+
+@dataclass(frozen=True, eq=False)
+class Shared:
+    """What all tabs share; nobody changes it, but for the files that were written."""
+
+    opened: Opened
+    look: Look
+    """The robot as given."""
+    source: RobotFile
+    collection: Collection
+    target: Target
+    taken: set[Path] = field(default_factory=set)
+    """Files that some tab wrote."""
+
+
+@dataclass(eq=False)
+class Tab:
+    """State of one tab; `changed` is called whenever the page must be drawn again."""
+
+    shared: Shared
+    session: Session
+    changed: Callable[[str | None], None]
+    """Told the key of what should have the focus afterwards, or None."""
+    view: str = "compare"
+    part: Part | None = None
+    """Of the drives, whose legs are shown."""
+    held_out: bool = False
+    """Whether the floor shows the held-out drives."""
+    variable: int = 0
+    why: str | None = None
+    """Effect whose page is open."""
+    dark: bool = False
+    job: Job | None = None
+    news: str = ""
+    """What happened last, for the status line and for screen readers."""
+    trouble: bool = False
+    """Whether that is something that did not work."""
+
+    @property
+    def comparison(self) -> Comparison:
+        """Of the current robot, over the drives that are looked at."""
+        look = self.session.now.look
+        return look.holdout if self.held_out else look.train
+
+    def go(self, view: str, focus: str | None = None) -> None:
+        """Look at another step of the four."""
+        self.view = view
+        self.changed(focus or f"title-{view}")
+
+    def point(self, part: Part | None, focus: str) -> None:
+        """Show the legs of a part; pressed again, all legs."""
+        self.part = None if part == self.part else part
+        self.changed(focus)
+
+    def tell(self, words: str, *, trouble: bool = False) -> None:
+        """Say something in the status line."""
+        self.news, self.trouble = words, trouble
+
+    async def diagnose(self) -> None:
+        """Find out what is missing."""
+        at = self.session.now
+        found = await self._done(Diagnose(at.look.robot), "diagnosis")
+        if found is not None and at is self.session.now:
+            self.session = self.session.diagnosed(found)
+            self.why = found.diagnosis.effect
+            self.tell("Diagnosis done.")
+            self.go("diagnose")
+
+    async def add(self, effect: str) -> None:
+        """Fit an effect; taken where nothing speaks against it."""
+        at = self.session.now
+        self.view = "add"
+        step = await self._done(Add(effect, at.look.robot), f"fit of {effect}")
+        if step is None or at is not self.session.now:
+            return
+        self.session = self.session.fitted(step)
+        if self.session.proposed is not None:
+            self.tell(f"{effect} was fitted, but something speaks against it.", trouble=True)
+        else:
+            self.tell(f"{effect} added: {self.error_told()}")
+        self.go("add")
+
+    async def _done(self, task: Task, name: str) -> Any:
+        """The result of a task, or None where it failed or was cancelled; the page says which."""
+        if self.job is not None:
+            return None
+        job = self.job = Job(task)
+        self.tell("")
+        try:
+            self.changed("cancel")
+            return await job.result(self.shared.opened, self.shared.collection)
+        except CancelledError:
+            self.tell(f"The {name} was cancelled; nothing has changed.")
+        except InputError as error:
+            self.tell(str(error), trouble=True)
+        finally:
+            self.job = None
+        self.view = "diagnose" if self.view == "add" and not self.session.can_undo else self.view
+        self.changed(f"title-{self.view}")
+        return None
+
+    def cancel(self) -> None:
+        """Stop the work under way."""
+        if self.job is not None:
+            self.job.cancel()
+
+    def insist(self) -> None:
+        """Take the proposed effect all the same."""
+        self.session = self.session.insisted()
+        self.tell(f"{self.session.now.name} added, against the objection: {self.error_told()}")
+        self.go("add")
+
+    def decline(self) -> None:
+        """Leave the proposed effect."""
+        self.session = self.session.declined()
+        self.tell("Left out; nothing has changed.")
+        self.go("diagnose" if self.session.diagnosis else "add")
+
+    def undo(self) -> None:
+        """A step back."""
+        if self.job is not None or not self.session.can_undo:
+            return
+        name = self.session.now.name
+        self.session = self.session.undone()
+        self.tell(f"{name} taken out again: {self.error_told()}")
+        self.changed("undo" if self.session.can_undo else "redo")
+
+    def redo(self) -> None:
+        """A step forward again."""
+        if self.job is not None or not self.session.can_redo:
+            return
+        self.session = self.session.redone()
+        self.tell(f"{self.session.now.name} put in again: {self.error_told()}")
+        self.changed("redo" if self.session.can_redo else "undo")
+
+    def save(self) -> None:
+        """Write the robot file."""
+        shared = self.shared
+        taken = shared.taken - set(self.session.saved)
+        try:
+            self.session = saved(shared.source, self.session, shared.target, taken)
+        except InputError as error:
+            self.tell(str(error), trouble=True)
+        else:
+            path = shared.target.of(self.session, taken)
+            shared.taken.add(path)
+            self.tell(f"Written: {path}")
+        self.changed("title-save")
+
+    def error_told(self) -> str:
+        """The held-out error in words."""
+        return f"held-out error {millimetres(self.session.now.look.holdout_error)}"
+
+
+def millimetres(metres: float) -> str:
+    """As text; a dash where nothing was measured."""
+    if math.isnan(metres):
+        return "not measured"
+    if metres >= 1.0:
+        return f"{metres:.2f} m"
+    value = 1e3 * metres
+    return f"{value:.2f} mm" if value < 10.0 else f"{value:.1f} mm"
+
+
+def percent(share: float) -> str:
+    """A change, with a real minus sign."""
+    return f"{share:+.0f} %".replace("-", "−")
+
+
+def new_tab(shared: Shared, changed: Callable[[str | None], None]) -> Tab:
+    """A tab that has done nothing yet."""
+    return Tab(shared, begun(shared.look), changed)

@@ -1,0 +1,101 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Step 3: what an added effect did to the error; what speaks against it; its values."""
+
+from __future__ import annotations
+
+from nicegui import ui
+
+from werrimbi_odom.inference.adding import Added
+from werrimbi_odom.report.adding_words import remark_told, value_told, words_of
+from werrimbi_odom.report.page_text import unwrapped
+from werrimbi_odom.workbench.gain import gain_figure
+from werrimbi_odom.workbench.html import box, button, paragraphs, rows, text
+from werrimbi_odom.workbench.steps import Step
+from werrimbi_odom.workbench.tab import Tab, millimetres, percent
+from werrimbi_odom.workbench.theme import shown
+
+
+NOTHING = (
+    "Nothing is added yet. Diagnose, and press Add beside an effect: it is fitted together with "
+    "all calibration, and judged on drives that took no part."
+)
+
+
+def add_view(tab: Tab) -> None:
+    """The proposed step if there is one; what was added so far."""
+    text("h2", "Does it help?", tabindex="-1", data_key="title-add")
+    session = tab.session
+    if session.proposed is not None:
+        _proposed(tab, session.proposed)
+    if not session.can_undo:
+        if session.proposed is None:
+            text("p", NOTHING)
+            button("← Diagnose", lambda: tab.go("diagnose"), key="to-diagnose", classes="primary")
+        return
+    with box("div", "columns"):
+        with box("div", "left"):
+            _gain(tab)
+        with box("div", "right"):
+            for number, step in enumerate(session.past[1:], start=1):
+                if step.added is not None:
+                    _values(number, step.added)
+    _following(tab)
+
+
+def _gain(tab: Tab) -> None:
+    past = tab.session.past
+    errors = [step.look.holdout_error for step in past]
+    told = ", then ".join(
+        f"{step.name} {millimetres(error)}" for step, error in zip(past, errors, strict=True)
+    )
+    before, after = errors[-2], errors[-1]
+    word = "fell" if after < before else "did not fall"
+    with box("p", "verdict headline"):
+        text(
+            "span",
+            f"With {past[-1].name} the held-out error {word}: {millimetres(before)} → "
+            f"{millimetres(after)} ({percent(100.0 * (after / before - 1.0))}).",
+        )
+    with box("div", "figure", role="img", aria_label=f"Held-out error, bar by bar: {told}"):
+        ui.plotly(shown(gain_figure(past), tab.dark)).classes("plot low")
+
+
+def _values(number: int, added: Added) -> None:
+    with box("section", "values"):
+        text("h3", f"{number}. {added.effect.name}")
+        if added.parameters:
+            rows(
+                ["parameter", "value ± 1 σ", "what it is"],
+                [
+                    [name, value_told(item), item.declared.says + remark_told(item)]
+                    for name, item in added.parameters.items()
+                ],
+                "Fitted with all calibration",
+            )
+        with box("details"):
+            text("summary", "All words and figures of this step")
+            parts = words_of(added).split("\n\n")
+            for part in parts:
+                if "\n  " in part:
+                    text("pre", part)
+                else:
+                    paragraphs("\n".join(unwrapped(part)))
+
+
+def _proposed(tab: Tab, step: Step) -> None:
+    assert step.added is not None
+    with box("section", "proposed", aria_label="An objection"):
+        text(
+            "p", f"{step.added.effect.name} is not added: something speaks against it.", "headline"
+        )
+        text("p", f"{step.added.objection}.")
+        button("Leave it out", tab.decline, key="decline", classes="primary")
+        button("Add it all the same", tab.insist, key="insist")
+
+
+def _following(tab: Tab) -> None:
+    with box("p", "following"):
+        button("Is more missing? Diagnose again", lambda: tab.go("diagnose"), key="again")
+        button("Where does it still fail?", lambda: tab.go("compare"), key="to-compare")
+        button("Save the robot file →", lambda: tab.go("save"), key="to-save", classes="primary")

@@ -1,0 +1,170 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Step 1: where the model fails, in words, by parts, and on the floor."""
+
+from __future__ import annotations
+
+from functools import partial
+
+import numpy as np
+
+from werrimbi_odom.inference.compare import Comparison
+from werrimbi_odom.inference.compare_verdict import verdict_of
+from werrimbi_odom.inference.legs import LegStatistics
+from werrimbi_odom.report.compare_words import words_of
+from werrimbi_odom.report.page_text import unwrapped
+from werrimbi_odom.workbench.html import box, button, paragraphs, rows, text
+from werrimbi_odom.workbench.parts import (
+    Part,
+    PlacePart,
+    bin_parts,
+    motion_parts,
+)
+from werrimbi_odom.workbench.tab import Tab, millimetres
+from werrimbi_odom.workbench.views.floor import floor
+
+LARGE = 1.5
+"""NEES beyond which a part fails."""
+
+
+def compare_view(tab: Tab) -> None:
+    """Words and parts on the left, the floor on the right."""
+    comparison = tab.comparison
+    with box("div", "columns"):
+        with box("div", "left"):
+            text("h2", "Where does the model fail?", tabindex="-1", data_key="title-compare")
+            _words(comparison)
+            _next(tab)
+            text("h3", "Press a part to see its legs on the floor")
+            _motions(tab, comparison)
+            _variables(tab, comparison)
+            _places(tab, comparison)
+        with box("div", "right"):
+            floor(tab)
+    with box("details"):
+        text("summary", "All figures as tables")
+        _tables(comparison)
+
+
+def _words(comparison: Comparison) -> None:
+    told = words_of(comparison, next_step="step 2, Diagnose,")
+    lines = unwrapped(told)
+    with box("div", "verdict"):
+        text("p", lines[0], "headline")
+        paragraphs("\n".join(line for line in lines[1:] if not line.startswith("Next:")))
+
+
+def _next(tab: Tab) -> None:
+    good = verdict_of(tab.session.now.look.train).good
+    with box("p"):
+        button(
+            "Next: find out which effect is missing →",
+            lambda: tab.go("diagnose"),
+            key="to-diagnose",
+            classes="quiet" if good else "primary",
+        )
+
+
+def _chip(tab: Tab, part: Part, words: str, figures: LegStatistics, key: str) -> None:
+    """A button for a part: its error, and a mark where it errs more than promised."""
+    fails = figures.nees > LARGE
+    times = np.sqrt(figures.nees)
+    promised = f"{times:.2g} × promised" if np.isfinite(times) else "not measured"
+    pressed = button(
+        "",
+        lambda: tab.point(part, key),
+        key=key,
+        classes="chip fails" if fails else "chip",
+        aria_pressed="true" if tab.part == part else "false",
+    )
+    with pressed:
+        text("span", words, "what")
+        text("span", f"{millimetres(figures.rmse_position_m)}, {figures.count} legs", "size")
+        text("span", f"✗ {promised}" if fails else f"✓ {promised}", "mark")
+
+
+def _motions(tab: Tab, comparison: Comparison) -> None:
+    with box("div", "chips", role="group", aria_label="By type of motion"):
+        for part in motion_parts(comparison):
+            figures = comparison.main.by_motion[part.kind].figures
+            _chip(tab, part, part.words, figures, f"motion-{part.kind}")
+
+
+def _variables(tab: Tab, comparison: Comparison) -> None:
+    """Ranges of one variable; which one, is chosen above them."""
+    every = bin_parts(comparison)
+    if not every:
+        return
+    names = list(every)
+    tab.variable = min(tab.variable, len(names) - 1)
+
+    def choose(index: int) -> None:
+        tab.variable = index
+        tab.changed(f"variable-{index}")
+
+    with box("div", "tabs", role="group", aria_label="By which variable"):
+        text("span", "by")
+        for index, name in enumerate(names):
+            button(
+                name.split(" [")[0],
+                partial(choose, index),
+                key=f"variable-{index}",
+                aria_pressed="true" if index == tab.variable else "false",
+            )
+    chosen = names[tab.variable]
+    with box("div", "chips", role="group", aria_label=f"By {chosen}"):
+        for index, (part, figures) in enumerate(every[chosen]):
+            _chip(tab, part, part.range, figures, f"bin-{tab.variable}-{index}")
+
+
+def _places(tab: Tab, comparison: Comparison) -> None:
+    places = [cell for cell in comparison.cells if cell.stands_out]
+    if not places:
+        return
+    with box("div", "chips", role="group", aria_label="By place on the floor"):
+        for index, cell in enumerate(places[:4]):
+            part = PlacePart(cell.x, cell.y, cell.side)
+            _chip(tab, part, part.words, cell.figures, f"place-{index}")
+
+
+def _tables(comparison: Comparison) -> None:
+    heads = ["legs of", "legs", "position", "heading", "NEES", "inside 95 %"]
+    rows(
+        heads,
+        [[f"{item.leg:g} m", *_figures(item.all.figures)] for item in comparison.lengths],
+        "By length of leg (rms)",
+    )
+    rows(
+        [
+            "run",
+            "driven",
+            "time",
+            "end error",
+            "legs",
+            "position",
+            "heading",
+            "NEES",
+            "inside 95 %",
+        ],
+        [
+            [
+                item.run.name,
+                f"{item.distance_m:.1f} m",
+                f"{item.duration_s:.0f} s",
+                millimetres(item.end_error_m),
+                *_figures(item.legs.figures),
+            ]
+            for item in comparison.runs
+        ],
+        "By run",
+    )
+
+
+def _figures(item: LegStatistics) -> list[str]:
+    return [
+        str(item.count),
+        millimetres(item.rmse_position_m),
+        f"{np.degrees(item.rmse_yaw_rad):.2f}°" if np.isfinite(item.rmse_yaw_rad) else "–",
+        f"{item.nees:.2f}",
+        f"{100.0 * item.coverage_95:.0f} %" if np.isfinite(item.coverage_95) else "–",
+    ]

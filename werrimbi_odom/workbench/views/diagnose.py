@@ -1,0 +1,260 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Step 2: what is missing; the effects ranked, why, and the evidence map."""
+
+from __future__ import annotations
+
+from functools import partial
+
+from nicegui import ui
+
+from werrimbi_odom.inference.diagnosis import Diagnosis, Ranked
+from werrimbi_odom.inference.evidence import CHANNELS, Dependence
+from werrimbi_odom.report.diagnosis_dependence import dependence_words
+from werrimbi_odom.report.diagnosis_numbers import chance_words
+from werrimbi_odom.report.diagnosis_words import NextSteps, Told, words_of
+from werrimbi_odom.report.page_text import unwrapped
+from werrimbi_odom.workbench.html import box, button, paragraphs, text
+from werrimbi_odom.workbench.parts import CellPart
+from werrimbi_odom.workbench.steps import Diagnosed
+from werrimbi_odom.workbench.tab import Tab, millimetres
+from werrimbi_odom.workbench.theme import shown
+from werrimbi_odom.workbench.views.floor import floor
+from werrimbi_odom.workbench.views.why import why
+
+SURE = 1e-3
+"""Chance below which a cell of the map is marked."""
+
+SHORT = 5
+"""Lines of the verdict that are open at once."""
+
+MOST_ROWS = 12
+"""Variables in the map."""
+
+STEPS = NextSteps(
+    add="press Add beside {effect} below",
+    draft="werrimbi draft, on the command line",
+    diagnose="step 2, Diagnose",
+)
+
+
+def diagnose_view(tab: Tab) -> None:
+    """Before: what will be done. After: verdict, ranking, map."""
+    text("h2", "Which effect is missing?", tabindex="-1", data_key="title-diagnose")
+    found = tab.session.diagnosis
+    if found is None:
+        _ask(tab)
+        return
+    with box("div", "columns"):
+        with box("div", "left"):
+            _verdict(tab, found)
+            _ranking(tab, found.diagnosis)
+            _response(tab, found)
+        with box("div", "right"):
+            if tab.why is not None:
+                why(tab, tab.why)
+            _following(tab, found)
+    _map(tab, found.diagnosis)
+
+
+def _ask(tab: Tab) -> None:
+    count = len(tab.shared.collection.effects)
+    drives = ", ".join(dict.fromkeys(tab.shared.opened.judged_on))
+    text(
+        "p",
+        f"All {count} known physical effects are tried on the fitted drives, and judged on drives "
+        f"that take no part in the fit ({drives}). It takes some seconds to a minute, and can be "
+        "cancelled.",
+    )
+    if tab.job is None:
+        button("Diagnose", tab.diagnose, key="diagnose", classes="primary")
+    with box("div", "columns"):
+        with box("div", "left"):
+            text("h3", "The effects that are tried")
+            with box("ul", "library"):
+                for effect in tab.shared.collection.effects:
+                    with box("li"):
+                        button(
+                            effect.name,
+                            partial(_open, tab, effect.name),
+                            key=f"why-{effect.name}",
+                            aria_expanded="true" if tab.why == effect.name else "false",
+                        )
+                        text("span", effect.summary)
+        with box("div", "right"):
+            if tab.why is not None:
+                why(tab, tab.why)
+
+
+def _verdict(tab: Tab, found: Diagnosed) -> None:
+    leg = tab.shared.opened.given.told.leg
+    told = Told(
+        found.diagnosis, found.manoeuvre, found.sights, leg, bool(tab.shared.opened.given.holdout)
+    )
+    lines = unwrapped(words_of(told, STEPS))
+    with box("div", "verdict"):
+        text("p", lines[0], "headline", data_key="verdict")
+        paragraphs("\n".join(lines[1:SHORT]))
+        if len(lines) > SHORT:
+            with box("details"):
+                text("summary", "More words")
+                paragraphs("\n".join(lines[SHORT:]))
+
+
+def _ranking(tab: Tab, diagnosis: Diagnosis) -> None:
+    ranked = [item for item in diagnosis.ranking if item.holdout is not None]
+    rest = [item for item in diagnosis.ranking if item.holdout is None]
+    text("h3", "Effects, best first: held-out error without it and with it")
+    with box("ol", "ranking"):
+        for item in ranked:
+            _ranked(tab, item, diagnosis)
+    if rest:
+        with box("details"):
+            text("summary", f"{len(rest)} more, not worth a fit on these drives")
+            with box("ol", "ranking"):
+                for item in rest:
+                    _ranked(tab, item, diagnosis)
+
+
+def _ranked(tab: Tab, item: Ranked, diagnosis: Diagnosis) -> None:
+    found = item.effect in diagnosis.found
+    with box("li", "found" if found else ""):
+        with box("div", "name"):
+            text("strong", item.effect)
+            text("span", _by_chance(item), "chance")
+        if item.holdout is not None:
+            _bars(item, diagnosis)
+        with box("div", "do"):
+            button(
+                "Why?",
+                lambda: _open(tab, item.effect),
+                key=f"why-{item.effect}",
+                aria_label=f"Why {item.effect}?",
+                aria_expanded="true" if tab.why == item.effect else "false",
+            )
+            button(
+                "Add",
+                lambda: tab.add(item.effect),
+                key=f"add-{item.effect}",
+                classes="primary" if found else "",
+                disabled=tab.job is not None or not _can(tab, item.effect),
+                aria_label=f"Add {item.effect}",
+            )
+
+
+def _response(tab: Tab, found: Diagnosed) -> None:
+    """The error along the effect's own variable, before and after."""
+    if "response" in found.figures:
+        name = found.diagnosis.effect or "what is missing"
+        text("h3", f"The error along the variable of {name}, before and after")
+        text("p", "Before, it shows the effect's own pattern; after, it should be flat on zero.")
+    elif "set_up" in found.figures:
+        text("h3", "The set-up, as given and put right")
+        text("p", "What is set up rightly lies on the dashed line.")
+    for name in ("response", "set_up"):
+        if name in found.figures:
+            _figure(tab, found.figures[name], "Figure: error before and after")
+
+
+def _following(tab: Tab, found: Diagnosed) -> None:
+    """What to drive next."""
+    manoeuvre = found.manoeuvre
+    if manoeuvre is None:
+        return
+    text("h3", "What to do next")
+    minutes = f", for about {manoeuvre.minutes:.0f} min" if manoeuvre.minutes else ""
+    text("p", f"{manoeuvre.do[0].upper()}{manoeuvre.do[1:]}{minutes}: {manoeuvre.why}.")
+    if "manoeuvre" in found.figures:
+        _figure(tab, found.figures["manoeuvre"], "Figure: the path to drive, to scale")
+
+
+def _figure(tab: Tab, figure: str, label: str) -> None:
+    with box("div", "figure", role="img", aria_label=label):
+        ui.plotly(shown(figure, tab.dark)).classes("plot low")
+
+
+def _by_chance(item: Ranked) -> str:
+    if item.p_value > SURE:
+        return "not seen in these drives"
+    return chance_words(item.p_value)
+
+
+def _can(tab: Tab, name: str) -> bool:
+    return any(effect.name == name for effect in tab.shared.collection.effects)
+
+
+def _open(tab: Tab, name: str) -> None:
+    tab.why = name
+    tab.changed(f"page-{name}")
+
+
+def _bars(item: Ranked, diagnosis: Diagnosis) -> None:
+    """Two bars: the held-out error before and after, on one scale for all effects."""
+    assert item.holdout is not None
+    sides = [one.holdout for one in diagnosis.ranking if one.holdout is not None]
+    top = max(max(one.before, one.after) for one in sides)
+    before, after = item.holdout.before, item.holdout.after
+    told = f"{millimetres(before)} → {millimetres(after)}"
+    with box("div", "beforeafter", role="img", aria_label=f"Held-out error {told}"):
+        for value, kind in ((before, "before"), (after, "after")):
+            share = 100.0 * value / top if top > 0.0 and value == value else 0.0
+            box("div", f"bar {kind}").style(f"width: {min(share, 100.0):.1f}%")
+    text("span", told, "told")
+
+
+def _map(tab: Tab, diagnosis: Diagnosis) -> None:
+    """Error channels against variables; every marked cell a button."""
+    text("h3", "Evidence: which error goes with what", tabindex="-1", data_key="map")
+    best: dict[tuple[str, str], Dependence] = {}
+    for cell in diagnosis.depends_on:
+        if cell.p_value < SURE:
+            best.setdefault((cell.name, cell.channel), cell)
+    names = list(dict.fromkeys(name for name, _ in best))[:MOST_ROWS]
+    if not names:
+        text("p", "The errors go with nothing that was measured.")
+        return
+    text(
+        "p",
+        "Before any name is given to it, calibration apart. The more marks, the surer: ● beyond "
+        "chance, ●● sure, ●●● very sure. Press a cell to see its legs on the floor.",
+    )
+    with box("div", "columns"):
+        with box("div", "left wide"), box("table", "map"):
+            text("caption", "Evidence map", "unseen")
+            with box("thead"), box("tr"):
+                text("th", "goes with", scope="col")
+                for channel in CHANNELS:
+                    text("th", channel, scope="col")
+            with box("tbody"):
+                for name in names:
+                    with box("tr"):
+                        text("th", name.replace("_", " "), scope="row")
+                        for channel in CHANNELS:
+                            with box("td"):
+                                _cell(tab, name, channel, best.get((name, channel)))
+        if isinstance(tab.part, CellPart):
+            with box("div", "right"):
+                pressed = best.get((tab.part.variable, tab.part.channel))
+                if pressed is not None:
+                    words = dependence_words(pressed)
+                    text("p", f"{words[0].upper()}{words[1:]} ({chance_words(pressed.p_value)}).")
+                floor(tab)
+
+
+def _cell(tab: Tab, name: str, channel: str, cell: Dependence | None) -> None:
+    if cell is None:
+        text("span", "·", "nothing", aria_label="nothing")
+        return
+    marks = 1 + (cell.p_value < 1e-10) + (cell.p_value < 1e-40)
+    part = CellPart(channel, name)
+    key = f"cell-{name}-{channel}"
+    sure = ("beyond chance", "sure", "very sure")[marks - 1]
+    button(
+        "●" * marks,
+        lambda: tab.point(part, key),
+        key=key,
+        classes=f"cell level{marks}",
+        aria_label=f"{channel} error with {name.replace('_', ' ')}: {sure}",
+        aria_pressed="true" if tab.part == part else "false",
+        title=dependence_words(cell),
+    )

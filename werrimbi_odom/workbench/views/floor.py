@@ -1,0 +1,71 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The floor with the legs of the part that was pressed, and the worst of them in a table."""
+
+from __future__ import annotations
+
+import numpy as np
+from nicegui import ui
+
+from werrimbi_odom.workbench.floor import floor_figure
+from werrimbi_odom.workbench.html import box, button, rows, text
+from werrimbi_odom.workbench.parts import figures_of, worst
+from werrimbi_odom.workbench.tab import Tab, millimetres
+from werrimbi_odom.workbench.theme import shown
+
+
+def floor(tab: Tab) -> None:
+    """The figure, what it shows in words, and the worst legs."""
+    comparison, part = tab.comparison, tab.part
+    which = None if part is None else part.legs(comparison)
+    chosen = np.ones(comparison.legs.run.size, dtype=np.bool_) if which is None else which
+    figures = figures_of(comparison, chosen)
+    error = millimetres(figures.rmse_position_m)
+    if part is None:
+        told = f"All {figures.count} legs: {error} rms."
+    else:
+        rest = figures_of(comparison, ~chosen)
+        told = (
+            f"{part.words[0].upper()}{part.words[1:]}: {figures.count} legs, {error} rms; "
+            f"the other {rest.count}: {millimetres(rest.rmse_position_m)}."
+        )
+    with box("section", "floor", aria_label="The floor"):
+        with box("div", "floorhead"):
+            text("p", told, "told", role="status", data_key="told")
+            if part is not None:
+                button("Show all legs", lambda: tab.point(None, "told"), key="all-legs")
+            _which_drives(tab)
+        with box("div", "figure", role="img", aria_label=f"The floor from above. {told}"):
+            ui.plotly(shown(floor_figure(comparison, which), tab.dark)).classes("plot")
+        legs = comparison.legs
+        lines = []
+        for index in worst(comparison, chosen, 5):
+            along, sideways, heading = legs.errors.error[index]
+            lines.append(
+                [
+                    comparison.runs[legs.run[index]].run.name,
+                    f"{legs.start_time[index]:.1f} to {legs.end_time[index]:.1f} s",
+                    str(legs.errors.kind[index]),
+                    f"{1e3 * along:+.1f} mm",
+                    f"{1e3 * sideways:+.1f} mm",
+                    f"{np.degrees(heading):+.2f}°",
+                ]
+            )
+        heads = ["run", "when", "motion", "along", "sideways", "heading"]
+        rows(heads, lines, "The worst of these legs, measured minus predicted")
+
+
+def _which_drives(tab: Tab) -> None:
+    def choose(held_out: bool) -> None:
+        tab.held_out = held_out
+        tab.changed("drives-held" if held_out else "drives-fitted")
+
+    with box("div", "tabs", role="group", aria_label="Which drives"):
+        button(
+            "fitted drives", lambda: choose(False), key="drives-fitted",
+            aria_pressed="false" if tab.held_out else "true",
+        )  # fmt: skip
+        button(
+            "held-out drives", lambda: choose(True), key="drives-held",
+            aria_pressed="true" if tab.held_out else "false",
+        )  # fmt: skip

@@ -1,0 +1,131 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Always in view: the four steps, the held-out error and how it fell, undo and redo."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import numpy as np
+from nicegui import ui
+
+from werrimbi_odom.inference.compare_verdict import verdict_of
+from werrimbi_odom.workbench.html import box, button, text
+from werrimbi_odom.workbench.tab import VIEWS, Tab, millimetres, percent
+
+TITLES = {"compare": "Compare", "diagnose": "Diagnose", "add": "Add", "save": "Save"}
+ASKS = {
+    "compare": "Where does the model fail?",
+    "diagnose": "Which effect is missing?",
+    "add": "Does it help?",
+    "save": "The new robot file",
+}
+
+
+def strip(tab: Tab) -> None:
+    """The whole strip."""
+    with box("div", "strip"):
+        with box("nav", "steps", aria_label="The four steps"):
+            for number, view in enumerate(VIEWS, start=1):
+                _step(tab, number, view)
+        _meter(tab)
+        busy = tab.job is not None
+        with box("div", "history", role="group", aria_label="History"):
+            button(
+                "↶ Undo", tab.undo, key="undo", disabled=busy or not tab.session.can_undo,
+                title="take the last effect out again",
+            )  # fmt: skip
+            button(
+                "↷ Redo", tab.redo, key="redo", disabled=busy or not tab.session.can_redo,
+                title="put it in again",
+            )  # fmt: skip
+
+
+def _step(tab: Tab, number: int, view: str) -> None:
+    current = view == tab.view
+    classes = "step current" if current else "step"
+    pressed = button("", lambda: tab.go(view), key=f"go-{view}", classes=classes)
+    if current:
+        pressed.props["aria-current"] = "step"
+    with pressed:
+        text("span", str(number), "number", aria_hidden="true")
+        with box("span", "of"):
+            text("strong", TITLES[view])
+            text("span", _state(tab, view), "state")
+
+
+def _state(tab: Tab, view: str) -> str:
+    """How far that step is, in a few words."""
+    session = tab.session
+    if view == "compare":
+        good = verdict_of(session.now.look.train).good
+        return "the model is good" if good else "the model fails"
+    if view == "diagnose":
+        if session.diagnosis is None:
+            return "not asked yet" if not session.can_undo else "ask again"
+        found = session.diagnosis.diagnosis
+        if found.verdict == "named" and found.effect is not None:
+            return found.effect
+        return {"none": "nothing is missing", "ambiguous": "cannot tell yet"}.get(
+            found.verdict, "unknown"
+        )
+    if view == "add":
+        count = session.at
+        return "nothing yet" if not count else "1 effect" if count == 1 else f"{count} effects"
+    if session.is_saved:
+        return "saved"
+    return "not saved" if session.can_undo else "nothing to save"
+
+
+def _meter(tab: Tab) -> None:
+    """The held-out error, and a bar for each step."""
+    session = tab.session
+    errors = [step.look.holdout_error for step in session.past]
+    now, first = errors[-1], errors[0]
+    with box("div", "meter", role="group", aria_label="Held-out error"):
+        with box("div"):
+            text("div", "Held-out error", "label", title="rms position error of the legs of drives "
+                 "that took no part in any fit")  # fmt: skip
+            text("strong", millimetres(now), "value", data_key="error")
+            if session.can_undo and np.isfinite([now, first]).all():
+                share = 100.0 * (now / first - 1.0)
+                text("span", f" {percent(share)} (was {millimetres(first)})", "fall")
+        _bars(tab, errors)
+
+
+def _bars(tab: Tab, errors: list[float]) -> None:
+    later = [step.look.holdout_error for step in tab.session.steps[tab.session.at + 1 :]]
+    every = [*errors, *later]
+    top = max((error for error in every if np.isfinite(error)), default=0.0)
+    if len(every) < 2 or not top > 0.0:
+        return
+    names = [step.name for step in tab.session.steps]
+    told = ", ".join(
+        f"{name} {millimetres(error)}" for name, error in zip(names, every, strict=True)
+    )
+    with box("div", "bars", role="img", aria_label=f"Bar by bar: {told}"):
+        for index, (name, error) in enumerate(zip(names, every, strict=True)):
+            kind = "bar" if index < len(errors) else "bar undone"
+            height = 100.0 * error / top if np.isfinite(error) else 0.0
+            bar = box("div", kind, title=f"{name}: {millimetres(error)}")
+            bar.style(f"height: {height:.0f}%")
+
+
+def under_way(tab: Tab) -> None:
+    """Long work: how far it is, and a way to stop it."""
+    job = tab.job
+    if job is None:
+        return
+    name = "Diagnosing" if type(job.task).__name__ == "Diagnose" else "Fitting"
+    with box("section", "work", aria_label="Work under way"):
+        words = text("p", f"{name} …")
+        bar: Any = box("progress", max="1", value="0", aria_label=f"{name}, share done")
+        button("Cancel", tab.cancel, key="cancel")
+
+    def look() -> None:
+        seconds = time.monotonic() - job.begun
+        words.set_text(f"{name}: {job.words} ({100.0 * job.share:.0f} %, {seconds:.0f} s)")
+        bar.props["value"] = f"{job.share:.3f}"
+
+    ui.timer(0.2, look)

@@ -1,0 +1,146 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The long work: what is missing, and one more effect; what runs in a process of its own."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+from pathlib import Path
+from typing import Any
+
+from werrimbi_odom.effects.collection import Collection, all_effects
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.adding import add_effect
+from werrimbi_odom.inference.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.holdout import set_aside
+from werrimbi_odom.inference.manoeuvre_drives import pace_of
+from werrimbi_odom.inference.manoeuvre_sight import sight_of
+from werrimbi_odom.inference.manoeuvres import Manoeuvre, next_manoeuvre
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.diagnosis_figures import (
+    before_after,
+    before_after_figure,
+    ideal_of,
+    manoeuvre_figure,
+    set_up_figure,
+)
+from werrimbi_odom.workbench.crossing import packed, unpacked
+from werrimbi_odom.workbench.opened import Given, Opened, Show, opened
+from werrimbi_odom.workbench.steps import Diagnosed, Step
+
+
+@dataclass(frozen=True)
+class Diagnose:
+    """Find out what a robot's model is missing."""
+
+    robot: Robot
+
+
+@dataclass(frozen=True)
+class Add:
+    """Fit one more effect, and compare."""
+
+    effect: str
+    robot: Robot
+
+
+Task = Diagnose | Add
+
+
+def diagnosed(task: Diagnose, given: Given, collection: Collection, show: Show) -> Diagnosed:
+    """Diagnose, on the very drives that the page judges on.
+
+    Raises
+    ------
+    InputError
+        When the drives do not allow it; the message says why.
+    """
+    effects = collection.effects
+    runs, options = _arguments(given)
+    found = diagnose(runs, task.robot, effects, show=show, **options)
+    show(0.97, "the next step")
+    manoeuvre = next_manoeuvre(found)
+    sights = tuple(sight_of(found, effects))
+    show(0.99, "figures")
+    return Diagnosed(found, manoeuvre, sights, _figures(found, manoeuvre))
+
+
+def _figures(found: Diagnosis, manoeuvre: Manoeuvre | None) -> dict[str, str]:
+    figures = {}
+    if found.set_up.findings:
+        figures["set_up"] = set_up_figure(found)
+    elif (response := before_after(found)) is not None:
+        figures["response"] = before_after_figure(response)
+    ideal = None if manoeuvre is None else ideal_of(manoeuvre.name)
+    if ideal is not None:
+        figures["manoeuvre"] = manoeuvre_figure(
+            ideal, found.robot, pace_of(found.runs, found.robot)
+        )
+    return {name: str(figure.to_json()) for name, figure in figures.items()}
+
+
+def added(task: Add, opened: Opened, collection: Collection, show: Show) -> Step:
+    """Fit, and compare over the same legs as before.
+
+    Raises
+    ------
+    InputError
+        When the drives do not allow it; the message says why.
+    """
+    runs, options = _arguments(opened.given)
+    fitted = add_effect(
+        collection.find(task.effect),
+        runs,
+        task.robot,
+        show=lambda share, words: show(0.8 * share, words),
+        **options,
+    )
+    show(0.8, "comparing")
+    return Step(opened.look(fitted.robot), fitted)
+
+
+def _arguments(given: Given) -> tuple[tuple[Run, ...], dict[str, Any]]:
+    told = given.told
+    runs, holdout = (given.runs, given.holdout) if given.holdout else set_aside(given.runs)
+    return runs, {
+        "kind": told.kind,
+        "holdout": holdout,
+        "leg": told.leg,
+        "limits": told.limits,
+        "sigma_xy": told.sigma_xy,
+        "sigma_yaw": told.sigma_yaw,
+    }
+
+
+def known_to_both(opened: Opened) -> Mapping[str, Any]:
+    """What both processes cut alike, and need not send."""
+    return {"train": opened.train.prepared, "holdout": opened.holdout.prepared}
+
+
+def work(sent: Connection, data: bytes, effect_files: Sequence[Path]) -> None:
+    """In the worker: do what was sent, tell how far it is, send back what came of it."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who started us; he stops us
+    os.nice(5)  # the page stays quick
+    try:
+        collection = all_effects(effect_files)
+        task, given = unpacked(data, collection, {})
+
+        def show(share: float, words: str) -> None:
+            sent.send(("share", share, words))
+
+        if isinstance(task, Diagnose):
+            result = packed(diagnosed(task, given, collection, show), {})
+        else:
+            show(0.0, "opening")
+            here = opened(given)
+            result = packed(added(task, here, collection, show), known_to_both(here))
+        sent.send(("done", result, ""))
+    except InputError as error:
+        sent.send(("refused", str(error), ""))
+    except BrokenPipeError:
+        pass  # nobody waits any more
