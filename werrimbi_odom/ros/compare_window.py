@@ -79,7 +79,11 @@ class Window:
             f"{high:.2f}; {self.coverage:.0%} of legs inside their 95 % ellipsoid"
         )
         if self.count < LEAST or low <= self.nees <= high:
-            return True, f"the covariance is honest: {words}"
+            within = self.bounds()
+            if within[0] <= self.nees <= within[1]:
+                return True, f"the covariance is honest: {words}"
+            size = "large" if self.nees < within[0] else "small"
+            return True, f"the covariance may be too {size}, more legs will tell: {words}"
         if self.nees < low:
             return (
                 False,
