@@ -12,7 +12,6 @@ import subprocess
 import time
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass, replace
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -27,8 +26,10 @@ from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.inference.adding import add_effect
 from werrimbi_odom.inference.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.drafting import draft_effect
 from werrimbi_odom.inference.likelihood import ReferenceKind
 from werrimbi_odom.inference.manoeuvres import next_manoeuvre
+from werrimbi_odom.model.effect import Effect
 
 
 @dataclass(frozen=True)
@@ -85,15 +86,12 @@ class Told:
     floor: Floor
     seconds: float
 
-    def added(self) -> float | None:
-        """Held-out error once the first effect is added [m]; None where no effect was named."""
-        name = self.diagnosis.effect
-        if name is None or name not in _LIBRARY:
-            return None
+    def added(self, effect: Effect) -> float | None:
+        """Held-out error once an effect is added [m]; None where it cannot be."""
         judge = self.floor.judge
         try:
             more = add_effect(
-                find(name),
+                effect,
                 judge.fitted_on,
                 judge.given,
                 judge.kind,
@@ -141,7 +139,9 @@ def judged(what: HiddenSet, *, floors: bool = True) -> Judged:
     found = said.diagnosis
     figures: dict[str, Any] = {}
     if floors and not what.entered:
-        figures = {"added": said.added(), **_floors(what, said)}
+        figures = _floors(what, said)
+        if found.effect in _LIBRARY:
+            figures["added"] = said.added(find(found.effect))
     manoeuvre = next_manoeuvre(found)
     if what.group == "rivals" and manoeuvre is not None:
         figures["resolved"] = _resolved(what, manoeuvre.name)
@@ -212,13 +212,11 @@ def _nothing_hidden(what: HiddenSet) -> float:
 
 
 def _drafted(said: Told) -> float | None:
-    """Held-out error with the effect that `werrimbi draft` writes, fitted [m]."""
+    """Held-out error with the effect that `werrimbi draft` writes, added as any other [m]."""
     try:
-        drafting = import_module("werrimbi_odom.inference.drafting")
-    except ImportError:
+        return said.added(draft_effect(said.diagnosis).effect)
+    except InputError:
         return None
-    judge = getattr(drafting, "held_out_error", None)
-    return None if judge is None else float(judge(said.diagnosis))
 
 
 def _line(what: HiddenSet, commit: str, seconds: float, **said: Any) -> Judged:

@@ -35,6 +35,8 @@ SINGLE = tuple(
     HiddenSet("effect", (effect,), 21 + number, "short") for number, effect in enumerate(EFFECTS)
 )
 ALL = (*SINGLE, CLEAN, CALIBRATION, TWO, MISTAKE, OUTSIDER)
+WITH_FLOORS = (*SINGLE, TWO, OUTSIDER)
+"""Sets of which the best that can be had is looked for too; it costs as much as the diagnosis."""
 
 
 @pytest.fixture(scope="module")
@@ -44,7 +46,8 @@ def lines(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[HiddenSet, 
         patch.setenv("OPENBLAS_NUM_THREADS", "1")
         # Spawned, not forked: other tests may have left threads here.
         with ProcessPoolExecutor(os.cpu_count(), mp_context=get_context("spawn")) as pool:
-            yield dict(zip(ALL, pool.map(judged, ALL), strict=True))
+            jobs = {each: pool.submit(judged, each, floors=each in WITH_FLOORS) for each in ALL}
+            yield {each: job.result() for each, job in jobs.items()}
 
 
 @pytest.mark.parametrize("hidden", SINGLE, ids=EFFECTS)
@@ -92,5 +95,4 @@ def test_what_the_library_does_not_hold_is_unknown_and_depends_on_the_load(
     assert line.own_law is not None
     assert line.floor is not None
     assert line.own_law < 1.25 * line.floor
-    if line.drafted is not None:
-        assert halfway(line), line
+    assert halfway(line), "what draft writes, added"
