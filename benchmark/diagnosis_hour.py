@@ -70,16 +70,18 @@ def main() -> None:
     rows = sum(run.ticks.rows for run in runs)
     print(f"{rows} readings of the counters in {DRIVES} drives; hidden: {wish or 'nothing'}")
     print(f"{'driving':>9} {'wall':>8} {'CPU':>8}  verdict, on {cores} cores")
-    walls = []
+    walls, cpus = [], []
     for count in (DRIVES // 4, DRIVES):
         wall, cpu = time.perf_counter(), time.process_time()
         found = diagnose(runs[:count], file.robot, LIBRARY, limits=file.limits)
         wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
         walls.append(wall)
+        cpus.append(cpu)
         minutes = count * DRIVE / 60.0
         said = f"{found.verdict} {', '.join(found.found)}"
         print(f"{minutes:5.0f} min {wall:6.1f} s {cpu:6.1f} s  {said}", flush=True)
-    print(f"growth {walls[1] / walls[0]:.1f} for 4 times as much; limit {LIMIT:.0f} s")
+    growth = f"{walls[1] / walls[0]:.1f} (CPU {cpus[1] / cpus[0]:.1f})"
+    print(f"growth {growth} for 4 times as much; limit {LIMIT:.0f} s")
     if walls[1] > LIMIT:
         print("over the limit (was the machine idle?)", file=sys.stderr)
 
