@@ -320,7 +320,7 @@ def results(file: Path) -> Iterator[Judged]:
         except json.JSONDecodeError:
             continue
         for name in ("hidden", "strengths", "found", "rivals", "without", "resolved"):
-            values[name] = tuple(values[name])
+            values[name] = tuple(values.get(name, ()))
         values["entered"] = tuple(tuple(pair) for pair in values["entered"])
         values["depends_on"] = tuple(tuple(pair) for pair in values["depends_on"])
         yield Judged(**values)
