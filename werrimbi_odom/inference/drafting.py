@@ -194,12 +194,17 @@ def _seen(variable: Variable) -> Seen | None:
         )
     for side in ("left", "right"):
         if name.startswith(f"{side}_wheel_angle"):
-            return replace(plain, span=lambda _, side=side: f"drive.{side}_angle")
+            return replace(plain, span=_angle_of(side))
     if name in SPANS:
         return replace(plain, span=lambda side: SPANS[name])
     if variable.looks_at == (name,):
         return replace(plain, span=lambda side: f'drive.channels["{name}"]', channel=name)
     return None
+
+
+def _angle_of(side: str) -> Callable[[str], str]:
+    """A wheel's angle, on whichever wheel it acts."""
+    return lambda _: f"drive.{side}_angle"
 
 
 def _spot(diagnosis: Diagnosis, cell: Dependence, variable: Variable) -> Form:

