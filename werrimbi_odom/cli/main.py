@@ -14,7 +14,17 @@ from typing import NoReturn
 
 from werrimbi_odom.errors import InputError
 
-VERBS = ("odom", "compare", "diagnose", "add", "calibrate", "simulate", "explain")
+VERBS = (
+    "odom",
+    "compare",
+    "diagnose",
+    "add",
+    "draft",
+    "workbench",
+    "calibrate",
+    "simulate",
+    "explain",
+)
 """Each a module beside this one with HELP, `add_arguments(parser)` and `run(arguments)`."""
 
 BAD_INPUT = 2
