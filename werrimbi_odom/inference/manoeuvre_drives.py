@@ -94,7 +94,9 @@ def _out_and_back(size: float) -> list[Move]:
 
 
 def _start_stop(size: float) -> list[Move]:
-    return [(way * 0.5 * size, 0.0, 1.0) for way in [1.0] * 6 + [-1.0] * 6] * 2
+    # Unequal hops: else the legs, of one length, would all end at the same speed.
+    hops = (0.35, 0.5, 0.65, 0.8, 0.45, 0.6)
+    return [(way * hop * size, 0.0, 1.0) for way in (1.0, -1.0) for hop in hops] * 2
 
 
 def _figure_eight(size: float) -> list[Move]:

@@ -244,14 +244,14 @@ def _not_shown(told: Told) -> list[str]:
     hidden = [sight for sight in told.sights if sight.hidden]
     if not hidden:
         return []
-    by_drive: dict[str, list[str]] = {}
-    for sight in hidden:
-        if sight.shown_by is not None:
-            by_drive.setdefault(sight.shown_by, []).append(sight.effect)
-    lines = [
-        f"These drives cannot show {listed(names)} of usual size; {drive} would."
-        for drive, names in by_drive.items()
+    by_drive = [
+        f"{sight.effect} ({sight.shown_by} would show it)" for sight in hidden if sight.shown_by
     ]
+    lines = []
+    if by_drive:
+        lines.append(
+            f"These drives cannot show whether there is, of usual size, {listed(by_drive, 'or')}."
+        )
     needing = [sight.effect for sight in hidden if sight.needs_more]
     if needing:
         lines.append(

@@ -1,0 +1,176 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The next manoeuvre: it separates what the drives so far cannot, and says so beforehand."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import werrimbi_odom.simulation as simulation
+from werrimbi_odom.effects import find
+from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.candidates import Candidate
+from werrimbi_odom.inference.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.fit import start_point
+from werrimbi_odom.inference.manoeuvre_drives import MANOEUVRES, Ideal, Pace, ideal_run
+from werrimbi_odom.inference.manoeuvre_rivals import Drives, look_at, target_at, unlike
+from werrimbi_odom.inference.manoeuvres import next_manoeuvre
+from werrimbi_odom.inference.matching import match
+from werrimbi_odom.inference.prediction import legs_shown
+from werrimbi_odom.inference.together import together
+from werrimbi_odom.model.effect import AppliedEffect
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.simulation.hidden.mount import ReferenceDelay, ReferenceMount
+from werrimbi_odom.simulation.hidden.peculiarity import Peculiarity
+
+ROBOT = Robot(0.35, 0.05, 2000.0, 2000.0)
+PACE = Pace(speed=0.6, acceleration=1.5, base=0.35)
+BY_NAME = {ideal.name: ideal for ideal in MANOEUVRES}
+
+
+def driven(ideal: Ideal, robot: Robot = ROBOT, yaw: bool = True) -> Drives:
+    run = ideal_run(ideal, robot, PACE, ticks=0.02, poses=0.05, measures=(True, yaw))
+    runs = together([match(run, robot, 0.25, None, 0.4)])
+    return Drives(runs, start_point(runs, robot), "absolute")
+
+
+@pytest.mark.parametrize("name", BY_NAME)
+@pytest.mark.parametrize("mistakes", [(), ("wheels_swapped", "left_wheel_reversed"),
+                                      ("reference_mirrored",)])  # fmt: skip
+def test_an_ideal_drive_is_what_its_robot_predicts(name: str, mistakes: tuple[str, ...]) -> None:
+    robot = replace(ROBOT, effects=tuple(find(mistake).using() for mistake in mistakes))
+    drives = driven(BY_NAME[name], robot)
+    runs = drives.runs
+    poses = np.array([1.0, -1.0, -1.0]) if "reference_mirrored" in mistakes else np.ones(3)
+    start, finish = runs.start * poses, runs.finish * poses
+    moved = (finish[:, 0] - start[:, 0]) + 1j * (finish[:, 1] - start[:, 1])
+    ahead = moved * np.exp(-1j * start[:, 2])
+    shown = legs_shown(drives.point.model, runs)
+    # Between two messages of the ticks a step is taken to be even: at each end of a leg it misses
+    # acceleration * interval^2 / 8.
+    even = 2.0 * 0.02**2 / 8.0
+    turning = even * 0.4 * PACE.acceleration * PACE.yaw_rate / PACE.speed
+    np.testing.assert_allclose(shown[:, :2], np.stack([ahead.real, ahead.imag], axis=-1), atol=
+                               even * PACE.acceleration + 0.25 * turning)  # fmt: skip
+    np.testing.assert_allclose(shown[:, 2], finish[:, 2] - start[:, 2], atol=turning)
+
+
+def test_the_simulation_drives_what_is_named() -> None:
+    for name in BY_NAME:
+        assert name == "stand_still" or hasattr(simulation, name)
+
+
+def rise(drive: str, truth: AppliedEffect, rival: str, yaw: bool = True) -> float:
+    """Of the cost, where the rival has to stand for the truth on one drive."""
+    drives = driven(BY_NAME[drive], yaw=yaw)
+    wrong = Candidate(find(rival), {})
+    calibration = [Candidate(find(name), {}) for name in
+                   ("track_width", "unequal_wheel_radii", "wheel_radius_scale")]  # fmt: skip
+    look = look_at(drives, [wrong, *calibration], ())
+    return unlike([(look, target_at(look, truth))], wrong)
+
+
+@pytest.mark.parametrize("drive", BY_NAME)
+def test_no_drive_tells_a_crab_from_a_marker_askew(drive: str) -> None:
+    truth = find("sideways_drift").using(angle=0.01)
+    assert rise(drive, truth, "reference_yaw_offset") < 0.1
+
+
+def test_spins_tell_a_lever_arm_from_slip_in_curves_and_lines_do_not() -> None:
+    truth = find("reference_lever_arm").using(x=0.02)
+    assert rise("spins", truth, "lateral_slip") > 100.0
+    assert rise("out_and_back", truth, "lateral_slip") < 1e-3
+
+
+def test_slow_and_fast_lines_tell_lost_counts_from_a_smaller_wheel() -> None:
+    truth = find("left_missed_ticks").using(fraction=0.02, above=0.3)
+    assert rise("out_and_back", truth, "unequal_wheel_radii") > 100.0
+    every = find("left_missed_ticks").using(fraction=0.02, above=0.02)
+    assert rise("out_and_back", every, "unequal_wheel_radii") < 0.1 * rise(
+        "out_and_back", truth, "unequal_wheel_radii"
+    )
+
+
+def test_several_speeds_tell_slip_from_a_late_clock_and_a_standing_robot_does_not() -> None:
+    truth = find("longitudinal_slip").using(coefficient=0.03)
+    for drive in ("arcs", "out_and_back"):
+        assert rise(drive, truth, "reference_delay") > 30.0
+    for drive in ("figure_eight", "stand_still"):
+        assert rise(drive, truth, "reference_delay") < 15.0
+
+
+# --- rivals by construction: one speed, gentle bends, positions alone -----------------------------
+
+
+def slalom(seed: int) -> simulation.Manoeuvre:
+    """Bends to both sides at one speed."""
+    rng = np.random.default_rng(seed)
+    knots = [(0.0, 0.0, 0.0), (1.0, 0.4, 0.0)]
+    side = 1.0
+    while knots[-1][0] < 45.0:
+        start, side = knots[-1][0] + 0.6, -side
+        rate = side * rng.uniform(0.4, 0.9)
+        knots += [(start, 0.4, rate), (start + rng.uniform(0.8, 2.0), 0.4, rate)]
+    end = knots[-1][0]
+    knots += [(end + 0.6, 0.4, 0.0), (end + 1.6, 0.0, 0.0)]
+    return simulation.Manoeuvre("slalom", tuple(knots))
+
+
+def recorded(manoeuvre: simulation.Manoeuvre, odd: Peculiarity, seed: int, less: float) -> Run:
+    """A drive in the engine, measured by its positions alone, without its first and last seconds.
+
+    The reference ends half a second within the counters: so a late clock stays within them too.
+    """
+    robot = simulation.TrueRobot(left_wheel_noise=4e-4, right_wheel_noise=5.8e-4)
+    seen = simulation.record(robot, manoeuvre, seed=seed, hidden=[odd])
+    low, high = seen.t_s[0] + less, seen.t_s[-1] - less
+    ticks = (seen.t_s >= low) & (seen.t_s <= high)
+    poses = (seen.reference_t_s >= low + 0.5) & (seen.reference_t_s <= high - 0.5)
+    return Run(
+        f"{manoeuvre.name}_{seed}",
+        Path(manoeuvre.name),
+        Ticks(seen.t_s[ticks], seen.left_ticks[ticks], seen.right_ticks[ticks]),
+        Reference(
+            seen.reference_t_s[poses],
+            seen.reference_x_m[poses],
+            seen.reference_y_m[poses],
+            np.full(int(poses.sum()), np.nan),
+        ),
+    )
+
+
+def at_one_speed(odd: Peculiarity) -> list[Run]:
+    return [recorded(slalom(seed), odd, 100 + seed, 2.0) for seed in range(3)]
+
+
+def diagnosed(runs: list[Run]) -> Diagnosis:
+    return diagnose(runs, ROBOT, LIBRARY)
+
+
+@pytest.mark.parametrize(
+    ("truth", "odd"),
+    [
+        ("reference_lever_arm", ReferenceMount(x=-0.01)),
+        pytest.param("reference_delay", ReferenceDelay(delay=0.025), marks=pytest.mark.evidence),
+    ],
+)
+def test_a_lever_arm_and_a_delay_at_one_speed_are_ambiguous_and_the_manoeuvre_resolves_it(
+    truth: str, odd: Peculiarity
+) -> None:
+    runs = at_one_speed(odd)
+    first = diagnosed(runs)
+    assert first.verdict == "ambiguous"
+    assert {"reference_lever_arm", "reference_delay"} <= set(first.rivals)
+    proposed = next_manoeuvre(first)
+    assert proposed is not None
+    assert first.rivals[0] in proposed.why
+    drive = getattr(simulation, proposed.name)()
+    more = [recorded(drive, odd, 700 + number, 0.2) for number in range(2)]
+    then = diagnosed([*runs, *more])
+    assert (then.verdict, then.effect) == ("named", truth)
+    assert next_manoeuvre(then) is None
