@@ -26,6 +26,7 @@ VIEW = {
 }
 FOCUS = """<script>
 function werrimbiFocus(key) {
+  if (key.startsWith("title-")) window.scrollTo(0, 0);
   let tries = 20;
   const look = () => {
     const at = document.activeElement;

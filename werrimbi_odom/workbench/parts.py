@@ -56,6 +56,8 @@ class BinPart:
     high: float
     last: bool
     """Whether `high` belongs to it too."""
+    digits: int = 2
+    """After the point, that the whole range asks for."""
 
     @property
     def words(self) -> str:
@@ -71,8 +73,7 @@ class BinPart:
         if name == "heading":
             low, high, unit = float(np.degrees(low)), float(np.degrees(high)), "°"
             return f"{low:.0f} to {high:.0f}{unit}"
-        digits = max(0, 1 - math.floor(math.log10(max(high - low, 1e-9))))
-        return f"{low:.{digits}f} to {high:.{digits}f} {unit}".strip()
+        return f"{low:.{self.digits}f} to {high:.{self.digits}f} {unit}".strip()
 
     def legs(self, comparison: Comparison) -> Which:
         """Which legs, shape (m,)."""
@@ -147,13 +148,16 @@ def motion_parts(comparison: Comparison) -> list[MotionPart]:
 
 def bin_parts(comparison: Comparison) -> dict[str, list[tuple[BinPart, LegStatistics]]]:
     """Ranges of each variable, with the figures of their legs."""
-    return {
-        item.name: [
-            (BinPart(item.name, part.low, part.high, index == len(item.bins) - 1), part.figures)
+    found = {}
+    for item in comparison.variables:
+        whole = max(item.bins[-1].high - item.bins[0].low, 1e-9)
+        digits = max(0, 1 - math.floor(math.log10(whole)))
+        last = len(item.bins) - 1
+        found[item.name] = [
+            (BinPart(item.name, part.low, part.high, index == last, digits), part.figures)
             for index, part in enumerate(item.bins)
         ]
-        for item in comparison.variables
-    }
+    return found
 
 
 def figures_of(comparison: Comparison, which: Which) -> LegStatistics:

@@ -18,6 +18,10 @@ from werrimbi_odom.inference.manoeuvres import Manoeuvre
 from werrimbi_odom.workbench.opened import Look
 
 
+GONE = -1
+"""Index of a step that was saved, undone, and replaced by another one: its file is still ours."""
+
+
 @dataclass(frozen=True, eq=False)
 class Diagnosed:
     """What is missing, what to drive next, and what these drives could have shown."""
@@ -55,7 +59,7 @@ class Session:
     diagnoses: Mapping[int, Diagnosed] = field(default_factory=dict)
     """By the index of the step that was diagnosed."""
     saved: Mapping[Path, int] = field(default_factory=dict)
-    """Files that this tab wrote, and the step that each holds."""
+    """Files that this tab wrote, and the step that each holds, or `GONE`."""
 
     @property
     def now(self) -> Step:
@@ -106,7 +110,7 @@ class Session:
             at=following,
             proposed=None,
             diagnoses={at: item for at, item in self.diagnoses.items() if at < following},
-            saved={path: at for path, at in self.saved.items() if at < following},
+            saved={path: at if at < following else GONE for path, at in self.saved.items()},
         )
 
     def insisted(self) -> Session:

@@ -67,10 +67,10 @@ class Tab:
         look = self.session.now.look
         return look.holdout if self.held_out else look.train
 
-    def go(self, view: str, focus: str | None = None) -> None:
-        """Look at another step of the four."""
+    def go(self, view: str) -> None:
+        """Look at another step of the four, from its top."""
         self.view = view
-        self.changed(focus or f"title-{view}")
+        self.changed(f"title-{view}")
 
     def point(self, part: Part | None, focus: str) -> None:
         """Show the legs of a part; pressed again, all legs."""

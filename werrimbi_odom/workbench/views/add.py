@@ -15,7 +15,6 @@ from werrimbi_odom.workbench.steps import Step
 from werrimbi_odom.workbench.tab import Tab, millimetres, percent
 from werrimbi_odom.workbench.theme import shown
 
-
 NOTHING = (
     "Nothing is added yet. Diagnose, and press Add beside an effect: it is fitted together with "
     "all calibration, and judged on drives that took no part."
@@ -29,7 +28,9 @@ def add_view(tab: Tab) -> None:
     if session.proposed is not None:
         _proposed(tab, session.proposed)
     if not session.can_undo:
-        if session.proposed is None:
+        if tab.job is not None:
+            text("p", "It is fitted together with all calibration, then judged on held-out drives.")
+        elif session.proposed is None:
             text("p", NOTHING)
             button("← Diagnose", lambda: tab.go("diagnose"), key="to-diagnose", classes="primary")
         return

@@ -1,0 +1,51 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What goes to the worker and back is what was sent; effects go by name, a user's own too."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from werrimbi_odom.effects.collection import all_effects
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.workbench.crossing import packed, unpacked
+
+OWN = '''
+from dataclasses import replace
+from werrimbi_odom.model.effect import Parameter, body_effect
+
+@body_effect(rate=Parameter("1/m", 0.0, 1e-3, (-0.1, 0.1), "what it is"))
+def my_own(motion, drive, rate):
+    """Something of mine.
+
+    Formula    sideways += rate * along
+    Signature  none
+    Ruler      none
+    """
+    return replace(motion, sideways=motion.sideways + rate * motion.along)
+'''
+
+
+def test_a_robot_with_effects_arrives_as_it_was(tmp_path: Path) -> None:
+    file = tmp_path / "own.py"
+    file.write_text(OWN)
+    here, there = all_effects([file]), all_effects([file])
+    robot = Robot(0.35, 0.05, 2000.0, 2000.0)
+    effects = (here.find("my_own").using(rate=0.01), here.find("lateral_slip").using(creep=0.002))
+    robot = replace(robot, effects=effects)
+    arrived = unpacked(packed(robot, {}), there, {})
+    assert [item.name for item in arrived.effects] == ["my_own", "lateral_slip"]
+    assert arrived.effects[0].effect is there.find("my_own"), "the code of the other side"
+    assert arrived.effects[0].values == {"rate": 0.01}
+    assert replace(arrived, effects=()) == replace(robot, effects=())
+
+
+def test_what_both_have_is_not_sent() -> None:
+    collection = all_effects([])
+    mine, theirs = np.zeros(100_000), np.ones(100_000)
+    data = packed(("result", mine), {"drives": mine})
+    assert len(data) < 1000
+    assert unpacked(data, collection, {"drives": theirs})[1] is theirs

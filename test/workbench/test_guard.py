@@ -1,0 +1,75 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The server hears its own page on its own address, and nobody else."""
+
+from __future__ import annotations
+
+import asyncio
+from typing import Any
+
+import pytest
+
+from werrimbi_odom.workbench.guard import guarded
+
+PORT = 4711
+HERE = f"127.0.0.1:{PORT}"
+
+
+def heard(kind: str, *headers: tuple[str, str], method: str = "GET") -> bool:
+    """Whether a request reaches the application."""
+    reached: list[str] = []
+    sent: list[Any] = []
+
+    async def application(scope: Any, receive: Any, send: Any) -> None:
+        reached.append(scope["type"])
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    async def receive() -> Any:
+        raise AssertionError("nothing is to be read of a request that is refused")
+
+    raw = [(name.encode(), value.encode()) for name, value in headers]
+    scope = {"type": kind, "headers": raw, "method": method, "path": "/"}
+    asyncio.run(guarded(application, PORT)(scope, receive, send))
+    if not reached:
+        refusal = sent[0]
+        assert refusal.get("status", 403) == 403
+        assert refusal["type"] in ("http.response.start", "websocket.close")
+    return bool(reached)
+
+
+@pytest.mark.parametrize("kind", ["http", "websocket"])
+@pytest.mark.parametrize("name", ["127.0.0.1", "localhost"])
+def test_its_own_page_is_heard(kind: str, name: str) -> None:
+    host = f"{name}:{PORT}"
+    assert heard(kind, ("host", host))
+    assert heard(kind, ("host", host), ("origin", f"http://{host}"))
+
+
+@pytest.mark.parametrize("kind", ["http", "websocket"])
+@pytest.mark.parametrize(
+    "headers",
+    [
+        [],
+        [("host", f"evil.example:{PORT}")],
+        [("host", "127.0.0.1")],
+        [("host", f"127.0.0.1:{PORT + 1}")],
+        [("host", f"127.0.0.1.evil.example:{PORT}")],
+        [("host", HERE), ("host", f"evil.example:{PORT}")],
+        [("host", HERE), ("origin", "http://evil.example")],
+        [("host", HERE), ("origin", f"https://{HERE}")],
+        [("host", HERE), ("origin", f"http://127.0.0.1:{PORT + 1}")],
+        [("host", HERE), ("origin", "null")],
+        [("host", HERE), ("origin", f"http://{HERE}"), ("origin", "http://evil.example")],
+    ],
+)
+def test_others_are_not(kind: str, headers: list[tuple[str, str]]) -> None:
+    assert not heard(kind, *headers)
+
+
+def test_another_site_may_link_to_the_page_but_not_post_to_it() -> None:
+    cross = [("host", HERE), ("sec-fetch-site", "cross-site")]
+    assert heard("http", *cross)
+    assert not heard("http", *cross, method="POST")
+    assert not heard("websocket", *cross)

@@ -1,0 +1,193 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The whole loop in a real browser: by clicks, by keys, two at once, cancelled, refused."""
+
+from __future__ import annotations
+
+import http.client
+import re
+import subprocess
+import sys
+from pathlib import Path
+from urllib.parse import urlsplit
+
+import pytest
+
+from test.workbench.conftest import PATIENCE, ROOT, Looked, Served
+from test.workbench.session import HIDDEN, RATIO, ROBOT
+from werrimbi_odom.files.robot_file import read_robot_file
+
+
+def files(folder: Path) -> set[str]:
+    return {path.name for path in folder.iterdir()}
+
+
+def test_clicks_alone_find_the_hidden_effect_and_save_the_mended_file(
+    looked: Looked, another: Looked, served: Served
+) -> None:
+    """While a second browser, open all along, sees nothing of it."""
+    before = looked.error
+    looked.at("motion-line").click()
+    told = looked.page.locator('[data-key="told"]', has_text="Straight driving:")
+    told.wait_for()
+    assert looked.at("motion-line").get_attribute("aria-pressed") == "true"
+    looked.at("to-diagnose").click()
+    looked.at("diagnose").click()
+    looked.at("verdict").wait_for(timeout=PATIENCE)
+    assert HIDDEN in looked.at("verdict").inner_text()
+    looked.at(f"why-{HIDDEN}").click()
+    looked.page.get_by_text("how to check it on the robot").wait_for()
+    looked.at(f"add-{HIDDEN}").click()
+    looked.at("undo").and_(looked.page.locator(":enabled")).wait_for(timeout=PATIENCE)
+    after = looked.error
+    assert after < 0.8 * before
+    assert "fell" in looked.page.locator("main .headline").inner_text()
+
+    looked.at("undo").click()
+    looked.page.wait_for_function("document.querySelector('[data-key=redo]').disabled === false")
+    assert looked.error == before
+    looked.at("redo").click()
+    looked.page.wait_for_function("document.querySelector('[data-key=redo]').disabled === true")
+    assert looked.error == after
+
+    looked.at("go-save").click()
+    looked.at("save").click()
+    looked.page.get_by_text("✓ Saved").wait_for()
+    saved = read_robot_file(served.folder / "robot_new.yaml").robot
+    found = saved.right_wheel_radius_multiplier / saved.left_wheel_radius_multiplier
+    assert found == pytest.approx(RATIO, abs=5e-4)
+    assert (served.folder / "robot.yaml").read_text() == ROBOT
+    assert files(served.folder) == {"robot.yaml", "robot_new.yaml", "train", "holdout"}
+    assert looked.complaints == []
+    assert {urlsplit(url).hostname for url in looked.asked if url.startswith("http")} == {
+        "127.0.0.1"
+    }
+
+    looked.page.reload()
+    looked.page.wait_for_function("document.querySelector('[data-key=undo]')?.disabled === false")
+    assert looked.error == after, "a reloaded page goes on where it was"
+
+    assert another.error == before
+    assert another.at("undo").is_disabled()
+    another.at("go-diagnose").click()
+    another.at("diagnose").wait_for()
+    assert another.at("verdict").count() == 0
+    assert another.complaints == []
+
+
+def test_keys_alone_reach_everything_and_the_focus_is_never_lost(looked: Looked) -> None:
+    """Tab and Enter: to a part of the drives, to the diagnosis, and to stop it."""
+    page = looked.page
+
+    def tab_to(key: str) -> None:
+        for _ in range(60):
+            page.keyboard.press("Tab")
+            if page.evaluate("document.activeElement?.dataset?.key") == key:
+                break
+        assert page.evaluate("document.activeElement?.dataset?.key") == key
+        outline = page.evaluate("getComputedStyle(document.activeElement).outlineStyle")
+        assert outline == "solid", "who works with keys must see where he is"
+
+    tab_to("motion-arc")
+    page.keyboard.press("Enter")
+    page.locator('[data-key="motion-arc"][aria-pressed="true"]').wait_for()
+    looked.focused("motion-arc")
+    tab_to("variable-1")
+    page.keyboard.press("Space")
+    page.locator('[data-key="variable-1"][aria-pressed="true"]').wait_for()
+    looked.focused("variable-1")
+    page.keyboard.press("Shift+Tab")
+    looked.focused("variable-0")
+    page.evaluate("document.activeElement.blur(); window.scrollTo(0, 0)")
+    page.locator("h1").click()
+    tab_to("go-diagnose")
+    page.keyboard.press("Enter")
+    looked.focused("title-diagnose")
+    tab_to("diagnose")
+    page.keyboard.press("Enter")
+    looked.focused("cancel")
+    assert page.get_by_role("progressbar").count() == 1
+    page.keyboard.press("Enter")
+    page.get_by_role("status").filter(has_text="was cancelled").wait_for()
+    looked.focused("title-diagnose")
+    assert looked.at("diagnose").is_enabled()
+    assert looked.complaints == []
+
+
+def test_everything_that_can_be_pressed_has_a_name(looked: Looked) -> None:
+    for view in ("compare", "diagnose", "add", "save"):
+        looked.at(f"go-{view}").click()
+        looked.at(f"title-{view}").wait_for()
+        nameless = looked.page.evaluate(
+            """() => [...document.querySelectorAll('button, a, summary, input, [tabindex="0"]')]
+            .filter(item => item.offsetParent !== null)
+            .filter(item => !(item.getAttribute('aria-label') || item.textContent).trim())
+            .map(item => item.outerHTML)"""
+        )
+        assert nameless == []
+        levels = looked.page.locator("h1, h2, h3").evaluate_all("all => all.map(x => x.tagName)")
+        assert levels[:2] == ["H1", "H2"]
+    figures = looked.page.locator("[role=img]:not([aria-label])")
+    assert figures.count() == 0
+
+
+def test_the_page_follows_the_systems_dark_theme_and_can_be_turned(another: Looked) -> None:
+    def brightness() -> int:
+        colour = another.page.evaluate("getComputedStyle(document.body).backgroundColor")
+        return sum(int(part) for part in re.findall(r"\d+", colour)[:3])
+
+    another.page.locator("body.body--dark").wait_for()
+    assert brightness() < 150
+    another.at("theme").click()
+    another.page.locator("body:not(.body--dark)").wait_for()
+    assert brightness() == 3 * 255
+    another.focused("theme")
+
+
+def test_another_name_or_another_site_is_refused(served: Served) -> None:
+    place = urlsplit(served.address)
+    assert place.hostname == "127.0.0.1"
+
+    def asked(path: str, **headers: str) -> int:
+        connection = http.client.HTTPConnection(place.hostname or "", place.port or 0, timeout=30)
+        try:
+            connection.putrequest("GET", path, skip_host=True)
+            for name, value in headers.items():
+                connection.putheader(name.replace("_", "-"), value)
+            connection.endheaders()
+            return connection.getresponse().status
+        finally:
+            connection.close()
+
+    upgrade = {
+        "Connection": "Upgrade",
+        "Upgrade": "websocket",
+        "Sec_WebSocket_Version": "13",
+        "Sec_WebSocket_Key": "dGhlIHNhbXBsZSBub25jZQ==",
+    }
+    socket = "/_nicegui_ws/socket.io/?EIO=4&transport=websocket"
+    own = f"127.0.0.1:{place.port}"
+    assert asked("/", Host=own) == 200
+    assert asked("/", Host="evil.example") == 403
+    assert asked("/", Host=own, Origin="http://evil.example") == 403
+    assert asked(socket, Host=own, Origin=f"http://{own}", **upgrade) == 101
+    assert asked(socket, Host=own, Origin="http://evil.example", **upgrade) == 403
+    assert asked(socket, Host="evil.example", **upgrade) == 403
+
+
+def test_a_port_that_is_taken_and_an_out_that_exists_are_one_line(served: Served) -> None:
+    port = urlsplit(served.address).port
+    robot, run = served.folder / "robot.yaml", served.folder / "train" / "drive_1"
+    for words, said in (
+        (["--port", str(port)], "--port 0 takes a free one"),
+        (["--port", "x"], "is no port"),
+        (["--out", str(robot)], "--force overwrites it"),
+    ):
+        end = subprocess.run(
+            [sys.executable, "-m", "werrimbi_odom.cli.main", "workbench",
+             "--robot", str(robot), str(run), *words],
+            cwd=ROOT, capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert end.returncode == 2
+        assert len(end.stderr.splitlines()) == 1
+        assert said in end.stderr
