@@ -21,6 +21,8 @@ def calibration_page(
     figure: go.Figure,
     changes: Mapping[str, tuple[float, float]],
     made: Mapping[str, str],
+    *,
+    printed: bool = False,
 ) -> Page:
     """A page with one figure.
 
@@ -30,6 +32,8 @@ def calibration_page(
         What to see in the figure.
     changes
         Name of each parameter that was written, before and after.
+    printed
+        Show the words line by line, as they are printed.
     """
     return Page(
         title,
@@ -37,6 +41,7 @@ def calibration_page(
         [Shown("figure", figure_title(figure) or title, see, {"": on_a_page(figure)})],
         written_table(changes),
         made,
+        printed,
     )
 
 

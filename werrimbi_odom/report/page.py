@@ -60,6 +60,8 @@ class Page:
     """Plain text as it is printed."""
     made: Mapping[str, str] = field(default_factory=dict)
     """How it was made: command, files, options."""
+    printed: bool = False
+    """Show the words as they are printed, line by line: they hold tables of their own."""
 
 
 def write_page(page: Page, path: Path) -> None:
@@ -116,7 +118,7 @@ def page_html(page: Page) -> str:
 <nav aria-label="On this page"><ul>{links}</ul></nav>
 <main>
 <section id="words" aria-label="Verdict">
-{paragraphs(page.words)}
+{f"<pre>{html.escape(page.words)}</pre>" if page.printed else paragraphs(page.words)}
 </section>
 {body}
 {numbers}

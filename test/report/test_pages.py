@@ -1,0 +1,189 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Reports in a real browser: they draw themselves, ask for nothing, and answer to clicks and keys.
+
+Skipped where no Chrome or Chromium is installed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from browser import Visit
+
+from werrimbi_odom.inference.adding import Added
+from werrimbi_odom.inference.compare import Comparison
+from werrimbi_odom.inference.diagnosis import Diagnosis
+from werrimbi_odom.report.adding_page import write_adding_page
+from werrimbi_odom.report.calibration_page import calibration_page
+from werrimbi_odom.report.compare_page import write_compare_page
+from werrimbi_odom.report.diagnosis_page import write_diagnosis_page
+from werrimbi_odom.report.page import write_page
+from werrimbi_odom.report.path_figure import PathDrawing
+from werrimbi_odom.report.path_figure import path_figure as bare_path
+
+Look = Callable[..., Visit]
+
+UNDRAWN = "[...document.querySelectorAll('[data-figure]')].filter(f => !f.dataset.drawn).length"
+FIGURES = "document.querySelectorAll('.figure .main-svg').length"
+PAPER = "getComputedStyle(document.body).backgroundColor"
+FIGURE_PAPER = "document.querySelector('.figure')._fullLayout.paper_bgcolor"
+
+
+def assert_well_drawn(visit: Visit) -> None:
+    assert visit.complaints == []
+    assert visit.requests == []
+    undrawn, figures = visit.answers[:2]
+    assert undrawn == 0
+    assert figures > 0
+
+
+@pytest.fixture(scope="module")
+def compare_page(comparison: Comparison, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("compare") / "page.html"
+    write_compare_page(comparison, path)
+    return path
+
+
+@pytest.fixture(scope="module")
+def diagnosis_page(diagnosis: Diagnosis, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("diagnosis") / "page.html"
+    write_diagnosis_page(diagnosis, path)
+    return path
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_a_comparison_draws_itself_in_light_and_dark(
+    compare_page: Path, look: Look, dark: bool
+) -> None:
+    visit = look(compare_page, UNDRAWN, FIGURES, PAPER, FIGURE_PAPER, dark=dark)
+    assert_well_drawn(visit)
+    paper = "rgb(21, 24, 28)" if dark else "rgb(255, 255, 255)"
+    assert visit.answers[2] == paper
+    assert visit.answers[3].upper() == ("#15181C" if dark else "#FFFFFF")
+
+
+def test_the_switch_turns_page_and_figures_dark(compare_page: Path, look: Look) -> None:
+    visit = look(
+        compare_page,
+        UNDRAWN,
+        FIGURES,
+        "document.getElementById('theme').click(), new Promise(done => setTimeout(done, 3000))",
+        "document.documentElement.dataset.theme",
+        "[...document.querySelectorAll('[data-figure]')].map(f => f.dataset.drawn)",
+    )
+    assert_well_drawn(visit)
+    assert visit.answers[3] == "dark"
+    assert set(visit.answers[4]) == {"dark"}
+
+
+def test_a_name_from_a_record_is_text_and_not_html(compare_page: Path, look: Look) -> None:
+    visit = look(
+        compare_page,
+        UNDRAWN,
+        FIGURES,
+        "[...document.querySelectorAll('select[data-for=path] option')].map(o => o.textContent)",
+        "werrimbi.choose('against', 5).then(() => document.querySelectorAll('b').length)",
+        "document.getElementById('figure-against').data.map(t => t.name)",
+    )
+    assert_well_drawn(visit)
+    assert visit.answers[2] == ["all 3 drives", "first", "second", "<b>third</b> & last"]
+    assert visit.answers[3] == 0
+    assert "&lt;b&gt;third&lt;/b&gt; &amp; last" in visit.answers[4]
+
+
+def test_keys_move_and_zoom_a_figure(compare_page: Path, look: Look) -> None:
+    press = (
+        "(() => {{ const f = document.getElementById('figure-path'); f.focus(); "
+        "f.dispatchEvent(new KeyboardEvent('keydown', {{key: '{}'}})); "
+        "return new Promise(done => setTimeout(() => done(f._fullLayout.xaxis.range), 500)); }})()"
+    )
+    visit = look(
+        compare_page,
+        UNDRAWN,
+        FIGURES,
+        "document.getElementById('figure-path')._fullLayout.xaxis.range",
+        press.format("ArrowRight"),
+        press.format("+"),
+        "document.activeElement.id",
+    )
+    assert_well_drawn(visit)
+    first, moved, near, focus = visit.answers[2:]
+    assert moved[0] > first[0]
+    assert moved[1] > first[1]
+    assert near[1] - near[0] < 0.8 * (moved[1] - moved[0])
+    assert focus == "figure-path"
+
+
+def test_every_figure_has_a_label_and_every_choice_too(
+    compare_page: Path, diagnosis_page: Path, look: Look
+) -> None:
+    for page in (compare_page, diagnosis_page):
+        visit = look(
+            page,
+            UNDRAWN,
+            FIGURES,
+            "[...document.querySelectorAll('.figure, svg.sketch')]"
+            ".filter(f => !(f.getAttribute('aria-label') || '').length).length",
+            "[...document.querySelectorAll('select')].filter(s => !s.labels.length).length",
+            "[...document.querySelectorAll('.figure')].filter(f => f.tabIndex !== 0).length",
+            "document.documentElement.lang",
+        )
+        assert_well_drawn(visit)
+        assert visit.answers[2:] == [0, 0, 0, "en"]
+
+
+def test_the_evidence_map_is_there_and_a_click_opens_the_dependence(
+    diagnosis_page: Path, look: Look
+) -> None:
+    strongest = (
+        "(() => { const f = document.getElementById('figure-evidence'), t = f.data[0]; "
+        "let best = [-1]; f.calcdata[0][0].z.forEach((row, i) => row.forEach((v, j) => "
+        "{ if (v !== null && v > best[0]) best = [v, i, j]; })); "
+        "return [t.y[best[1]], t.x[best[2]]]; })()"
+    )
+    visit = look(
+        diagnosis_page,
+        UNDRAWN,
+        FIGURES,
+        strongest,
+        "document.querySelectorAll('#evidence [data-open]').length",
+        "document.querySelector('[data-open=\"cell:3\"]').click(), "
+        "new Promise(done => setTimeout(done, 1500))",
+        "document.querySelector('select[data-for=cell]').value",
+        "(() => { const f = document.getElementById('figure-evidence'); "
+        "const custom = f.data[0].customdata[0][1]; "
+        "f.emit('plotly_click', {points: [{customdata: custom}]}); "
+        "return new Promise(done => setTimeout(() => done("
+        "[String(custom[3]), document.querySelector('select[data-for=cell]').value]), 1500)); })()",
+    )
+    assert_well_drawn(visit)
+    assert visit.answers[2] == ["left", "left wheel's angle"]
+    assert visit.answers[3] > 0
+    assert visit.answers[5] == "3"
+    asked, shown = visit.answers[6]
+    assert asked == shown
+
+
+def test_the_effect_added_draws_itself(added: Added, tmp_path: Path, look: Look) -> None:
+    page = tmp_path / "page.html"
+    write_adding_page(added, page)
+    visit = look(page, UNDRAWN, FIGURES, dark=True)
+    assert_well_drawn(visit)
+
+
+def test_a_calibration_draws_itself_though_its_figure_was_made_for_paper(
+    tmp_path: Path, look: Look
+) -> None:
+    around = np.linspace(0.0, 6.0, 50)
+    drawing = PathDrawing(np.cos(around), np.sin(around), 1e-4 * np.stack([np.eye(2)] * 50))
+    page = calibration_page(
+        "Calibration", "All is well.", "See.", bare_path(drawing), {"k": (1.0, 1.1)}, {}
+    )
+    write_page(page, tmp_path / "page.html")
+    visit = look(tmp_path / "page.html", UNDRAWN, FIGURES, FIGURE_PAPER, dark=True)
+    assert_well_drawn(visit)
+    assert visit.answers[2].upper() == "#15181C"
