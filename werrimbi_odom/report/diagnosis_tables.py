@@ -69,7 +69,7 @@ def _map(diagnosis: Diagnosis) -> str:
         [name, *(_strength(cells, channel, name) for channel in CHANNELS)]
         for name in sure[:_MAPPED]
     ]
-    text = table(f"{title} (explained χ²)", ("goes with", *CHANNELS), rows)
+    text = table(f"{title} (explained χ²; . is none)", ("goes with", *CHANNELS), rows)
     rest = len(sure) - _MAPPED
     return text if rest <= 0 else f"{text}\n  and {rest} more"
 

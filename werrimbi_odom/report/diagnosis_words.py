@@ -193,8 +193,7 @@ def _set_up(diagnosis: Diagnosis) -> list[str]:
         return []
     lines = ["Something is set up wrongly:"]
     for finding in findings:
-        factor = f" (a factor of {finding.factor})" if finding.factor else ""
-        lines.append(f"- {_sentence(finding.words)[:-1]}{factor}: {finding.effect}.")
+        lines.append(f"- {_sentence(finding.words)[:-1]}: {finding.effect}.")
     return lines
 
 
