@@ -204,7 +204,9 @@ def nees_figure(comparison: Comparison) -> go.Figure:
     )
     figure.update_yaxes(title="NEES (1 is honest)")
     plain(figure, height=430)
-    figure.update_yaxes(type="log", minor={"ticks": "outside"}, dtick="D2")
+    ticks = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 1e4, 1e5]
+    figure.update_yaxes(type="log", tickvals=ticks, ticktext=[f"{tick:g}" for tick in ticks])
+    figure.update_xaxes(zeroline=False)
     return figure
 
 

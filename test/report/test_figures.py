@@ -1,0 +1,159 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the figures show of the physics, read from the figures themselves."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+from conftest import AMPLITUDE, PLAIN, eccentric_run
+
+from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.inference.adding import Added
+from werrimbi_odom.inference.compare import Comparison, compare
+from werrimbi_odom.inference.diagnosis import Diagnosis
+from werrimbi_odom.inference.manoeuvre_drives import MANOEUVRES, pace_of
+from werrimbi_odom.report.adding_figures import error_falling_figure, steps_of
+from werrimbi_odom.report.compare_figures import (
+    error_against_figure,
+    legs_by_motion_figure,
+    nees_figure,
+    path_figure,
+    variables_of,
+)
+from werrimbi_odom.report.compare_path_figure import covariance_along
+from werrimbi_odom.report.diagnosis_figures import (
+    before_after,
+    before_after_figure,
+    effect_sketch,
+    evidence_map_figure,
+    manoeuvre_figure,
+    ranking_figure,
+)
+from werrimbi_odom.report.wheel_angle import over_a_turn, wheel_errors
+
+RELATIVE = 1e3 * AMPLITUDE / PLAIN.wheel_radius
+"""How much more or less than its radius says an eccentric wheel rolls, at the most [mm/m]."""
+
+
+def test_an_eccentric_wheel_shows_its_sine_over_its_turn_and_then_a_flat_line(
+    diagnosis: Diagnosis,
+) -> None:
+    found = before_after(diagnosis)
+    assert found is not None
+    assert found.effect == "eccentric_left_wheel"
+    assert found.cell.channel == "left"
+    assert found.after is not None
+    wave = np.sin(found.before.centre)
+    before, after = (
+        1e3 * np.sum(wave * each.value) / np.sum(wave**2) for each in (found.before, found.after)
+    )
+    assert before == pytest.approx(RELATIVE, rel=0.1)
+    assert abs(after) < 0.1 * RELATIVE
+    rest = 1e3 * found.before.value - before * wave
+    assert np.std(rest) < 0.2 * RELATIVE
+    assert len(before_after_figure(found).data) == 2
+
+
+def test_error_bars_of_a_flat_line_hold_zero_as_often_as_they_say(diagnosis: Diagnosis) -> None:
+    found = before_after(diagnosis)
+    assert found is not None
+    assert found.after is not None
+    outside = np.abs(found.after.value) > 3.0 * found.after.std
+    assert outside.sum() <= 1
+
+
+def test_the_comparison_sees_the_same_sine_in_each_drive(comparison: Comparison) -> None:
+    """From the raw intervals of the reference, with no fit but a division."""
+    for index in range(len(comparison.runs)):
+        centre, mean, _ = over_a_turn(*wheel_errors(comparison, index, -1))
+        phase = 0.3 * (index + 1)
+        wave = np.sin(np.radians(centre) + phase)
+        assert np.sum(wave * mean) / np.sum(wave**2) == pytest.approx(RELATIVE, rel=0.2)
+
+
+def test_the_strongest_field_of_the_evidence_map_is_the_left_wheels_angle(
+    diagnosis: Diagnosis,
+) -> None:
+    heat = evidence_map_figure(diagnosis.depends_on, opens="cell").data[0]
+    row, column = np.unravel_index(np.nanargmax(heat.z), np.shape(heat.z))
+    assert heat.y[row] == "left"
+    assert tuple(heat.customdata[row][column]) == ("left", "left_wheel_angle", "cell", 0)
+
+
+def test_the_ranking_shows_what_the_diagnosis_says(diagnosis: Diagnosis) -> None:
+    fit, held_out = ranking_figure(diagnosis).data
+    first = diagnosis.ranking[0]
+    assert first.holdout is not None
+    gain = 100.0 * (1.0 - first.holdout.after / first.holdout.before)
+    assert held_out.x[0] == pytest.approx(gain)
+    assert held_out.customdata[0] == "eccentric_left_wheel"
+    assert len(fit.x) == len(held_out.x)
+
+
+def test_the_error_falls_to_the_floor(added: Added) -> None:
+    steps = steps_of(added)
+    assert [step.name for step in steps] == ["as given", "calibrated", "+ eccentric_left_wheel"]
+    assert steps[-1].holdout < 0.7 * steps[0].holdout
+    assert steps[-1].holdout == pytest.approx(added.holdout.floor, rel=0.25)
+    fit, held_out = error_falling_figure(steps, added.holdout.floor).data[:2]
+    assert [*held_out.y] == pytest.approx([1e3 * step.holdout for step in steps])
+    assert [*fit.y] == pytest.approx([1e3 * step.train for step in steps])
+
+
+def test_an_ellipse_grows_along_the_way_and_begins_with_the_references_noise(
+    comparison: Comparison,
+) -> None:
+    covariance = covariance_along(comparison, 0)
+    size = np.sqrt(np.linalg.eigvalsh(covariance)[:, -1])
+    noise = comparison.prepared.noises[0][1]
+    assert covariance.shape == (comparison.paths[0].measured.size, 2, 2)
+    assert size[0] == pytest.approx(noise.sigma_xy, rel=0.05)
+    assert size[-1] > 5.0 * size[0]
+
+
+def test_every_leg_is_counted_and_few_are_drawn() -> None:
+    """A quarter of an hour: more legs than a point each is worth, all in the means."""
+    found = compare([eccentric_run("long", 5, 15.0)], PLAIN, leg=0.05)
+    assert found.legs.run.size > 5000
+    for figure in (
+        path_figure(found),
+        legs_by_motion_figure(found),
+        nees_figure(found),
+        *(error_against_figure(found, name) for name in variables_of(found)),
+    ):
+        points = sum(len(trace.x) for trace in figure.data if trace.x is not None)
+        assert points < 15000
+    _, means, *_ = error_against_figure(found, "speed [m/s]").data
+    assert sum(means.customdata) == int((~found.legs.outlier).sum())
+
+
+def test_all_figures_are_json_without_surprises(comparison: Comparison) -> None:
+    for figure in (path_figure(comparison), nees_figure(comparison)):
+        assert "NaN" not in json.dumps(json.loads(figure.to_json()), allow_nan=False)
+
+
+@pytest.mark.parametrize("effect", LIBRARY, ids=lambda effect: effect.name)
+def test_every_effect_of_the_library_has_a_sketch(effect) -> None:  # type: ignore[no-untyped-def]
+    from xml.etree import ElementTree
+
+    sketch = effect_sketch(effect.name)
+    assert sketch is not None
+    root = ElementTree.fromstring(sketch)
+    assert root.get("aria-label", "").startswith(effect.name)
+    assert len(root) > 3
+
+
+def test_an_effect_of_ones_own_has_none() -> None:
+    assert effect_sketch("my_own") is None
+
+
+@pytest.mark.parametrize("ideal", MANOEUVRES, ids=lambda ideal: ideal.name)
+def test_a_manoeuvre_is_drawn_to_scale(ideal, diagnosis: Diagnosis) -> None:  # type: ignore[no-untyped-def]
+    figure = manoeuvre_figure(ideal, PLAIN, pace_of(diagnosis.runs, PLAIN))
+    left, right = figure.data[:2]
+    apart = np.hypot(np.asarray(left.x) - right.x, np.asarray(left.y) - right.y)
+    assert apart == pytest.approx(PLAIN.track, rel=1e-3)
+    assert figure.layout.yaxis.scaleanchor == "x"
