@@ -5,10 +5,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from inspect import isawaitable
+from typing import Any, Protocol
 
 from nicegui import ui
 from nicegui.elements.mixins.text_element import TextElement
+from nicegui.events import GenericEventArguments
 
 
 def text(tag: str, words: str = "", classes: str = "", **attributes: object) -> Any:
@@ -22,7 +24,14 @@ def box(tag: str = "div", classes: str = "", **attributes: object) -> Any:
     return _dressed(ui.element(tag), classes, attributes)
 
 
+class HasActions(Protocol):
+    """What knows what each button does."""
+
+    actions: dict[str, Callable[[], Any]]
+
+
 def button(
+    tab: HasActions,
     words: str,
     pressed: Callable[[], Any],
     *,
@@ -31,11 +40,35 @@ def button(
     disabled: bool = False,
     **attributes: object,
 ) -> Any:
-    """A real button; `key` is how the page finds it again, for the focus."""
+    """A real button; `key` is how the page finds it again, and what it does, after a redraw."""
     element = text("button", words, classes, type="button", data_key=key, **attributes)
     if disabled:
         element.props["disabled"] = True
-    return element.on("click", lambda: pressed(), [])
+    tab.actions[key] = pressed
+    return element
+
+
+def listen(place: Any, tab: HasActions) -> None:
+    """Hear every button within, those drawn later too.
+
+    A press names its button by key: one that was drawn anew while the finger came down still does
+    what it says.
+    """
+
+    async def pressed(event: GenericEventArguments) -> None:
+        action = tab.actions.get(str(event.args))
+        result = action() if action is not None else None
+        if isawaitable(result):
+            await result
+
+    place.on(
+        "click",
+        pressed,
+        js_handler="""(event) => {
+            const button = event.target.closest("button[data-key]");
+            if (button && !button.disabled) emit(button.dataset.key);
+        }""",
+    )
 
 
 def _dressed(element: Any, classes: str, attributes: dict[str, object]) -> Any:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from nicegui import app, ui
 
-from werrimbi_odom.workbench.html import box, button, text
+from werrimbi_odom.workbench.html import box, button, listen, text
 from werrimbi_odom.workbench.tab import Shared, Tab, new_tab
 from werrimbi_odom.workbench.views.add import add_view
 from werrimbi_odom.workbench.views.compare import compare_view
@@ -25,16 +25,21 @@ VIEW = {
     "save": save_view,
 }
 FOCUS = """<script>
+let werrimbiWanted;
 function werrimbiFocus(key) {
   if (key.startsWith("title-")) window.scrollTo(0, 0);
-  let tries = 20;
+  const wanted = werrimbiWanted = {until: performance.now() + 3000};
   const look = () => {
+    if (wanted !== werrimbiWanted || performance.now() > wanted.until) return;
     const at = document.activeElement;
     const found = document.querySelector('[data-key="' + key + '"]');
-    if (found && at !== found && (!at || at === document.body)) found.focus({preventScroll: true});
-    if (--tries) setTimeout(look, 40);
+    if (found && (!at || at === document.body)) found.focus({preventScroll: true});
+    setTimeout(look, 40);
   };
   setTimeout(look, 40);
+}
+for (const event of ["keydown", "pointerdown"]) {
+  addEventListener(event, () => { werrimbiWanted = null; }, true);  // the user goes his own way
 }
 </script>"""
 """Drawing takes place when the browser likes; until then the old element may still be there."""
@@ -55,6 +60,7 @@ async def page(shared: Shared) -> None:
 
     def draw(focus: str | None) -> None:
         with client:  # whoever asked may be gone: the button that was pressed is drawn anew
+            tab.actions.clear()
             for place in (top, strip_place, main):
                 place.clear()
             with top:
@@ -80,6 +86,8 @@ async def page(shared: Shared) -> None:
     client = ui.context.client
     tab = new_tab(shared, draw)
     text("p", "Opening …", "opening").move(main)
+    for place in (top, strip_place, main):
+        listen(place, tab)
     client.on_delete(tab.cancel)
     await client.connected()
     if not client.has_socket_connection:
@@ -107,4 +115,6 @@ def _head(tab: Tab, turn_theme: object) -> None:
             "Find out where the wheel odometry fails, why, and mend it: 1 to 4.",
         )
     assert callable(turn_theme)
-    button("Light" if tab.dark else "Dark", turn_theme, key="theme", aria_label="Light or dark")
+    button(
+        tab, "Light" if tab.dark else "Dark", turn_theme, key="theme", aria_label="Light or dark"
+    )

@@ -17,7 +17,6 @@ from werrimbi_odom.inference.manoeuvre_sight import Sight
 from werrimbi_odom.inference.manoeuvres import Manoeuvre
 from werrimbi_odom.workbench.opened import Look
 
-
 GONE = -1
 """Index of a step that was saved, undone, and replaced by another one: its file is still ours."""
 

@@ -55,6 +55,8 @@ class Tab:
     why: str | None = None
     """Effect whose page is open."""
     dark: bool = False
+    actions: dict[str, Callable[[], Any]] = field(default_factory=dict)
+    """What each button that is drawn does, by its key."""
     job: Job | None = None
     news: str = ""
     """What happened last, for the status line and for screen readers."""
@@ -131,6 +133,8 @@ class Tab:
 
     def insist(self) -> None:
         """Take the proposed effect all the same."""
+        if self.session.proposed is None:
+            return
         self.session = self.session.insisted()
         self.tell(f"{self.session.now.name} added, against the objection: {self.error_told()}")
         self.go("add")

@@ -32,7 +32,9 @@ def add_view(tab: Tab) -> None:
             text("p", "It is fitted together with all calibration, then judged on held-out drives.")
         elif session.proposed is None:
             text("p", NOTHING)
-            button("← Diagnose", lambda: tab.go("diagnose"), key="to-diagnose", classes="primary")
+            button(
+                tab, "← Diagnose", lambda: tab.go("diagnose"), key="to-diagnose", classes="primary"
+            )
         return
     with box("div", "columns"):
         with box("div", "left"):
@@ -91,12 +93,14 @@ def _proposed(tab: Tab, step: Step) -> None:
             "p", f"{step.added.effect.name} is not added: something speaks against it.", "headline"
         )
         text("p", f"{step.added.objection}.")
-        button("Leave it out", tab.decline, key="decline", classes="primary")
-        button("Add it all the same", tab.insist, key="insist")
+        button(tab, "Leave it out", tab.decline, key="decline", classes="primary")
+        button(tab, "Add it all the same", tab.insist, key="insist")
 
 
 def _following(tab: Tab) -> None:
     with box("p", "following"):
-        button("Is more missing? Diagnose again", lambda: tab.go("diagnose"), key="again")
-        button("Where does it still fail?", lambda: tab.go("compare"), key="to-compare")
-        button("Save the robot file →", lambda: tab.go("save"), key="to-save", classes="primary")
+        button(tab, "Is more missing? Diagnose again", lambda: tab.go("diagnose"), key="again")
+        button(tab, "Where does it still fail?", lambda: tab.go("compare"), key="to-compare")
+        button(
+            tab, "Save the robot file →", lambda: tab.go("save"), key="to-save", classes="primary"
+        )

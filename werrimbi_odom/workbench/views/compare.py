@@ -58,6 +58,7 @@ def _next(tab: Tab) -> None:
     good = verdict_of(tab.session.now.look.train).good
     with box("p"):
         button(
+            tab,
             "Next: find out which effect is missing →",
             lambda: tab.go("diagnose"),
             key="to-diagnose",
@@ -71,6 +72,7 @@ def _chip(tab: Tab, part: Part, words: str, figures: LegStatistics, key: str) ->
     fails = bool(times > LARGE)
     promised = f"{times:.2g} × promised" if np.isfinite(times) else "not measured"
     pressed = button(
+        tab,
         "",
         lambda: tab.point(part, key),
         key=key,
@@ -106,6 +108,7 @@ def _variables(tab: Tab, comparison: Comparison) -> None:
         text("span", "by")
         for index, name in enumerate(names):
             button(
+                tab,
                 name.split(" [")[0],
                 partial(choose, index),
                 key=f"variable-{index}",

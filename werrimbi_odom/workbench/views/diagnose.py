@@ -67,7 +67,7 @@ def _ask(tab: Tab) -> None:
         "cancelled.",
     )
     if tab.job is None:
-        button("Diagnose", tab.diagnose, key="diagnose", classes="primary")
+        button(tab, "Diagnose", tab.diagnose, key="diagnose", classes="primary")
     with box("div", "columns"):
         with box("div", "left"):
             text("h3", "The effects that are tried")
@@ -75,6 +75,7 @@ def _ask(tab: Tab) -> None:
                 for effect in tab.shared.collection.effects:
                     with box("li"):
                         button(
+                            tab,
                             effect.name,
                             partial(_open, tab, effect.name),
                             key=f"why-{effect.name}",
@@ -126,6 +127,7 @@ def _ranked(tab: Tab, item: Ranked, diagnosis: Diagnosis) -> None:
             _bars(item, diagnosis)
         with box("div", "do"):
             button(
+                tab,
                 "Why?",
                 lambda: _open(tab, item.effect),
                 key=f"why-{item.effect}",
@@ -133,6 +135,7 @@ def _ranked(tab: Tab, item: Ranked, diagnosis: Diagnosis) -> None:
                 aria_expanded="true" if tab.why == item.effect else "false",
             )
             button(
+                tab,
                 "Add",
                 lambda: tab.add(item.effect),
                 key=f"add-{item.effect}",
@@ -250,6 +253,7 @@ def _cell(tab: Tab, name: str, channel: str, cell: Dependence | None) -> None:
     key = f"cell-{name}-{channel}"
     sure = ("beyond chance", "sure", "very sure")[marks - 1]
     button(
+        tab,
         "●" * marks,
         lambda: tab.point(part, key),
         key=key,

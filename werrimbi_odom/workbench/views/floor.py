@@ -33,7 +33,7 @@ def floor(tab: Tab) -> None:
         with box("div", "floorhead"):
             text("p", told, "told", role="status", data_key="told")
             if part is not None:
-                button("Show all legs", lambda: tab.point(None, "told"), key="all-legs")
+                button(tab, "Show all legs", lambda: tab.point(None, "told"), key="all-legs")
             _which_drives(tab)
         with box("div", "figure", role="img", aria_label=f"The floor from above. {told}"):
             ui.plotly(shown(floor_figure(comparison, which), tab.dark)).classes("plot")
@@ -62,10 +62,12 @@ def _which_drives(tab: Tab) -> None:
 
     with box("div", "tabs", role="group", aria_label="Which drives"):
         button(
+            tab,
             "fitted drives", lambda: choose(False), key="drives-fitted",
             aria_pressed="false" if tab.held_out else "true",
         )  # fmt: skip
         button(
+            tab,
             "held-out drives", lambda: choose(True), key="drives-held",
             aria_pressed="true" if tab.held_out else "false",
         )  # fmt: skip

@@ -29,7 +29,7 @@ def save_view(tab: Tab) -> None:
         text("p", "✓ Saved. Give this file to the node, and to the other commands with --robot.",
              "saved")  # fmt: skip
     else:
-        button("Save", tab.save, key="save", classes="primary", disabled=tab.job is not None)
+        button(tab, "Save", tab.save, key="save", classes="primary", disabled=tab.job is not None)
     text("h3", "What changes in it")
     try:
         _changes(shared.source.text, text_of(shared.source, session.now.look.robot))

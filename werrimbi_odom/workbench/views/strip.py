@@ -33,10 +33,12 @@ def strip(tab: Tab) -> None:
         busy = tab.job is not None
         with box("div", "history", role="group", aria_label="History"):
             button(
+                tab,
                 "↶ Undo", tab.undo, key="undo", disabled=busy or not tab.session.can_undo,
                 title="take the last effect out again",
             )  # fmt: skip
             button(
+                tab,
                 "↷ Redo", tab.redo, key="redo", disabled=busy or not tab.session.can_redo,
                 title="put it in again",
             )  # fmt: skip
@@ -45,7 +47,7 @@ def strip(tab: Tab) -> None:
 def _step(tab: Tab, number: int, view: str) -> None:
     current = view == tab.view
     classes = "step current" if current else "step"
-    pressed = button("", lambda: tab.go(view), key=f"go-{view}", classes=classes)
+    pressed = button(tab, "", lambda: tab.go(view), key=f"go-{view}", classes=classes)
     if current:
         pressed.props["aria-current"] = "step"
     with pressed:
@@ -121,7 +123,7 @@ def under_way(tab: Tab) -> None:
     with box("section", "work", aria_label="Work under way"):
         words = text("p", f"{name} …")
         bar: Any = box("progress", max="1", value="0", aria_label=f"{name}, share done")
-        button("Cancel", tab.cancel, key="cancel")
+        button(tab, "Cancel", tab.cancel, key="cancel")
 
     def look() -> None:
         seconds = time.monotonic() - job.begun
