@@ -32,7 +32,7 @@ from werrimbi_odom.report.diagnosis_figures import (
     manoeuvre_figure,
     ranking_figure,
 )
-from werrimbi_odom.report.wheel_angle import over_a_turn, wheel_errors
+from werrimbi_odom.report.wheel_angle import once_a_turn, over_a_turn, wheel_errors
 
 RELATIVE = 1e3 * AMPLITUDE / PLAIN.wheel_radius
 """How much more or less than its radius says an eccentric wheel rolls, at the most [mm/m]."""
@@ -68,10 +68,15 @@ def test_error_bars_of_a_flat_line_hold_zero_as_often_as_they_say(diagnosis: Dia
 def test_the_comparison_sees_the_same_sine_in_each_drive(comparison: Comparison) -> None:
     """From the raw intervals of the reference, with no fit but a division."""
     for index in range(len(comparison.runs)):
-        centre, mean, _ = over_a_turn(*wheel_errors(comparison, index, -1))
+        parts = over_a_turn(*wheel_errors(comparison, index, -1))
+        centre, mean, _ = parts
         phase = 0.3 * (index + 1)
         wave = np.sin(np.radians(centre) + phase)
         assert np.sum(wave * mean) / np.sum(wave**2) == pytest.approx(RELATIVE, rel=0.2)
+        amplitude, std, _ = once_a_turn(*parts)
+        assert amplitude == pytest.approx(RELATIVE, abs=4.0 * std)
+        other, std, _ = once_a_turn(*over_a_turn(*wheel_errors(comparison, index, 1)))
+        assert other < 5.0 * std
 
 
 def test_the_strongest_field_of_the_evidence_map_is_the_left_wheels_angle(

@@ -92,7 +92,10 @@ def test_a_name_from_a_record_is_text_and_not_html(compare_page: Path, look: Loo
     assert_well_drawn(visit)
     assert visit.answers[2] == ["all 3 drives", "first", "second", "<b>third</b> & last"]
     assert visit.answers[3] == 0
-    assert "&lt;b&gt;third&lt;/b&gt; &amp; last" in visit.answers[4]
+    assert any(
+        name and name.startswith("&lt;b&gt;third&lt;/b&gt; &amp; last:")
+        for name in visit.answers[4]
+    )
 
 
 def test_keys_move_and_zoom_a_figure(compare_page: Path, look: Look) -> None:

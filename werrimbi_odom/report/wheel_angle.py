@@ -15,7 +15,8 @@ import numpy as np
 
 from werrimbi_odom.inference.compare import Comparison
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, escaped, plain
+from werrimbi_odom.report.decimate import small
+from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, escaped, paled, plain
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -24,6 +25,8 @@ WHEEL_ANGLES = ("left wheel's angle [°]", "right wheel's angle [°]")
 
 _PARTS = 16
 _MOST_RUNS = 6
+_FEWEST = 6  # parts of a turn, that a wave is laid through
+_FINE = np.linspace(0.0, 360.0, 91)
 _LOOKS = (
     (BLUE, "solid", "circle"),
     (ORANGE, "solid", "square"),
@@ -59,7 +62,7 @@ def wheel_errors(comparison: Comparison, index: int, side: int) -> tuple[Floats,
 
 
 def wheel_angle_figure(comparison: Comparison, variable: str) -> go.Figure:
-    """Error of a wheel's travel, in mm for each metre rolled, over its turn; a line a run."""
+    """Error of a wheel's travel, in mm for each metre rolled, over its turn; a wave a run."""
     import plotly.graph_objects as go
 
     side = -1 if variable == WHEEL_ANGLES[0] else 1
@@ -70,20 +73,36 @@ def wheel_angle_figure(comparison: Comparison, variable: str) -> go.Figure:
     )[:_MOST_RUNS]
     for index, (colour, dash, symbol) in zip(sorted(longest), _LOOKS, strict=False):
         centre, mean, spread = over_a_turn(*wheel_errors(comparison, index, side))
-        if not np.isfinite(mean).any():
+        if np.isfinite(mean).sum() < _FEWEST:
             continue
+        amplitude, std, wave = once_a_turn(centre, mean, spread)
+        name = escaped(comparison.runs[index].run.name)
         figure.add_scatter(
             x=centre,
             y=mean,
-            mode="lines+markers",
-            name=escaped(comparison.runs[index].run.name),
-            line={"color": colour, "dash": dash, "width": 2},
-            marker={"symbol": symbol, "size": 7, "color": colour},
-            error_y={"array": 2.0 * spread, "color": colour, "thickness": 1, "width": 3},
+            mode="markers",
+            legendgroup=name,
+            showlegend=False,
+            marker={"symbol": symbol, "size": 8, "color": paled(colour, 0.6)},
+            error_y={
+                "array": 2.0 * spread,
+                "color": paled(colour, 0.3),
+                "thickness": 1,
+                "width": 0,
+            },
             hovertemplate=(
-                "%{fullData.name}<br>%{x:.0f}°: %{y:+.2f} ± %{error_y.array:.2f} mm per m"
+                f"{name}<br>%{{x:.0f}}°: %{{y:+.2f}} ± %{{error_y.array:.2f}} mm per m"
                 "<extra></extra>"
             ),
+        )
+        figure.add_scatter(
+            x=small(_FINE),
+            y=small(wave),
+            mode="lines",
+            name=f"{name}: once a turn {amplitude:.1f} ± {std:.1f}",
+            legendgroup=name,
+            line={"color": colour, "dash": dash, "width": 2.5},
+            hoverinfo="skip",
         )
     if not figure.data:
         figure.add_annotation(
@@ -116,3 +135,21 @@ def over_a_turn(angle: Floats, error: Floats, travel: Floats) -> tuple[Floats, F
         mean[number] = 1e3 * slope
         spread[number] = 1e3 * float(np.sqrt(np.sum((weight * left) ** 2)) / total)
     return (np.arange(_PARTS) + 0.5) * 360.0 / _PARTS, mean, spread
+
+
+def once_a_turn(centre: Floats, mean: Floats, spread: Floats) -> tuple[float, float, Floats]:
+    """Amplitude and standard error of the wave that suits the parts best, and the wave itself.
+
+    A mean is taken off with it: that is calibration.
+    """
+    known = np.isfinite(mean) & (spread > 0.0)
+    terms = _terms(centre[known]) / spread[known, None]
+    inverse = np.linalg.pinv(terms.T @ terms, hermitian=True)
+    values = inverse @ (terms.T @ (mean[known] / spread[known]))
+    std = float(np.sqrt(0.5 * (inverse[1, 1] + inverse[2, 2])))
+    return float(np.hypot(values[1], values[2])), std, _terms(_FINE) @ values
+
+
+def _terms(degrees: Floats) -> Floats:
+    angle = np.radians(degrees)
+    return np.stack([np.ones_like(angle), np.cos(angle), np.sin(angle)], axis=-1)
