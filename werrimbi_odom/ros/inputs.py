@@ -30,7 +30,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.parameters import Value, robot_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros.health import Health
-from werrimbi_odom.ros.wheel_side import WheelSide
+from werrimbi_odom.ros.wheel_side import COUNTER_LIMIT, WheelSide
 
 Take = Callable[[Stamp, float, float], None]
 """What is done with a reading: stamp, left and right counts."""
@@ -145,8 +145,10 @@ class JointStates:
             side.count([positions[place] for place in places])
             for side, places in zip(self._sides, self._places, strict=True)
         )
-        if not (math.isfinite(left) and math.isfinite(right)):
-            self._health.refuse("position not finite", f"left {left}, right {right}")
+        if not (abs(left) < COUNTER_LIMIT and abs(right) < COUNTER_LIMIT):
+            finite = math.isfinite(left) and math.isfinite(right)
+            cause = "position out of range" if finite else "position not finite"
+            self._health.refuse(cause, f"left {left}, right {right}")
             return
         stamp = message.header.stamp
         if stamp.sec == 0 and stamp.nanosec == 0:

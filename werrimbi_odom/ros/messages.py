@@ -26,6 +26,8 @@ PLANAR_VARIANCE = 1e-6
 _ROUNDING = 1.0 + 1e-12
 """On every variance, so that rounding cannot turn a semi-definite matrix into an indefinite one."""
 
+_FARTHEST = 1e12  # m: no robot is; beyond it squares of squares overflow
+
 # Places in a 6 x 6 matrix, row by row, over (x, y, z, roll, pitch, yaw).
 _XX, _XY, _XYAW = 0, 1, 5
 _YX, _YY, _YYAW = 6, 7, 11
@@ -113,9 +115,13 @@ def pose_from(
     yaw = _yaw_of(pose.orientation)
     if not all(map(math.isfinite, (pose.position.x, pose.position.y, yaw))):
         raise InputError("pose not finite", "NaN or infinite")
+    if max(abs(pose.position.x), abs(pose.position.y)) > _FARTHEST:
+        raise InputError("pose out of range", f"farther than {_FARTHEST:g} m")
     block = covariance[np.ix_(_PLANE, _PLANE)]
     if not np.isfinite(block).all():
         raise InputError("covariance not finite", "NaN or infinite")
+    if np.abs(block).max() > _FARTHEST**2:
+        raise InputError("covariance out of range", f"more than {_FARTHEST**2:g}")
     size = np.sqrt(np.outer(np.abs(block.diagonal()), np.abs(block.diagonal())))
     if not (np.abs(block - block.T) <= 1e-6 * size).all():
         raise InputError("covariance not symmetric", "of x, y and yaw")

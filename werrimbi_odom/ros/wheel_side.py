@@ -9,6 +9,9 @@ from collections.abc import Sequence
 
 from werrimbi_odom.model.encoder import wrapped
 
+COUNTER_LIMIT = 2.0**63
+"""No counter has more bits; what lies beyond is a broken message, and its square overflows."""
+
 
 class WheelSide:
     """Mean of several wheels' counters, each wrapped and reset on its own.
@@ -42,7 +45,7 @@ class WheelSide:
         if len(positions) == 1 and not self._bits:
             return positions[0] * self._scale
         counts = [position * self._scale for position in positions]
-        if not all(map(math.isfinite, counts)):
+        if not all(abs(count) < COUNTER_LIMIT for count in counts):
             return math.nan
         if not self._last:
             self._last, self._total = counts, list(counts)
