@@ -5,14 +5,15 @@
 Both are timed by turns in one run, so their ratio holds whatever else the machine does. What goes
 tick by tick is timed on a slice and scaled: it grows in proportion to the ticks.
 
-    python benchmark/core_speed.py
+    python benchmark/core_speed.py [--most TICKS]
 """
 
 from __future__ import annotations
 
+import argparse
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from rich.table import Table
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
+from benchmark.per_tick import per_tick
 from test.model.drives import ROBOT, Ticks, random_drive, square
 from test.plain_twin import plain_run
 from werrimbi_odom.model.odometer import Odometer
@@ -36,7 +38,10 @@ ROUNDS = 4
 
 def main() -> None:
     """Print the tables."""
-    console = Console(width=110)
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--most", type=int, default=MILLION, help="ticks that growth goes to")
+    most = parser.parse_args().most
+    console = Console(width=120)
     drives = {
         "squares at 50 Hz": square(rate=50.0, laps=480),
         "squares at 200 Hz": square(rate=200.0, laps=120),
@@ -44,20 +49,31 @@ def main() -> None:
         "wandering without rest": random_drive(0, duration=20_000.0),
     }
     console.print(race({name: first(drive, MILLION) for name, drive in drives.items()}))
-    console.print(growth(first(drives["squares at 50 Hz"], MILLION)))
+    console.print(growth(square(rate=50.0, laps=480 * max(most // MILLION, 1)), most))
 
 
 def race(drives: dict[str, Ticks]) -> Table:
     """All ways to odometry on the same ticks."""
     table = titled("A million ticks: pose and covariance at each (odometer, plain: scaled)")
-    for heading in ("drive", "pieces", "trajectory", "odometer", "plain numpy", "plain/trajectory"):
+    for heading in (
+        "drive",
+        "pieces",
+        "trajectory",
+        "odometer",
+        "plain numpy",
+        "plain Python",
+        "Python/trajectory",
+    ):
         table.add_column(heading, justify="left" if heading == "drive" else "right")
     for name, ticks in drives.items():
         part, scale = first(ticks, SLICE), ticks.time.size / SLICE
-        whole, live, plain = shortest(
+        agree(part)
+        counts = part.left.tolist(), part.right.tolist()
+        whole, live, plain, floats = shortest(
             partial(trajectory, ROBOT, *ticks),
             partial(streamed, part),
             partial(plain_run, ROBOT, part.left, part.right),
+            partial(per_tick, ROBOT, *counts),
         )
         table.add_row(
             name,
@@ -65,24 +81,33 @@ def race(drives: dict[str, Ticks]) -> Table:
             f"{whole:.2f} s",
             f"{live * scale:.1f} s",
             f"{plain * scale:.1f} s",
-            f"{plain * scale / whole:.0f} ×",
+            f"{floats * scale:.1f} s",
+            f"{floats * scale / whole:.0f} ×",
         )
     return table
 
 
-def growth(ticks: Ticks) -> Table:
+def agree(ticks: Ticks) -> None:
+    """All ways must have computed the same, or their times mean nothing."""
+    state = per_tick(ROBOT, ticks.left.tolist(), ticks.right.tolist())
+    path = trajectory(ROBOT, *ticks)
+    assert np.allclose((state.x, state.y), (path.x[-1], path.y[-1]), atol=1e-6)
+    ours = path.covariance.matrix()[-1]
+    assert np.allclose(state.covariance.matrix(), ours, rtol=0.02, atol=1e-3 * ours.max())
+
+
+def growth(ticks: Ticks, most: int) -> Table:
     """Cost of a tick as the record grows; the odometer goes through all of it once."""
     table = titled("Cost of a tick as the record grows (squares at 50 Hz)")
     for heading in ("ticks", "trajectory", "of it per tick", "odometer, per message there"):
         table.add_column(heading, justify="right")
-    messages = list(zip(*(part.tolist() for part in ticks), strict=True))
     odometer, fed = Odometer(ROBOT), 0
-    for count in (1_000, 10_000, 100_000, MILLION):
+    for count in (10**power for power in range(3, 8) if 10**power <= most):
         (whole,) = shortest(partial(trajectory, ROBOT, *first(ticks, count)))
-        for message in messages[fed : count - 1_000]:
+        for message in messages(ticks, fed, count - 1_000):
             odometer.update(*message)
         last = []
-        for message in messages[count - 1_000 : count]:
+        for message in messages(ticks, count - 1_000, count):
             begin = time.perf_counter()
             odometer.update(*message)
             last.append(time.perf_counter() - begin)
@@ -118,6 +143,13 @@ def recorded() -> Ticks:
     steps = np.diff(table.T, axis=1)
     laps = np.cumsum(np.tile(steps, MILLION // steps.shape[1] + 1), axis=1)
     return Ticks(laps[0], np.rint(laps[1]).astype(np.int64), np.rint(laps[2]).astype(np.int64))
+
+
+def messages(ticks: Ticks, begin: int, end: int) -> Iterator[tuple[float, int, int]]:
+    """Some of the ticks as messages, without a list of all of them."""
+    for at in range(begin, end, SLICE):
+        some = (part[at : min(at + SLICE, end)].tolist() for part in ticks)
+        yield from zip(*some, strict=True)
 
 
 def streamed(ticks: Ticks) -> None:

@@ -1,10 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""CPU time a message: `odom_node` against an empty relay, side by side in one run.
+"""CPU time a message: `odom_node`, the same tick by tick, and an empty relay, in one run.
 
 The relay takes a JointState and publishes an Odometry with nothing computed; it is what rclpy and
-DDS cost. Node and relay run at the same time, each in a process of its own, and hear the same
-messages from one publisher, so that whatever else the machine does weighs on both alike.
+DDS cost. "Tick by tick" is the same node with pieces of one message each, so that it does at every
+message what is otherwise done at the end of a piece. All run at the same time, each in a process
+of its own, and hear the same messages from one publisher, so that whatever else the machine does
+weighs on all alike.
 
     python benchmark/node_cost.py [--rate HZ] [--seconds S]
 """
@@ -36,6 +38,12 @@ ROBOT = {
     "left_ticks_per_revolution": 2000.0,
     "right_ticks_per_revolution": 2000.0,
 }
+
+NODES = {
+    "odom_node": [],
+    "tick_by_tick": ["piece_path_tolerance:=1.0e-12", "piece_heading_tolerance:=1.0e-12"],
+}
+"""Parameters of each node, beside those of the robot."""
 
 
 def relay() -> None:
@@ -69,26 +77,29 @@ def main() -> None:
             "ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST",
             "PYTHONPATH": os.pathsep.join([str(ROOT), os.environ.get("PYTHONPATH", "")]),
         }
-        ours = [sys.executable, "-m", "werrimbi_odom.ros.odom_node"]
-        processes = [
-            subprocess.Popen([*ours, "--ros-args", "--params-file", str(file)]),
-            subprocess.Popen([sys.executable, __file__, "--relay"]),
-        ]
+        processes = {}
+        for name, extra in NODES.items():
+            remap = ["-r", f"odom:={name}", "-r", f"__node:={name}"]
+            given = [word for each in extra for word in ("-p", each)]
+            command = [sys.executable, "-m", "werrimbi_odom.ros.odom_node", "--ros-args"]
+            command += ["--params-file", str(file), *remap, *given]
+            processes[name] = subprocess.Popen(command)
+        processes["relayed"] = subprocess.Popen([sys.executable, __file__, "--relay"])
         try:
             report(processes, arguments.rate, arguments.seconds)
         finally:
-            for process in processes:
+            for process in processes.values():
                 process.send_signal(signal.SIGINT)
-            for process in processes:
+            for process in processes.values():
                 process.wait(10.0)
 
 
-def report(processes: list[subprocess.Popen[bytes]], rate: float, seconds: float) -> None:
-    """Feed both, and print what a message cost each."""
+def report(processes: dict[str, subprocess.Popen[bytes]], rate: float, seconds: float) -> None:
+    """Feed all, and print what a message cost each."""
     rclpy.init()
     node = Node("feeder")
     publisher = node.create_publisher(JointState, "joint_states", QoSProfile(depth=1000))
-    heard = {"odom": 0, "relayed": 0}
+    heard = dict.fromkeys(processes, 0)
 
     def listener(topic: str) -> None:
         def arrived(_: Odometry) -> None:
@@ -98,24 +109,25 @@ def report(processes: list[subprocess.Popen[bytes]], rate: float, seconds: float
 
     for topic in heard:
         listener(topic)
-    while publisher.get_subscription_count() < 2:
+    while publisher.get_subscription_count() < len(processes):
         rclpy.spin_once(node, timeout_sec=0.05)
     feed(node, publisher, rate, 1.0)
     drain(node)
-    before = [cpu_time(process.pid) for process in processes]
-    heard.update(odom=0, relayed=0)
+    before = {name: cpu_time(process.pid) for name, process in processes.items()}
+    heard.update(dict.fromkeys(processes, 0))
     count = feed(node, publisher, rate, seconds)
     drain(node)
-    node_cost, relay_cost = (
-        1e6 * (cpu_time(process.pid) - start) / answered
-        for process, start, answered in zip(processes, before, heard.values(), strict=True)
-    )
-    print(f"{count} JointState messages at {rate:.0f} Hz to both at once")
-    print(f"{'':12} answered  CPU a message")
-    print(f"{'odom_node':12} {heard['odom']:8}  {node_cost:6.0f} us")
-    print(f"{'empty relay':12} {heard['relayed']:8}  {relay_cost:6.0f} us   (rclpy and DDS)")
-    share = 1.0 - relay_cost / node_cost
-    print(f"ours: {node_cost - relay_cost:.0f} us, {share:.0%} of the node's cost")
+    cost = {
+        name: 1e6 * (cpu_time(process.pid) - before[name]) / max(heard[name], 1)
+        for name, process in processes.items()
+    }
+    print(f"{count} JointState messages at {rate:.0f} Hz to all at once")
+    print(f"{'':14} answered  CPU a message  over the relay")
+    for name, each in cost.items():
+        over = each - cost["relayed"]
+        print(f"{name:14} {heard[name]:8}  {each:10.0f} us  {over:+10.0f} us")
+    ours = cost["odom_node"] - cost["relayed"]
+    print(f"ours: {ours:.0f} us, {ours / cost['relayed']:.0%} of what rclpy and DDS cost")
     rclpy.try_shutdown()
 
 
