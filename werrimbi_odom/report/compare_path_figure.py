@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.inference.compare import Comparison
 from werrimbi_odom.model.covariance import PoseCovariance
@@ -149,9 +150,10 @@ def _legs(figure: go.Figure, comparison: Comparison, run: int | None) -> None:
     # Small ones first, so that the large are on top.
     rows = rows[np.argsort(size[rows])]
     texts = [_told(comparison, row) for row in rows.tolist()]
+    middle = middles(comparison)[rows]
     figure.add_scatter(
-        x=small(0.5 * (legs.x + legs.end_x)[rows]),
-        y=small(0.5 * (legs.y + legs.end_y)[rows]),
+        x=small(middle.real),
+        y=small(middle.imag),
         mode="markers",
         name="leg, coloured by its error",
         text=texts,
@@ -171,6 +173,22 @@ def _legs(figure: go.Figure, comparison: Comparison, run: int | None) -> None:
             "colorbar": {"title": {"text": f"error of<br>a leg [{unit}]"}, "thickness": 14},
         }
     )
+
+
+def middles(comparison: Comparison) -> NDArray[np.complex128]:
+    """Middle of each leg (x + iy), measured; where headings alone are measured, by the model."""
+    legs = comparison.legs
+    found = 0.5 * (legs.x + legs.end_x) + 0.5j * (legs.y + legs.end_y)
+    found = found.astype(np.complex128)
+    for group in comparison.prepared.groups:
+        if group.measure != "heading":
+            continue
+        for own, index in enumerate(group.index):
+            mine = legs.run == index
+            time = 0.5 * (legs.start_time + legs.end_time)[mine]
+            path = comparison.paths[index].predicted
+            found[mine] = np.interp(time, group.every.runs[own].measured.time, path)
+    return found
 
 
 def _told(comparison: Comparison, row: int) -> str:

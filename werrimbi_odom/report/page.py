@@ -153,7 +153,7 @@ def _section(shown: Shown) -> str:
         height = int(first.layout.height or 450)
         parts.append(
             f'<div class="figure" id="figure-{shown.key}" data-figure="{shown.key}" tabindex="0" '
-            f'role="img" aria-label="{title}. {see}" style="height:{height}px"></div>'
+            f'role="figure" aria-label="{title}. {see}" style="height:{height}px"></div>'
             '<p class="keys">Arrow keys move, + and − zoom, 0 shows all again.</p>'
         )
     if shown.html:
