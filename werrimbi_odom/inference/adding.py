@@ -37,6 +37,7 @@ from werrimbi_odom.inference.adding_values import (
 from werrimbi_odom.inference.calibration import MISFIT_P, STRANGE_NOISE
 from werrimbi_odom.inference.candidates import CALIBRATED
 from werrimbi_odom.inference.compare_legs import Legs, Prepared, judged_legs
+from werrimbi_odom.inference.diagnosis import chance
 from werrimbi_odom.inference.evidence import Dependence, dependences
 from werrimbi_odom.inference.fit import Costs
 from werrimbi_odom.inference.holdout import Judge, Sides, at_home, judge_of
@@ -50,6 +51,9 @@ from werrimbi_odom.inference.together import together
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
+
+BY_CHANCE = 0.01
+"""In as many cases an effect that does nothing would pass, but for the held-out drives."""
 
 ROUNDING = 1e-4
 """Share by which the held-out error must fall to have fallen."""
@@ -110,6 +114,8 @@ class Added:
     set_up: SetUp
     per_run: tuple[str, ...]
     """Parameters that each run has anew; the file leaves them out."""
+    p_value: float
+    """Of as much of a better fit by chance, against calibration alone."""
     objection: str | None
     """Why it should not be added; None: nothing speaks against it."""
 
@@ -164,7 +170,13 @@ def add_effect(
     noises, remaining, honest = _noise(drives, fit, sigma)
     model = fit.point.model
     per_run = tuple(sorted(set(model.own[0]) - set(NUISANCES))) if model.own else ()
+    p_value = 0.0 if effect.name in CALIBRATED or also else chance(fit, base, 1)
     objection = _objection(effect, parameters, kept, held, set_up, also)
+    if objection is None and p_value > BY_CHANCE and not held:
+        objection = (
+            f"the drives do not show {effect.name}: chance alone would make the fit as much better "
+            f"in {100.0 * p_value:.2g} % of cases"
+        )
     written = fit
     if not holdout:
         show(0.9, "all runs")
@@ -191,6 +203,7 @@ def add_effect(
         remaining,
         set_up,
         per_run,
+        p_value,
         objection,
     )
 
@@ -223,13 +236,15 @@ def _fits(
     show: Callable[[float, str], None],
 ) -> tuple[Fitted, Fitted]:
     """The model with everything fitted but the effect, and the best one with it."""
+    if effect.name in CALIBRATED:
+        start = start_of_held(drives, begun, also)
+        fit = drives.fit(start.point, also, start.knobs, given)
+        return fit, fit
     others = tuple(item for item in begun.effects if item.name not in (effect.name, *also))
     bare = replace(begun if not also else given, effects=others)
     start = start_of_held(drives, bare, ())
     base = drives.fit(start.point, (), start.knobs, given)
     show(0.35, effect.name)
-    if effect.name in CALIBRATED:
-        return base, base
     if also:
         start = start_of_held(drives, begun, also)
         options: tuple[Start, ...] = (replace(start, knobs=knobs_held(begun, start.knobs, effect)),)

@@ -92,7 +92,8 @@ def _doc(amount: Amount, seen: Seen, form: Form, drives: int, strength: str) -> 
     first = f"{error[:1].upper()}{error[1:]} is off by a share that goes with {what}."
     why = (
         f"That is what {drives} drives show ({strength}): a {form.kind}, of the {per}. "
-        "Why it is so, the data cannot say: find the physics, then give this effect its name and its law."
+        "Why it is so, the data cannot say: find the physics, then give this effect its name "
+        "and its law."
     )
     target = {"left": "left", "right": "right", "along": first_of(amount), "sideways": "sideways"}
     side = target.get(amount.channel, "turn")

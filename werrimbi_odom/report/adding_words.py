@@ -198,6 +198,7 @@ def json_of(added: Added) -> dict[str, Any]:
             {"channel": cell.channel, "variable": cell.name, "p_value": cell.p_value}
             for cell in added.remaining
         ],
+        "p_value": added.p_value,
         "objection": added.objection,
     }
 

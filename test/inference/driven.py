@@ -1,0 +1,53 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Drives whose truth is a robot model: its ticks by a wandering command, its path as reference."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from test.model.drives import ROBOT, read
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.trajectory import trajectory
+
+NOISE_XY, NOISE_YAW = 1e-3, 2e-3
+
+
+def runs_of(truth: Robot, seeds: Sequence[int], seconds: int = 90) -> list[Run]:
+    """A minute or two for each seed, 20 Hz, a reference of a millimetre."""
+    return [run_of(truth, seed, seconds) for seed in seeds]
+
+
+def run_of(
+    truth: Robot,
+    seed: int,
+    seconds: int = 90,
+    channels: Mapping[str, np.ndarray] | None = None,
+) -> Run:
+    """One drive: stretches of a second or more at a speed and a yaw rate, stops and spins too."""
+    random = np.random.default_rng(seed)
+    rate, each = 20, 30
+    count = seconds * rate // each
+    speed = random.uniform(-0.3, 0.6, count) * (random.random(count) > 0.2)
+    turning = random.uniform(-1.2, 1.2, count) * (random.random(count) > 0.3)
+    smooth = np.ones(8) / 8.0
+    driven = [np.convolve(np.repeat(part, each), smooth, "same") for part in (speed, turning)]
+    ticks = read(ROBOT, float(rate), *driven)
+    path = trajectory(truth, *ticks, channels=channels)
+    shown = slice(None, None, 4)
+    count = path.x[shown].size
+    noisy = [random.normal(0.0, sigma, count) for sigma in (NOISE_XY, NOISE_XY, NOISE_YAW)]
+    reference = Reference(
+        path.time[shown],
+        path.x[shown] + noisy[0],
+        path.y[shown] + noisy[1],
+        path.yaw[shown] + noisy[2],
+    )
+    record = Ticks(
+        ticks.time, ticks.left.astype(float), ticks.right.astype(float), dict(channels or {})
+    )
+    return Run(f"run_{seed}", Path(f"run_{seed}"), record, reference)

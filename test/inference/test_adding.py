@@ -1,0 +1,92 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Adding: a missing effect is found with its size, a useless one is refused, sizes are sizes."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from test.inference.driven import runs_of
+from werrimbi_odom.effects import find
+from werrimbi_odom.inference.adding import Added, add_effect
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.adding_words import json_of, words_of
+
+PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
+
+
+def added(name: str, truth: Robot, given: Robot = PLAIN) -> Added:
+    runs = runs_of(truth, (1, 2, 3, 4))
+    return add_effect(find(name), runs[:3], given, holdout=runs[3:])
+
+
+@pytest.fixture(scope="module")
+def creep() -> Added:
+    return added("lateral_slip", replace(PLAIN, effects=(find("lateral_slip").using(creep=0.02),)))
+
+
+def test_the_size_is_found_within_its_error(creep: Added) -> None:
+    found = creep.parameters["creep"]
+    assert found.value is not None
+    assert found.std is not None
+    assert abs(found.value - 0.02) < 4.0 * found.std < 0.004
+
+
+def test_the_held_out_error_falls_to_the_noise(creep: Added) -> None:
+    assert creep.objection is None
+    assert creep.holdout.sides.after < 0.8 * creep.holdout.sides.before
+    assert creep.holdout.sides.after < 1.25 * creep.holdout.floor
+
+
+def test_words_and_json_tell_the_same(creep: Added) -> None:
+    words, figures = words_of(creep), json_of(creep)
+    assert max(map(len, words.splitlines())) <= 80
+    assert f"{1e3 * figures['holdout']['after']:.2f} mm" in words
+    assert figures["parameters"]["creep"]["unit"] == "s"
+
+
+def test_what_is_not_there_is_objected_to() -> None:
+    found = added("lateral_slip", replace(PLAIN, wheel_separation_multiplier=1.02))
+    assert found.objection is not None
+    assert re.search("does not lower|do not show", found.objection)
+
+
+def test_a_base_is_written_as_the_files_multiplier() -> None:
+    found = added("track_width", replace(PLAIN, wheel_separation_multiplier=1.02))
+    assert found.objection is None
+    assert found.robot.effects == ()
+    assert found.robot.wheel_separation_multiplier == pytest.approx(1.02, abs=1e-3)
+    assert found.parameters["multiplier"].value == pytest.approx(1.02, abs=1e-3)
+
+
+@pytest.mark.parametrize(("name", "factor"), [("track_width", 0.5), ("wheel_radius_scale", 4.0)])
+def test_factors_far_from_one_are_reached(name: str, factor: float) -> None:
+    key = {"track_width": "wheel_separation", "wheel_radius_scale": "wheel_radius"}[name]
+    given = replace(PLAIN, **{key: getattr(PLAIN, key) / factor})  # type: ignore[arg-type]
+    found = added(name, PLAIN, given)
+    assert found.objection is None
+    assert found.parameters["multiplier"].value == pytest.approx(factor, rel=2e-3)
+
+
+def test_exchanged_wheels_are_put_right() -> None:
+    found = added("wheels_swapped", replace(PLAIN, effects=(find("wheels_swapped").using(),)))
+    assert found.objection is None
+    assert [item.name for item in found.robot.effects] == ["wheels_swapped"]
+    assert found.holdout.sides.after < 0.1 * found.holdout.sides.before
+
+
+def test_a_phase_of_each_drive_is_not_written() -> None:
+    truth = [
+        replace(PLAIN, effects=(find("eccentric_left_wheel").using(amplitude=2e-3, phase=phase),))
+        for phase in (0.3, 1.9, -2.0, 3.0)
+    ]
+    runs = [runs_of(robot, (seed,))[0] for seed, robot in enumerate(truth)]
+    found = add_effect(find("eccentric_left_wheel"), runs[:3], PLAIN, holdout=runs[3:])
+    assert found.robot.effects[0].unknown == ("phase",)
+    assert found.parameters["amplitude"].value == pytest.approx(2e-3, abs=2e-4)
+    gone = np.angle(np.exp(1j * (np.array(found.parameters["phase"].of_runs) - [0.3, 1.9, -2.0])))
+    assert np.max(np.abs(gone)) < 0.2
