@@ -46,6 +46,8 @@ evidence: setup  ## the long tests: hidden effects (tables to docs/evidence.md),
 
 pictures: setup  ## the pictures of the README, made anew (needs Chrome or Chromium)
 	$(BIN)/python docs/make_pictures.py
+	$(BIN)/python docs/make_report_pictures.py
+	$(BIN)/python docs/make_workbench_pictures.py
 
 lock: setup  ## constraints.txt from what .venv holds
 	$(BIN)/python -m pip freeze --exclude-editable --exclude werrimbi_odom | grep -v '@' > constraints.txt
