@@ -22,6 +22,7 @@ TICK = 2.0 * math.pi * 0.05 / 2000.0
 BAD = {
     "nan": (NAMES, [math.nan, 0.0], "position not finite"),
     "infinite": (NAMES, [0.0, -math.inf], "position not finite"),
+    "absurd": (NAMES, [1e300, 0.0], "position out of range"),
     "missing_joint": (
         ["left_wheel_joint", "castor"],
         [0, 0],
