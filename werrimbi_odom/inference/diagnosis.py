@@ -24,7 +24,14 @@ from werrimbi_odom.inference.knobs import CALIBRATION, MULTIPLIERS, Model, chang
 from werrimbi_odom.inference.likelihood import ReferenceKind
 from werrimbi_odom.inference.matching import QUARTER_TURN, match
 from werrimbi_odom.inference.ownership import Grasp, grasp_of
-from werrimbi_odom.inference.search import Round, first_fit, jumps_anew, search_round
+from werrimbi_odom.inference.search import (
+    Instead,
+    Round,
+    first_fit,
+    instead_of_calibration,
+    jumps_anew,
+    search_round,
+)
 from werrimbi_odom.inference.selection import RIVAL, Fitted
 from werrimbi_odom.inference.set_up import SetUp, SetUpFinding, look_for_mistakes
 from werrimbi_odom.inference.together import Together, together
@@ -164,7 +171,10 @@ def diagnose(
         else dependences(laid, fit.point, kind, (*CALIBRATION, *fit.knobs))
     )
     show(0.95, "held-out runs")
-    return _told(set_up, robot, tuple(rounds), fit, beyond, remaining, judge, laid, kind)
+    instead: tuple[Instead, ...] = ()
+    if not fit.names and fit.calibrated and beyond is None:
+        instead = instead_of_calibration(laid, fit, kind, effects, set_up.robot, sigma)
+    return _told(set_up, robot, tuple(rounds), fit, beyond, remaining, judge, laid, kind, instead)
 
 
 def _stated(runs: Together, name: str) -> float | None:
@@ -240,6 +250,7 @@ def _told(
     judge: Judge,
     laid: Together,
     kind: ReferenceKind,
+    instead: tuple[Instead, ...],
 ) -> Diagnosis:
     """Everything put together."""
     mistakes = [finding.effect for finding in set_up.findings]
@@ -251,7 +262,7 @@ def _told(
         twins = _possible_twins(set_up.findings[0])
         rivals = (mistakes[0], *twins) if twins else ()
     elif found:
-        rivals = _rivals(found[0], rounds, final)
+        rivals = _rivals(found[0], rounds, final, instead)
     verdict: Verdict
     if not found:
         verdict = "none" if beyond is None else "unknown"
@@ -298,11 +309,15 @@ def _plain(fit: Fitted, given: Robot) -> Model:
     return Model(changed(model.robot, back), model.own)
 
 
-def _rivals(first: str, rounds: tuple[Round, ...], final: Fitted) -> tuple[str, ...]:
+def _rivals(
+    first: str, rounds: tuple[Round, ...], final: Fitted, instead: tuple[Instead, ...]
+) -> tuple[str, ...]:
     """What the runs cannot tell from the first effect, that one leading; alone: none."""
     if first in CALIBRATED:
         others = {name for subset in final.alternatives for name in subset if first not in subset}
         named = [first, *(name for name in CALIBRATED if name in others)]
+        limit = final.total + RIVAL * final.scatter
+        named += [item.effect for item in instead if item.total < limit]
         return tuple(named) if len(named) > 1 else ()
     for this in rounds:
         fits = [fit for fit in this.tried if not fit.at_bound]

@@ -140,18 +140,20 @@ def dependences(
 
 def _tested(flat: Floats, frame: Floats, rest: Floats) -> tuple[Floats, float, int] | None:
     """Coefficients of some columns, what they explain, and how many they are; None if mute."""
-    free = flat - frame @ (frame.T @ flat)
+    cross = frame.T @ flat
     size = np.sqrt(np.sum(flat**2, axis=0))
     heard = size > 1e-9
     if not heard.any():
         return None
-    left, values, right = np.linalg.svd(free[:, heard] / size[heard], full_matrices=False)
-    alive = values > 1e-3
+    square = (flat.T @ flat - cross.T @ cross)[np.ix_(heard, heard)]
+    values, axes = np.linalg.eigh(square / np.outer(size[heard], size[heard]))
+    alive = values > 1e-6
     if not alive.any():
         return None
-    shares = left[:, alive].T @ rest
+    marks = (flat[:, heard].T @ rest) / size[heard]  # rest is clear of the frame already
+    shares = (axes[:, alive].T @ marks) / np.sqrt(values[alive])
     solution = np.zeros(flat.shape[-1])
-    solution[heard] = -(right[alive].T @ (shares / values[alive])) / size[heard]
+    solution[heard] = -(axes[:, alive] @ (shares / np.sqrt(values[alive]))) / size[heard]
     return solution, float(shares @ shares), int(alive.sum())
 
 
@@ -205,9 +207,12 @@ def _legs(runs: Together, functions: Floats, pushes: Floats) -> Floats:
     moved, functions = pushes[steps], functions[steps]
     found = np.zeros((runs.count, 3, functions.shape[-1]))
     filled = np.flatnonzero(np.diff(starts))  # reduceat gives an empty leg its neighbour's value
-    for index in range(functions.shape[-1]):
-        sums = np.add.reduceat(functions[:, index, None] * moved, starts[:-1][filled], axis=0)
-        found[filled, :, index] = sums
+    for first in range(0, functions.shape[-1], 8):
+        some = slice(first, first + 8)
+        sums = np.add.reduceat(
+            moved[:, :, None] * functions[:, None, some], starts[:-1][filled], axis=0
+        )
+        found[filled, :, some] = sums
     return found
 
 

@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from types import ModuleType
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -142,9 +144,10 @@ def headings_of(
 def _path(
     robot: Robot, runs: Together, view: View, start_yaws: Sequence[float | None]
 ) -> DrivenPath:
-    raw, drive = runs.raw_drive(robot)
     if not acts(robot):
+        raw = runs.raw(robot)
         return _from_motion(raw, wheels_to_body(raw, robot.track))
+    raw, drive = runs.raw_drive(robot)
     placed = looks_at_pose(robot)
     if placed:
         path = _from_motion(raw, wheels_to_body(raw, robot.track))
@@ -206,7 +209,18 @@ def places_of(
 
 
 def _looks_at_heading(robot: Robot) -> bool:
-    return any(applied.effect.stage == "body" for applied in robot.effects)
+    """Whether any law mentions the heading: itself, or a function that it calls."""
+    return any(_mentions(applied.effect.apply, "heading", 3) for applied in robot.effects)
+
+
+def _mentions(law: Any, name: str, deep: int) -> bool:
+    code = getattr(law, "__code__", None)
+    if code is None:
+        return not isinstance(law, (ModuleType, type)) and callable(law) and deep == 3
+    if name in code.co_names or "getattr" in code.co_names:
+        return True
+    called = (law.__globals__.get(other) for other in code.co_names)
+    return deep > 0 and any(_mentions(other, name, deep - 1) for other in called if callable(other))
 
 
 def _from_motion(travel: WheelTravel[Floats], motion: BodyMotion[Floats]) -> DrivenPath:

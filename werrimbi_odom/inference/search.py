@@ -7,6 +7,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+from numpy.typing import NDArray
+
 from werrimbi_odom.inference.candidates import (
     CALIBRATED,
     Candidate,
@@ -19,7 +22,16 @@ from werrimbi_odom.inference.candidates import (
 from werrimbi_odom.inference.design import Point
 from werrimbi_odom.inference.evidence import Dependence, dependences
 from werrimbi_odom.inference.fit import fit_model, start_point, without_jumps
-from werrimbi_odom.inference.knobs import CALIBRATION, Knob, Model, changed, knobs_of
+from werrimbi_odom.inference.knobs import (
+    CALIBRATION,
+    DRIFT_OF_YAW,
+    MULTIPLIERS,
+    YAW_DRIFT,
+    Knob,
+    Model,
+    changed,
+    knobs_of,
+)
 from werrimbi_odom.inference.likelihood import ReferenceKind
 from werrimbi_odom.inference.selection import Fitted, fitted
 from werrimbi_odom.inference.together import Together
@@ -28,6 +40,9 @@ from werrimbi_odom.model.robot import Robot
 
 REFITTED = 5
 """Candidates that are fitted in full in each round."""
+
+EDGE = 0.3
+"""Time at both ends of a run whose legs are not counted [s]: delays are mostly shorter."""
 
 HALF_AS_GOOD = 0.25
 """Share of the best score below which a candidate is not worth a fit."""
@@ -56,6 +71,7 @@ def first_fit(
 ) -> Fitted:
     """The robot as given, calibrated."""
     point = start_point(runs, robot, *sigma)
+    point = replace(point, excluded=_edges(runs))
     point, knobs = with_own_values(runs, point, kind)
     if kind == "incremental":
         point = fit_model(runs, point, kind, (*CALIBRATION, *knobs), rounds=0).point
@@ -77,7 +93,73 @@ def jumps_anew(
     if kind != "incremental":
         return fit
     point = without_jumps(runs, fit.point, kind)
+    both = (jumped | edge for jumped, edge in zip(point.excluded, _edges(runs), strict=True))
+    point = replace(point, excluded=tuple(both))
     return fitted(runs, point, kind, fit.names, fit.knobs, robot, sigma=sigma)
+
+
+def _edges(runs: Together) -> tuple[NDArray[np.bool_], ...]:
+    """Legs that a shifted clock would move out of the ticks' time; of few legs none.
+
+    A record that begins or ends in motion knows nothing of the motion beyond, so such legs would
+    speak against a delay however true it is.
+    """
+    found = []
+    for run in runs.runs:
+        first, last = run.counters.time[0], run.counters.time[-1]
+        begin, end = run.measured.time[:-1], run.measured.time[1:]
+        outside = (begin < first + EDGE) | (end > last - EDGE)
+        found.append(outside if run.legs > 20 else np.zeros(run.legs, dtype=np.bool_))
+    return tuple(found)
+
+
+@dataclass(frozen=True, slots=True)
+class Instead:
+    """An effect in place of a calibration."""
+
+    effect: str
+    total: float
+    """Cost and price, to be compared with the calibrated model's."""
+
+
+def instead_of_calibration(
+    runs: Together,
+    calibrated: Fitted,
+    kind: ReferenceKind,
+    effects: Sequence[Effect],
+    given: Robot,
+    sigma: tuple[float | None, float | None] = (None, None),
+) -> tuple[Instead, ...]:
+    """Effects that would do in place of the calibration that a model needs, cheapest first.
+
+    The multipliers are put back to the given robot's, and stay there.
+    """
+    back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
+    model = calibrated.point.model
+    point = replace(calibrated.point, model=Model(changed(model.robot, back), model.own))
+    nuisances = [DRIFT_OF_YAW] if any(YAW_DRIFT in own for own in model.own) else []
+    held = {applied.name for applied in model.robot.effects}
+    channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
+    looked_at = candidates(effects, held, channels, len(runs.runs))
+    found = scores(runs, point, kind, (*calibrated.knobs, *nuisances), looked_at)
+    results = []
+    for score in worth_fitting(best_of_each(found))[:3]:
+        start = replace(point, model=put_in(point.model, score))
+        knobs = (*calibrated.knobs, *knobs_of_candidate(score.candidate), *nuisances)
+        fit = fit_model(
+            runs,
+            start,
+            kind,
+            knobs,
+            find_jumps=False,
+            rounds=2,
+            sigma_xy=sigma[0],
+            sigma_yaw=sigma[1],
+        )
+        if not fit.at_bound:
+            price = calibrated.price_of_one * len(fit.free) * calibrated.scatter
+            results.append(Instead(score.candidate.name, fit.minus_two_log_likelihood + price))
+    return tuple(sorted(results, key=lambda item: item.total))
 
 
 def with_own_values(

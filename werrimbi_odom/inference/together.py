@@ -85,6 +85,14 @@ class Together:
             _remember(self._delayed, delay, known)
         return known
 
+    def raw(self, robot: Robot) -> WheelTravel[Floats]:
+        """Travel of all steps before any effect."""
+        left, right = (
+            np.concatenate([getattr(run, side) for run in self.runs]) for side in ("left", "right")
+        )
+        left, right = wiring_of(robot.effects).wheels(left, right)
+        return WheelTravel(left * robot.left_tick, right * robot.right_tick)
+
     def raw_drive(self, robot: Robot) -> tuple[WheelTravel[Floats], Drive[Floats]]:
         """Travel of all steps before any effect, and what effects may look at."""
         wiring = wiring_of(robot.effects)
