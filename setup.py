@@ -15,6 +15,7 @@ ROS = [
     "ros-jazzy-rmw-fastrtps-cpp>=8.4.3",
 ]
 TOOLS = ["rich>=13.7", "rosbags>=0.11", "scipy>=1.11", "plotly>=6.1", "kaleido>=1.0"]
+WORKBENCH = [*TOOLS, "nicegui>=3.18"]
 SIMULATION = ["mujoco>=3.2", "rich>=13.7", "rosbags>=0.11"]
 TEST = [
     "pytest>=8.0",
@@ -24,6 +25,7 @@ TEST = [
     "mypy>=1.10",
     "ruff>=0.5",
     "import-linter>=2.0",
+    "playwright>=1.48",
     "colcon-common-extensions>=0.3",
     "catkin_pkg>=1.0",
 ]
@@ -56,9 +58,10 @@ setup(
     extras_require={
         "ros": ROS,
         "tools": TOOLS,
+        "workbench": WORKBENCH,
         "simulation": SIMULATION,
         "test": TEST,
-        "all": sorted({*ROS, *TOOLS, *SIMULATION, *TEST}),
+        "all": sorted({*ROS, *WORKBENCH, *SIMULATION, *TEST}),
     },
     zip_safe=False,
     entry_points={

@@ -33,7 +33,7 @@ class Served:
 
 @pytest.fixture(scope="session")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    pytest.importorskip("nicegui", reason="the workbench needs NiceGUI: pip install 'nicegui>=3.0'")
+    pytest.importorskip("nicegui", reason="the workbench needs NiceGUI: pip install 'nicegui>=3.18'")
     folder = tmp_path_factory.mktemp("day")
     robot, train, holdout = written(folder)
     told = tmp_path_factory.mktemp("told") / "address.json"

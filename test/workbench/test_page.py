@@ -22,46 +22,76 @@ def files(folder: Path) -> set[str]:
     return {path.name for path in folder.iterdir()}
 
 
-def test_clicks_alone_find_the_hidden_effect_and_save_the_mended_file(
-    looked: Looked, another: Looked, served: Served
+def tab_to(looked: Looked, key: str) -> None:
+    """With the Tab key alone; who works with keys must see where he is."""
+    page = looked.page
+    for _ in range(80):
+        if page.evaluate("document.activeElement?.dataset?.key") == key:
+            break
+        page.keyboard.press("Tab")
+    assert page.evaluate("document.activeElement?.dataset?.key") == key
+    outline = page.evaluate("getComputedStyle(document.activeElement).outlineStyle")
+    assert outline == "solid"
+
+
+def press(looked: Looked, key: str, how: str) -> None:
+    """A button, once it is there and can be pressed."""
+    looked.at(key).and_(looked.page.locator(":enabled")).wait_for(timeout=PATIENCE)
+    if how == "clicks":
+        looked.at(key).click()
+        return
+    tab_to(looked, key)
+    looked.page.keyboard.press("Enter")
+
+
+@pytest.mark.parametrize(
+    ("how", "file"), [("clicks", "robot_new.yaml"), ("keys", "robot_new_2.yaml")]
+)
+def test_the_hidden_effect_is_found_added_and_saved(
+    looked: Looked, another: Looked, served: Served, how: str, file: str
 ) -> None:
-    """While a second browser, open all along, sees nothing of it."""
+    """By clicks alone, and by keys alone, while a second browser does something else."""
     before = looked.error
-    looked.at("motion-line").click()
-    told = looked.page.locator('[data-key="told"]', has_text="Straight driving:")
-    told.wait_for()
+    press(looked, "motion-line", how)
+    looked.page.locator('[data-key="told"]', has_text="Straight driving:").wait_for()
     assert looked.at("motion-line").get_attribute("aria-pressed") == "true"
-    looked.at("to-diagnose").click()
-    looked.at("diagnose").click()
+    press(looked, "to-diagnose", how)
+    press(looked, "diagnose", how)
+    looked.at("cancel").wait_for()
+
+    press(another, "go-diagnose", "clicks")
+    press(another, "diagnose", "clicks")
+    press(another, "cancel", "clicks")
+    another.page.get_by_role("status").filter(has_text="was cancelled").wait_for()
+
     looked.at("verdict").wait_for(timeout=PATIENCE)
     assert HIDDEN in looked.at("verdict").inner_text()
-    looked.at(f"why-{HIDDEN}").click()
     looked.page.get_by_text("how to check it on the robot").wait_for()
-    looked.at(f"add-{HIDDEN}").click()
+    press(looked, f"add-{HIDDEN}", how)
     looked.at("undo").and_(looked.page.locator(":enabled")).wait_for(timeout=PATIENCE)
     after = looked.error
     assert after < 0.8 * before
     assert "fell" in looked.page.locator("main .headline").inner_text()
 
-    looked.at("undo").click()
-    looked.page.wait_for_function("document.querySelector('[data-key=redo]').disabled === false")
+    press(looked, "undo", how)
+    looked.at("undo").and_(looked.page.locator(":disabled")).wait_for()
     assert looked.error == before
-    looked.at("redo").click()
-    looked.page.wait_for_function("document.querySelector('[data-key=redo]').disabled === true")
+    press(looked, "redo", how)
+    looked.at("redo").and_(looked.page.locator(":disabled")).wait_for()
     assert looked.error == after
 
-    looked.at("go-save").click()
-    looked.at("save").click()
+    press(looked, "go-save", how)
+    press(looked, "save", how)
     looked.page.get_by_text("✓ Saved").wait_for()
-    saved = read_robot_file(served.folder / "robot_new.yaml").robot
+    saved = read_robot_file(served.folder / file).robot
     found = saved.right_wheel_radius_multiplier / saved.left_wheel_radius_multiplier
     assert found == pytest.approx(RATIO, abs=5e-4)
     assert (served.folder / "robot.yaml").read_text() == ROBOT
-    assert files(served.folder) == {"robot.yaml", "robot_new.yaml", "train", "holdout"}
+    new = {name for name in files(served.folder) if name.startswith("robot_new")}
+    assert files(served.folder) - new == {"robot.yaml", "train", "holdout"}
     assert looked.complaints == []
-    assert {urlsplit(url).hostname for url in looked.asked if url.startswith("http")} == {
-        "127.0.0.1"
-    }
+    hosts = {urlsplit(url).hostname for url in looked.asked if url.startswith("http")}
+    assert hosts == {"127.0.0.1"}
 
     looked.page.reload()
     looked.page.wait_for_function("document.querySelector('[data-key=undo]')?.disabled === false")
@@ -69,30 +99,18 @@ def test_clicks_alone_find_the_hidden_effect_and_save_the_mended_file(
 
     assert another.error == before
     assert another.at("undo").is_disabled()
-    another.at("go-diagnose").click()
-    another.at("diagnose").wait_for()
     assert another.at("verdict").count() == 0
     assert another.complaints == []
 
 
-def test_keys_alone_reach_everything_and_the_focus_is_never_lost(looked: Looked) -> None:
-    """Tab and Enter: to a part of the drives, to the diagnosis, and to stop it."""
+def test_the_focus_is_never_lost_when_the_page_changes(looked: Looked) -> None:
     page = looked.page
 
-    def tab_to(key: str) -> None:
-        for _ in range(60):
-            page.keyboard.press("Tab")
-            if page.evaluate("document.activeElement?.dataset?.key") == key:
-                break
-        assert page.evaluate("document.activeElement?.dataset?.key") == key
-        outline = page.evaluate("getComputedStyle(document.activeElement).outlineStyle")
-        assert outline == "solid", "who works with keys must see where he is"
-
-    tab_to("motion-arc")
+    tab_to(looked, "motion-arc")
     page.keyboard.press("Enter")
     page.locator('[data-key="motion-arc"][aria-pressed="true"]').wait_for()
     looked.focused("motion-arc")
-    tab_to("variable-1")
+    tab_to(looked, "variable-1")
     page.keyboard.press("Space")
     page.locator('[data-key="variable-1"][aria-pressed="true"]').wait_for()
     looked.focused("variable-1")
@@ -100,10 +118,10 @@ def test_keys_alone_reach_everything_and_the_focus_is_never_lost(looked: Looked)
     looked.focused("variable-0")
     page.evaluate("document.activeElement.blur(); window.scrollTo(0, 0)")
     page.locator("h1").click()
-    tab_to("go-diagnose")
+    tab_to(looked, "go-diagnose")
     page.keyboard.press("Enter")
     looked.focused("title-diagnose")
-    tab_to("diagnose")
+    tab_to(looked, "diagnose")
     page.keyboard.press("Enter")
     looked.focused("cancel")
     assert page.get_by_role("progressbar").count() == 1

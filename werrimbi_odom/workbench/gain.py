@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.report.style import BLUE, GREY, INK, ORANGE, PAPER, plain
+from werrimbi_odom.report.style import BLUE, GREY, ORANGE, PAPER, plain
 from werrimbi_odom.workbench.steps import Step
 
 if TYPE_CHECKING:
@@ -32,29 +32,34 @@ def gain_figure(steps: Sequence[Step]) -> go.Figure:
             name=name,
             marker={
                 "color": colour,
-                "pattern": {"shape": shape, "fillmode": "overlay", "fgcolor": PAPER},
+                "pattern": {"shape": shape, "fillmode": "overlay", "fgopacity": 0.25},
             },
             text=[f"{value:.2f}" for value in values],
-            textposition="outside",
-            textfont={"color": INK},
+            textposition="inside",
+            insidetextanchor="start",
+            textangle=0,
+            textfont={"color": PAPER, "size": 15},
             hovertemplate=f"{name}: %{{y:.2f}} mm<extra></extra>",
         )
     added = steps[-1].added
+    last = max(len(names), 3) - 0.4  # room for the next bar
     if added is not None:
         floor = 1e3 * added.holdout.floor
-        figure.add_hline(y=floor, line={"color": ORANGE, "width": 2, "dash": "dash"})
-        figure.add_annotation(
-            x=1.0, xref="paper", xanchor="right", y=floor, yanchor="bottom", showarrow=False,
-            text=f"what noise alone would leave: {floor:.2f} mm",
-        )  # fmt: skip
+        figure.add_scatter(
+            x=[-0.6, last],
+            y=[floor, floor],
+            mode="lines",
+            name=f"what noise alone would leave: {floor:.2f} mm",
+            line={"color": ORANGE, "width": 3, "dash": "dash"},
+            hoverinfo="skip",
+        )
     plain(figure, height=380)
     figure.update_layout(barmode="group", bargap=0.35, dragmode=False)
     places = list(range(len(names)))
-    last = max(len(names), 3)  # room for the words about noise, and for the next bar
     figure.update_xaxes(
-        tickvals=places, ticktext=names, range=[-0.6, last - 0.4], showgrid=False, zeroline=False
+        tickvals=places, ticktext=names, range=[-0.6, last], showgrid=False, zeroline=False
     )
     measured = [error for *_, errors in sides for error in errors if error == error]
     top = 1e3 * max(measured, default=1e-3)
-    figure.update_yaxes(title="position error [mm]", range=[0.0, 1.18 * top])
+    figure.update_yaxes(title="position error [mm]", range=[0.0, 1.08 * top])
     return figure

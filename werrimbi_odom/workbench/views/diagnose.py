@@ -70,8 +70,8 @@ def _ask(tab: Tab) -> None:
         button(tab, "Diagnose", tab.diagnose, key="diagnose", classes="primary")
     with box("div", "columns"):
         with box("div", "left"):
-            text("h3", "The effects that are tried")
-            with box("ul", "library"):
+            text("h3", "The effects that are tried; press one to read about it")
+            with box("ul", "library" if tab.why is not None else "library two"):
                 for effect in tab.shared.collection.effects:
                     with box("li"):
                         button(
@@ -82,8 +82,8 @@ def _ask(tab: Tab) -> None:
                             aria_expanded="true" if tab.why == effect.name else "false",
                         )
                         text("span", effect.summary)
-        with box("div", "right"):
-            if tab.why is not None:
+        if tab.why is not None:
+            with box("div", "right"):
                 why(tab, tab.why)
 
 
