@@ -7,6 +7,7 @@ The drives hide an eccentric wheel; the whole of it takes some minutes.
 
 from __future__ import annotations
 
+import os
 import sys
 import tempfile
 from pathlib import Path
@@ -27,7 +28,8 @@ def main() -> None:
     if browser is None:
         sys.exit("no Chrome or Chromium found; e.g. apt install chromium")
     with tempfile.TemporaryDirectory() as folder:
-        data, pages = Path(folder) / "drives", Path(folder)
+        os.chdir(folder)  # so that the pages show short names
+        data, pages = Path("drives"), Path()
         hide = "eccentric_left_wheel=0.0015"
         run("simulate", "--out", data, "--hide", hide, "--seed", "7")
         drives = sorted((data / "train").iterdir())
@@ -42,11 +44,13 @@ def main() -> None:
             picture = PICTURES / f"report_{name}.png"
             visit(pages / f"{name}.html", browser=browser, dark=dark, width=1100, picture=picture)
             print(picture)
+        os.chdir(ROOT)
 
 
 def run(*words: object) -> None:
     """A command of werrimbi; ends here when it fails."""
-    if code := werrimbi([str(word) for word in words]):
+    sys.argv = ["werrimbi", *map(str, words)]
+    if code := werrimbi(sys.argv[1:]):
         sys.exit(code)
 
 

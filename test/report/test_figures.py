@@ -14,6 +14,7 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.inference.adding import Added
 from werrimbi_odom.inference.compare import Comparison, compare
 from werrimbi_odom.inference.diagnosis import Diagnosis
+from werrimbi_odom.inference.evidence import Amount
 from werrimbi_odom.inference.manoeuvre_drives import MANOEUVRES, pace_of
 from werrimbi_odom.report.adding_figures import error_falling_figure, steps_of
 from werrimbi_odom.report.compare_figures import (
@@ -32,6 +33,7 @@ from werrimbi_odom.report.diagnosis_figures import (
     manoeuvre_figure,
     ranking_figure,
 )
+from werrimbi_odom.report.response import parts_of, response
 from werrimbi_odom.report.wheel_angle import once_a_turn, over_a_turn, wheel_errors
 
 RELATIVE = 1e3 * AMPLITUDE / PLAIN.wheel_radius
@@ -55,6 +57,20 @@ def test_an_eccentric_wheel_shows_its_sine_over_its_turn_and_then_a_flat_line(
     rest = 1e3 * found.before.value - before * wave
     assert np.std(rest) < 0.2 * RELATIVE
     assert len(before_after_figure(found).data) == 2
+
+
+def test_parts_in_which_nothing_was_driven_are_left_out(diagnosis: Diagnosis) -> None:
+    """A heading error in proportion to the turn: next to no turn says nothing of it."""
+    runs, fit = diagnosis.runs, diagnosis.final
+    _, drive = runs.raw_drive(diagnosis.robot)
+    rate = drive.yaw_rate.end
+    edges = parts_of(rate, rate, turns=False)
+    found = response(
+        runs, fit.point, diagnosis.kind, (), Amount("heading", "turn"), (rate, rate), edges
+    )
+    assert 2 < found.centre.size <= edges.size - 1
+    assert found.std.max() <= 10.0 * np.median(found.std) * 1.5
+    assert np.abs(found.value / found.std).max() < 5.0
 
 
 def test_error_bars_of_a_flat_line_hold_zero_as_often_as_they_say(diagnosis: Diagnosis) -> None:

@@ -20,7 +20,7 @@ from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, RISING, e
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
-FAINTEST = 60.0
+FAINTEST = 150.0
 """Fall of chi-squared that is given full colour at the least: noise alone stays pale."""
 
 _WORDS = {

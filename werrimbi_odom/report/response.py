@@ -26,6 +26,7 @@ from werrimbi_odom.inference.together import Together
 from werrimbi_odom.model.pose import Floats
 
 PARTS = 12
+_UNTOLD = 10.0  # times the usual error bar: a part in which next to nothing was driven
 _SAME = 1e-9  # of the range: values nearer than this are one
 
 
@@ -101,7 +102,8 @@ def response(
     excess = max(float(np.mean(rest**2)), 1.0)  # errors larger than promised: wider bars
     spread = np.sqrt(np.maximum(np.diag(inverse), 0.0) * excess) / scale
     centre = np.array([_centre(values, edges, part) for part in range(edges.size - 1)])
-    return Response(centre[heard], solution, spread)
+    told = spread <= _UNTOLD * np.median(spread)
+    return Response(centre[heard][told], solution[told], spread[told])
 
 
 def _marks(values: Floats, edges: Floats) -> Floats:
