@@ -26,6 +26,7 @@ __all__ = [
     "mean_step",
     "share_inside",
     "standing",
+    "steady",
 ]
 
 

@@ -1,0 +1,92 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every form of a draft is an effect: it loads, keeps the laws, and says what it cannot know."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.effects.page import page_of
+from werrimbi_odom.effects.shapes import mean_curve, mean_square, mean_step
+from werrimbi_odom.inference.drafting import keeps_laws, loaded
+from werrimbi_odom.inference.drafting_laws import Seen, forms_of, spot_form
+from werrimbi_odom.inference.drafting_source import source_of
+from werrimbi_odom.inference.evidence import AMOUNTS, Amount
+from werrimbi_odom.model.drive import Span
+
+SPEED = Seen(
+    "speed",
+    "m/s",
+    lambda side: "steady(abs(drive.speed.end))",
+    high=0.7,
+    from_zero=True,
+    knots=(0.05, 0.2, 0.4, 0.6),
+)
+HEADING = Seen("heading", "rad", lambda side: "drive.heading", waves=True)
+ANGLE = Seen(
+    "left_wheel_angle_twice",
+    "rad",
+    lambda side: "drive.left_angle",
+    waves=True,
+    per_run=True,
+    harmonic=2,
+)
+TIME = Seen(
+    "time", "s", lambda side: "drive.time", high=15.0, from_zero=True, knots=(1.0, 5.0, 9.0)
+)
+
+
+SHIFTS = [
+    amount
+    for amount in AMOUNTS
+    if amount.channel == "sideways" or amount == Amount("along", "turn")
+]
+"""What a step, which is one arc, cannot hold unevenly: these go with steady variables alone."""
+
+
+@pytest.mark.parametrize(
+    ("seen", "amount"),
+    [
+        (seen, amount)
+        for seen in (SPEED, HEADING, TIME)
+        for amount in AMOUNTS
+        if seen is SPEED or amount not in SHIFTS
+    ],
+    ids=lambda item: item.name if isinstance(item, Seen) else f"{item.channel}-{item.per}",
+)
+def test_every_form_keeps_the_laws(seen: Seen, amount: Amount) -> None:
+    for form in forms_of(seen, amount, 0.01):
+        effect = loaded(source_of("drafted", amount, seen, form, 7, "p = 1e-9"))
+        assert keeps_laws(effect), form.kind
+        assert "cannot say" in " ".join(page_of(effect).physics)
+
+
+def test_a_wave_has_a_phase_of_each_drive() -> None:
+    (form,) = forms_of(ANGLE, Amount("left", "travel"), 0.01)
+    effect = loaded(source_of("drafted", Amount("left", "travel"), ANGLE, form, 7, "p = 1e-9"))
+    assert keeps_laws(effect)
+    assert effect.quadrature == ("amplitude", "phase")
+    assert effect.parameters["phase"].per_run
+
+
+def test_a_spot_of_the_floor_keeps_the_laws() -> None:
+    form = spot_form([(1.0, 0.5)], (0.4,), -0.1, 0.175)
+    seen = Seen("position", "m", lambda side: "")
+    effect = loaded(source_of("drafted", Amount("along", "travel"), seen, form, 7, "p = 1e-9"))
+    assert effect.pose
+    assert keeps_laws(effect)
+
+
+def test_means_over_a_step_are_integrals() -> None:
+    start, end = 0.3, 2.1
+    fine = np.linspace(start, end, 200_001)
+    middle = 0.5 * (fine[1:] + fine[:-1])
+    knots, heights = (0.5, 1.0, 2.0), (1.0, -2.0, 0.5)
+    span = Span(start, end)
+    for mean, values in (
+        (mean_square(span), middle**2),
+        (mean_curve(span, knots, heights), np.interp(middle, knots, heights)),
+        (mean_step(span, 1.2, 0.2), np.clip((middle - 1.1) / 0.2, 0.0, 1.0)),
+    ):
+        assert mean == pytest.approx(float(np.mean(values)), abs=1e-9)
