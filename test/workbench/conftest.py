@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 import time
@@ -33,7 +34,9 @@ class Served:
 
 @pytest.fixture(scope="session")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
-    pytest.importorskip("nicegui", reason="the workbench needs NiceGUI: pip install 'nicegui>=3.18'")
+    pytest.importorskip(
+        "nicegui", reason="the workbench needs NiceGUI: pip install 'nicegui>=3.18'"
+    )
     folder = tmp_path_factory.mktemp("day")
     robot, train, holdout = written(folder)
     told = tmp_path_factory.mktemp("told") / "address.json"
@@ -52,6 +55,10 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
                 raise AssertionError(process.communicate()[1])
             time.sleep(0.1)
         yield Served(json.loads(told.read_text())["address"], folder, process)
+        process.send_signal(signal.SIGINT)  # Ctrl-C
+        said, complaints = process.communicate(timeout=60)
+        assert complaints == "", "nothing went wrong unseen, and it ends in silence"
+        assert said.startswith("http://127.0.0.1:")
     finally:
         process.kill()
         process.communicate()

@@ -53,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     """
     if find_spec("nicegui") is None:
         raise InputError(
-            "the workbench needs NiceGUI, which is not installed: pip install 'nicegui>=3.0'"
+            "the workbench needs NiceGUI, which is not installed: pip install 'nicegui>=3.18'"
         )
     # It would keep a folder .nicegui where the command is run, and ask the network for a relay.
     os.environ["NICEGUI_STORAGE_PATH"] = str(Path(tempfile.gettempdir()) / ".werrimbi_none")

@@ -50,7 +50,7 @@ def serve(shared: Shared, at: socket.socket, ready: Callable[[str], None]) -> No
     """
     import uvicorn
     from fastapi import FastAPI
-    from nicegui import ui
+    from nicegui import app, ui
 
     from werrimbi_odom.workbench.guard import guarded
     from werrimbi_odom.workbench.page import page
@@ -61,12 +61,21 @@ def serve(shared: Shared, at: socket.socket, ready: Callable[[str], None]) -> No
     async def root() -> None:
         await page(shared)
 
+    def stop() -> None:
+        for job in tuple(shared.jobs):
+            job.cancel()
+
+    app.on_shutdown(stop)
     ui.run_with(
         site, root=root, title="werrimbi workbench", favicon=ICON, tailwind=False,
         show_welcome_message=False, language="en-US", reconnect_timeout=10.0,
     )  # fmt: skip
     config = uvicorn.Config(
-        guarded(site, port), log_level="warning", lifespan="on", server_header=False
+        guarded(site, port),
+        log_level="warning",
+        lifespan="on",
+        server_header=False,
+        timeout_graceful_shutdown=2,
     )
 
     class Server(uvicorn.Server):

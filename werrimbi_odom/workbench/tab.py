@@ -26,7 +26,7 @@ VIEWS = ("compare", "diagnose", "add", "save")
 
 @dataclass(frozen=True, eq=False)
 class Shared:
-    """What all tabs share; nobody changes it, but for the files that were written."""
+    """What all tabs share; nobody changes it, but for files written and work under way."""
 
     opened: Opened
     look: Look
@@ -36,6 +36,8 @@ class Shared:
     target: Target
     taken: set[Path] = field(default_factory=set)
     """Files that some tab wrote."""
+    jobs: set[Job] = field(default_factory=set)
+    """Work under way, to be stopped when the server ends."""
 
 
 @dataclass(eq=False)
@@ -112,6 +114,7 @@ class Tab:
         if self.job is not None:
             return None
         job = self.job = Job(task)
+        self.shared.jobs.add(job)
         self.tell("")
         try:
             self.changed("cancel")
@@ -122,6 +125,7 @@ class Tab:
             self.tell(str(error), trouble=True)
         finally:
             self.job = None
+            self.shared.jobs.discard(job)
         self.view = "diagnose" if self.view == "add" and not self.session.can_undo else self.view
         self.changed(f"title-{self.view}")
         return None
