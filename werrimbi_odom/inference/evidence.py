@@ -104,7 +104,7 @@ def dependences(
     rest = white - frame @ (frame.T @ white)
     found: list[tuple[Amount, Variable, Form, Floats, float, int]] = []
     path = path_of(point.model, runs)
-    pushes = {amount: _pushes(runs, path, amount, point) for amount in AMOUNTS}
+    pushes = {amount: pushes_of(runs, path, amount, point) for amount in AMOUNTS}
     for cells_of in _batches(runs, variables_of(runs, point.model), pushes):
         change = np.concatenate([block for *_, block in cells_of], axis=-1)
         marks = unexpected(runs, point, kind, change, prediction).whitened()[1]
@@ -194,13 +194,13 @@ def _blocks(
                 )
             ):
                 continue
-            block = _legs(runs, left, of_left)
+            block = legs_pushed(runs, left, of_left)
             if of_right is not None:
-                block = block + _legs(runs, right, of_right)
+                block = block + legs_pushed(runs, right, of_right)
             yield amount, form, block
 
 
-def _legs(runs: Together, functions: Floats, pushes: Floats) -> Floats:
+def legs_pushed(runs: Together, functions: Floats, pushes: Floats) -> Floats:
     """Sums over each leg's steps of functions (n, k) times pushes (n, 3), as (m, 3, k)."""
     steps = runs.inside
     starts = np.concatenate([[0], np.cumsum(runs.end - runs.begin)])
@@ -216,7 +216,7 @@ def _legs(runs: Together, functions: Floats, pushes: Floats) -> Floats:
     return found
 
 
-def _pushes(
+def pushes_of(
     runs: Together, path: DrivenPath, amount: Amount, point: Point
 ) -> tuple[Floats, Floats]:
     """What a unit error of a step does to its leg's relative pose: of left and right wheel, (n, 3).

@@ -18,7 +18,7 @@ import numpy as np
 
 from werrimbi_odom.inference.candidates import orthonormal
 from werrimbi_odom.inference.design import Point, stacked, unexpected
-from werrimbi_odom.inference.evidence import Amount, _legs, _pushes
+from werrimbi_odom.inference.evidence import Amount, legs_pushed, pushes_of
 from werrimbi_odom.inference.knobs import Knob
 from werrimbi_odom.inference.likelihood import ReferenceKind
 from werrimbi_odom.inference.prediction import path_of, predict_all
@@ -83,11 +83,11 @@ def response(
     prediction = predict_all(point.model, runs)
     white, basis = stacked(runs, point, kind, knobs, prediction).flat()
     path = path_of(point.model, runs)
-    of_left, of_right = _pushes(runs, path, amount, point)
+    of_left, of_right = pushes_of(runs, path, amount, point)
     left, right = (_marks(side, edges) for side in values)
-    change = _legs(runs, left, of_left)
+    change = legs_pushed(runs, left, of_left)
     if values[0] is not values[1] or amount.channel in ("left", "right", "along"):
-        change = change + _legs(runs, right, of_right)
+        change = change + legs_pushed(runs, right, of_right)
     marks = unexpected(runs, point, kind, change, prediction).whitened()[1]
     flat = marks[..., : change.shape[-1]].reshape(white.size, -1)
     heard = np.sum(flat**2, axis=0) > 1e-18
