@@ -1,0 +1,86 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi draft`: a law that the library lacks is written, tried, added; else one clear line."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from test.cli.written_runs import PLAIN, written
+from werrimbi_odom.cli.main import main
+from werrimbi_odom.effects import load_file
+from werrimbi_odom.effects.contract import check_effect
+from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.motion import WheelTravel
+
+
+@wheel_effect(
+    channels=("load_kg",),
+    softness=Parameter("", 0.0, 2e-3, (-0.1, 0.1), "relative loss of radius per kilogram"),
+)
+def soft_tyres(travel: Any, drive: Any, softness: float) -> Any:
+    """Tyres give way under a load.
+
+    Formula    travel *= 1 - softness * load      [m]
+    Signature  distances shrink with the load
+    Ruler      load it, and measure the axle's height
+    """
+    kept = 1.0 - softness * drive.channels["load_kg"].mean
+    return WheelTravel(travel.left * kept, travel.right * kept)
+
+
+@pytest.fixture(scope="module")
+def loaded(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    truth = replace(PLAIN, effects=(soft_tyres.using(softness=4e-3),))
+    random = np.random.default_rng(5)
+    loads = [{"load_kg": np.repeat(random.uniform(0, 10, 20), 100)[:1801]} for _ in range(4)]
+    return written(tmp_path_factory.mktemp("loaded"), [truth] * 4, loads)
+
+
+def runs(folder: Path) -> list[str]:
+    found = sorted(str(path) for path in folder.glob("run_*"))
+    return ["--robot", str(folder / "robot.yaml"), *found[:3], "--holdout", found[3]]
+
+
+def test_the_law_is_found_written_and_added(
+    loaded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out, figures = tmp_path / "package", tmp_path / "f.json"
+    assert main(["draft", *runs(loaded), "--out", str(out), "--json", str(figures)]) == 0
+    said, found = capsys.readouterr().out, json.loads(figures.read_text())
+    assert found["draft"]["variable"] == "load_kg"
+    assert found["draft"]["form"] == "line"
+    assert found["holdout"]["after"] < 0.5 * found["holdout"]["before"]
+    file = out / "along_by_load_kg.py"
+    assert f"--effects {file}" in said
+    (effect,) = load_file(file)
+    check_effect(effect)
+    assert "werrimbi_odom.effects" in (out / "pyproject.toml").read_text()
+
+    new = tmp_path / "new.yaml"
+    words = ["add", effect.name, *runs(loaded), "--effects", str(file), "--out", str(new)]
+    assert main(words) == 0
+    assert "along_by_load_kg" in new.read_text()
+
+
+def test_a_package_is_not_written_over(
+    loaded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "mine.txt").write_text("mine")
+    assert main(["draft", *runs(loaded), "--out", str(tmp_path)]) == 2
+    assert "is not empty" in capsys.readouterr().err
+
+
+def test_where_nothing_is_missing_nothing_is_drafted(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = written(tmp_path, [PLAIN] * 4)
+    assert main(["draft", *runs(folder), "--out", str(tmp_path / "package")]) == 2
+    assert "the verdict is" in capsys.readouterr().err
+    assert not (tmp_path / "package").exists()
