@@ -19,6 +19,7 @@ WORKBENCH = [*TOOLS, "nicegui>=3.18"]
 SIMULATION = ["mujoco>=3.2", "rich>=13.7", "rosbags>=0.11"]
 TEST = [
     "pytest>=8.0",
+    "pytest-xdist>=3.6",
     "filterpy>=1.4.5",
     "hypothesis>=6.100",
     "mpmath>=1.3",

@@ -71,7 +71,8 @@ def write_all(
             for name, value in changes.items()
             if hasattr(source.robot, name)
         }
-        page = calibration_page(title, words, see, figure, before_after, made_of(arguments), printed=printed)
+        made = made_of(arguments)
+        page = calibration_page(title, words, see, figure, before_after, made, printed=printed)
         written += save_report(page, arguments.report)
     print(f"\nwritten: {', '.join(str(path) for path in written)}")
 
