@@ -53,7 +53,11 @@ def test_it_keeps_the_laws(effect: Effect) -> None:
     check_effect(effect)
 
 
-@pytest.mark.parametrize("effects", [(pull,), (spot,), (spot, pull)], ids=str)
+@pytest.mark.parametrize(
+    "effects",
+    [(pull,), (spot,), (spot, pull)],
+    ids=lambda effects: "+".join(effect.name for effect in effects),
+)
 def test_it_acts_alike_live_and_recorded(effects: tuple[Effect, ...]) -> None:
     robot = replace(ROBOT, effects=tuple(effect.using(**_typical(effect)) for effect in effects))
     live, recorded = Odometer(robot), trajectory(robot, *drive(), start=Pose())
