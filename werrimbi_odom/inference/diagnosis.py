@@ -53,6 +53,9 @@ FAR_MORE = 1.3
 FAR_MORE_OF_ITS_OWN = 2.0
 """The same where the effect looks at that variable and acts there: its law may be a bit off."""
 
+SIMPLER = 3.0
+"""By how much an effect must cost less than the calibration that it would replace."""
+
 ROUNDS = 4
 """Effects that are looked for, one after the other."""
 
@@ -316,7 +319,8 @@ def _rivals(
     if first in CALIBRATED:
         others = {name for subset in final.alternatives for name in subset if first not in subset}
         named = [first, *(name for name in CALIBRATED if name in others)]
-        limit = final.total + RIVAL * final.scatter
+        # Calibration is what every robot needs; an effect is its rival where it needs less.
+        limit = final.total - SIMPLER * final.scatter
         named += [item.effect for item in instead if item.total < limit]
         return tuple(named) if len(named) > 1 else ()
     for this in rounds:
