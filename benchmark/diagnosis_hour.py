@@ -21,7 +21,7 @@ from pathlib import Path
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.inference.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.simulation import (
     TrueRobot,
     free,

@@ -15,8 +15,8 @@ import pytest
 from werrimbi_odom.cli import calibrate
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.inference.noise_likelihood import design
-from werrimbi_odom.inference.out_and_back import out_and_back
+from werrimbi_odom.inference.calibration.noise_likelihood import design
+from werrimbi_odom.inference.calibration.out_and_back import out_and_back
 
 TRACK, K_LEFT, K_RIGHT = 0.35, 4.0e-4, 5.8e-4
 ROBOT = """\

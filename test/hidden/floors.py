@@ -13,20 +13,20 @@ from dataclasses import replace
 from test.hidden.right_laws import RIGHT_LAWS
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.candidates import (
+from werrimbi_odom.inference.diagnosis.candidates import (
     CALIBRATED,
     candidates,
     knobs_of_candidate,
     put_in,
     scores,
 )
-from werrimbi_odom.inference.holdout import Judge, judge_of
-from werrimbi_odom.inference.knobs import CALIBRATION, Model
-from werrimbi_odom.inference.likelihood import ReferenceKind
-from werrimbi_odom.inference.matching import QUARTER_TURN, match
-from werrimbi_odom.inference.search import first_fit
-from werrimbi_odom.inference.selection import Fitted, fitted
-from werrimbi_odom.inference.together import Together, together
+from werrimbi_odom.inference.diagnosis.holdout import Judge, judge_of
+from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, match
+from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot

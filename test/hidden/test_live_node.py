@@ -24,7 +24,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, write_robot_file
 from werrimbi_odom.files.run import Reference, Run
-from werrimbi_odom.inference.adding import add_effect
+from werrimbi_odom.inference.adding.adding import add_effect
 
 Floats = NDArray[np.float64]
 STEP = 2.0

@@ -12,7 +12,7 @@ import pytest
 
 from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
-from werrimbi_odom.inference.adding import Added, add_effect
+from werrimbi_odom.inference.adding.adding import Added, add_effect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding_words import json_of, words_of
 

@@ -9,10 +9,10 @@ import pytest
 
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.effects.shapes import mean_curve, mean_square, mean_step
-from werrimbi_odom.inference.drafting import keeps_laws, loaded
-from werrimbi_odom.inference.drafting_laws import Seen, forms_of, spot_form
-from werrimbi_odom.inference.drafting_source import source_of
-from werrimbi_odom.inference.evidence import AMOUNTS, Amount
+from werrimbi_odom.inference.adding.draft_laws import Seen, forms_of, spot_form
+from werrimbi_odom.inference.adding.draft_source import source_of
+from werrimbi_odom.inference.adding.drafting import keeps_laws, loaded
+from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS, Amount
 from werrimbi_odom.model.drive import Span
 
 SPEED = Seen(

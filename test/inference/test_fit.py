@@ -11,14 +11,20 @@ import numpy as np
 import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
-from werrimbi_odom.inference.evidence import dependences
-from werrimbi_odom.inference.fit import Costs, ModelFit, fit_model, start_point
-from werrimbi_odom.inference.knobs import CALIBRATION
-from werrimbi_odom.inference.legs import LegErrors, LegStatistics, joined, leg_errors, statistics
-from werrimbi_odom.inference.likelihood import ReferenceKind
-from werrimbi_odom.inference.matching import match
-from werrimbi_odom.inference.noise import NOISES, noise_estimates
-from werrimbi_odom.inference.together import together
+from werrimbi_odom.inference.comparison.legs import (
+    LegErrors,
+    LegStatistics,
+    joined,
+    leg_errors,
+    statistics,
+)
+from werrimbi_odom.inference.diagnosis.evidence import dependences
+from werrimbi_odom.inference.fitting.fit import Costs, ModelFit, fit_model, start_point
+from werrimbi_odom.inference.fitting.knobs import CALIBRATION
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.fitting.matching import match
+from werrimbi_odom.inference.fitting.noise import NOISES, noise_estimates
+from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.model.robot import Robot
 
 NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0)

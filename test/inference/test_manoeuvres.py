@@ -14,15 +14,15 @@ import werrimbi_odom.simulation as simulation
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.candidates import Candidate
-from werrimbi_odom.inference.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.fit import start_point
-from werrimbi_odom.inference.manoeuvre_drives import MANOEUVRES, Ideal, Pace, ideal_run
-from werrimbi_odom.inference.manoeuvre_rivals import Drives, look_at, target_at, unlike
-from werrimbi_odom.inference.manoeuvres import next_manoeuvre
-from werrimbi_odom.inference.matching import match
-from werrimbi_odom.inference.prediction import legs_shown
-from werrimbi_odom.inference.together import together
+from werrimbi_odom.inference.diagnosis.candidates import Candidate
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.fitting.fit import start_point
+from werrimbi_odom.inference.fitting.matching import match
+from werrimbi_odom.inference.fitting.prediction import legs_shown
+from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, Pace, ideal_run
+from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
+from werrimbi_odom.inference.manoeuvres.rivals import Drives, look_at, target_at, unlike
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation.hidden.mount import ReferenceDelay, ReferenceMount

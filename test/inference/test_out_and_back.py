@@ -11,8 +11,8 @@ import pytest
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.noise_likelihood import Design, Likelihood, design
-from werrimbi_odom.inference.out_and_back import (
+from werrimbi_odom.inference.calibration.noise_likelihood import Design, Likelihood, design
+from werrimbi_odom.inference.calibration.out_and_back import (
     by_moments,
     fit_noise,
     out_and_back,

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.noise_likelihood import Design, design
-from werrimbi_odom.inference.out_and_back import NoiseFit, fit_noise, out_and_back
+from werrimbi_odom.inference.calibration.noise_likelihood import Design, design
+from werrimbi_odom.inference.calibration.out_and_back import NoiseFit, fit_noise, out_and_back
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.simulation import Pose, ReferenceSensor, TrueRobot, record

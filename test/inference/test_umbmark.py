@@ -12,9 +12,9 @@ import pytest
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.squares import Squares, e_max_of_scatter, e_max_syst
-from werrimbi_odom.inference.umbmark import corrected, recomputed, umbmark
-from werrimbi_odom.inference.umbmark_equations import first_order_angles, paper_factors
+from werrimbi_odom.inference.calibration.squares import Squares, e_max_of_scatter, e_max_syst
+from werrimbi_odom.inference.calibration.umbmark import corrected, recomputed, umbmark
+from werrimbi_odom.inference.calibration.umbmark_equations import first_order_angles, paper_factors
 from werrimbi_odom.model.robot import Robot
 
 Floats = NDArray[np.float64]

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.recorded_square import Record, recorded_square, squares_of
-from werrimbi_odom.inference.squares import Squares, e_max_of_scatter, e_max_syst
-from werrimbi_odom.inference.umbmark import corrected, umbmark
+from werrimbi_odom.inference.calibration.recorded_square import Record, recorded_square, squares_of
+from werrimbi_odom.inference.calibration.squares import Squares, e_max_of_scatter, e_max_syst
+from werrimbi_odom.inference.calibration.umbmark import corrected, umbmark
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation import Manoeuvre, TrueRobot, record, square
 

@@ -14,9 +14,9 @@ import pytest
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.recorded_square import Record, recorded_square, squares_of
-from werrimbi_odom.inference.squares import e_max_syst
-from werrimbi_odom.inference.umbmark import recomputed, umbmark
+from werrimbi_odom.inference.calibration.recorded_square import Record, recorded_square, squares_of
+from werrimbi_odom.inference.calibration.squares import e_max_syst
+from werrimbi_odom.inference.calibration.umbmark import recomputed, umbmark
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation import TrueRobot, figure_eight, record, square

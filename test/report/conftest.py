@@ -14,9 +14,9 @@ import pytest
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.adding import Added, add_effect
-from werrimbi_odom.inference.compare import Comparison, compare
-from werrimbi_odom.inference.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.adding.adding import Added, add_effect
+from werrimbi_odom.inference.comparison.compare import Comparison, compare
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.save import find_browser

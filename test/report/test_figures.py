@@ -11,11 +11,11 @@ import pytest
 from conftest import AMPLITUDE, PLAIN, eccentric_run
 
 from werrimbi_odom.effects.library import LIBRARY
-from werrimbi_odom.inference.adding import Added
-from werrimbi_odom.inference.compare import Comparison, compare
-from werrimbi_odom.inference.diagnosis import Diagnosis
-from werrimbi_odom.inference.evidence import Amount
-from werrimbi_odom.inference.manoeuvre_drives import MANOEUVRES, pace_of
+from werrimbi_odom.inference.adding.adding import Added
+from werrimbi_odom.inference.comparison.compare import Comparison, compare
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.evidence import Amount
+from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.report.adding_figures import error_falling_figure, steps_of
 from werrimbi_odom.report.compare_figures import (
     error_against_figure,

@@ -14,9 +14,9 @@ import numpy as np
 import pytest
 from browser import Visit
 
-from werrimbi_odom.inference.adding import Added
-from werrimbi_odom.inference.compare import Comparison
-from werrimbi_odom.inference.diagnosis import Diagnosis
+from werrimbi_odom.inference.adding.adding import Added
+from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.report.adding_page import write_adding_page
 from werrimbi_odom.report.calibration_page import calibration_page
 from werrimbi_odom.report.compare_page import write_compare_page

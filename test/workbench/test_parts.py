@@ -10,7 +10,7 @@ import pytest
 from test.workbench.session import written
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.inference.compare import Comparison, compare
+from werrimbi_odom.inference.comparison.compare import Comparison, compare
 from werrimbi_odom.workbench.floor import classes_of, floor_figure
 from werrimbi_odom.workbench.parts import (
     CellPart,

@@ -14,7 +14,7 @@ from werrimbi_odom.cli.recordings import Recordings, add_recording_arguments, re
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.inference.adding import Added
+    from werrimbi_odom.inference.adding.adding import Added
 
 HELP = "add a physical effect to the model: fit it, judge it on held-out drives, write it"
 
@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
         When something cannot be used or written, or the effect does not lower the held-out error.
     """
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.inference.adding import add_effect
+    from werrimbi_odom.inference.adding.adding import add_effect
     from werrimbi_odom.report.adding_words import words_of
 
     _refuse_out(arguments)
@@ -92,7 +92,7 @@ def _write(arguments: argparse.Namespace, given: Recordings, added: Added) -> li
     from werrimbi_odom.cli.calibration_files import plain
     from werrimbi_odom.files.replacing import replacing
     from werrimbi_odom.files.robot_file import write_robot_file
-    from werrimbi_odom.inference.knobs import MULTIPLIERS
+    from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
     from werrimbi_odom.report.adding_words import json_of
 
     changes = {name: float(getattr(added.robot, name)) for name in MULTIPLIERS}

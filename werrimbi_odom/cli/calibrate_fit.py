@@ -17,8 +17,8 @@ if TYPE_CHECKING:
 
     from werrimbi_odom.files.robot_file import RobotFile
     from werrimbi_odom.files.run import Run
-    from werrimbi_odom.inference.calibration import Calibration
-    from werrimbi_odom.inference.matching import MatchedRun
+    from werrimbi_odom.inference.calibration.any_driving import Calibration
+    from werrimbi_odom.inference.fitting.matching import MatchedRun
 
 PARTS_OF_A_LEG = 4  # the fit uses shorter legs than are judged: they tell noise from drift
 
@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Calibrate; 0 on success."""
-    from werrimbi_odom.inference.calibration import calibrate
+    from werrimbi_odom.inference.calibration.any_driving import calibrate
 
     given = read_recordings(arguments)
     source = given.source
@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) -> go.Figure:
-    from werrimbi_odom.inference.calibration import errors_of_legs
+    from werrimbi_odom.inference.calibration.any_driving import errors_of_legs
     from werrimbi_odom.report.fit_figure import leg_figure
 
     model = result.fit.point.model
@@ -107,7 +107,7 @@ def _verdict(result: Calibration) -> str:
 
 
 def _matched(runs: Sequence[Run], given: Recordings, parts: int) -> list[MatchedRun]:
-    from werrimbi_odom.inference.matching import QUARTER_TURN, match
+    from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, match
 
     robot, limits = given.source.robot, given.source.limits
     return [match(run, robot, given.leg / parts, limits, QUARTER_TURN / parts) for run in runs]
@@ -169,7 +169,7 @@ def _judged(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) 
     """Errors over legs of runs that took no part, before and after; prints them."""
     import numpy as np
 
-    from werrimbi_odom.inference.calibration import errors_of_legs
+    from werrimbi_odom.inference.calibration.any_driving import errors_of_legs
 
     headings: list[float | None] = [None] * len(runs)
     figures: dict[str, Any] = {}

@@ -13,7 +13,7 @@ from werrimbi_odom.cli.calibration_files import add_file_arguments, write_all
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.inference.out_and_back import NoiseEstimate, NoiseFit
+    from werrimbi_odom.inference.calibration.out_and_back import NoiseEstimate, NoiseFit
     from werrimbi_odom.model.pose import Floats
 
 COLUMNS = ("ex_m", "ey_m", "eyaw_rad")
@@ -55,8 +55,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Calibrate; 0 on success."""
     from werrimbi_odom.files.robot_file import read_robot_file
-    from werrimbi_odom.inference.noise_likelihood import design
-    from werrimbi_odom.inference.out_and_back import fit_noise, out_and_back
+    from werrimbi_odom.inference.calibration.noise_likelihood import design
+    from werrimbi_odom.inference.calibration.out_and_back import fit_noise, out_and_back
     from werrimbi_odom.report.calibration_figures import noise_figure
     from werrimbi_odom.report.noise_words import noise_in_words
 

@@ -15,8 +15,8 @@ from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
     from werrimbi_odom.files.robot_file import RobotFile
-    from werrimbi_odom.inference.squares import Squares
-    from werrimbi_odom.inference.umbmark import Umbmark
+    from werrimbi_odom.inference.calibration.squares import Squares
+    from werrimbi_odom.inference.calibration.umbmark import Umbmark
     from werrimbi_odom.model.robot import Robot
 
 
@@ -53,8 +53,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Calibrate; 0 on success."""
     from werrimbi_odom.files.robot_file import read_robot_file
-    from werrimbi_odom.inference.squares import e_max_syst
-    from werrimbi_odom.inference.umbmark import corrected, recomputed, umbmark
+    from werrimbi_odom.inference.calibration.squares import e_max_syst
+    from werrimbi_odom.inference.calibration.umbmark import corrected, recomputed, umbmark
     from werrimbi_odom.report.calibration_figures import OffsetCloud, umbmark_figure
     from werrimbi_odom.report.umbmark_words import found_in_words, gained_in_words
 
@@ -119,7 +119,7 @@ def _from_table(path: Path, side: float) -> Squares:
     import numpy as np
 
     from werrimbi_odom.files.results_table import read_results
-    from werrimbi_odom.inference.squares import Squares
+    from werrimbi_odom.inference.calibration.squares import Squares
 
     table = read_results(path, ("x_m", "y_m"), word="sense", choices=("cw", "ccw"))
     senses = np.array(table.words, dtype=str)
@@ -134,7 +134,11 @@ def _recorded(
 ) -> Squares:
     from werrimbi_odom.cli.progress import with_progress
     from werrimbi_odom.files.reading import read_run
-    from werrimbi_odom.inference.recorded_square import Record, recorded_square, squares_of
+    from werrimbi_odom.inference.calibration.recorded_square import (
+        Record,
+        recorded_square,
+        squares_of,
+    )
 
     found = []
     for path in with_progress(paths, "reading squares"):
@@ -170,7 +174,7 @@ def _json(
     later: Squares | None,
     again: Squares | None,
 ) -> dict[str, Any]:
-    from werrimbi_odom.inference.squares import e_max_of_scatter, e_max_syst
+    from werrimbi_odom.inference.calibration.squares import e_max_of_scatter, e_max_syst
 
     def centres(of: Squares) -> dict[str, list[float]]:
         return {"cw": of.cw.mean(axis=0).tolist(), "ccw": of.ccw.mean(axis=0).tolist()}

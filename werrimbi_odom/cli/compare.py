@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 
 if TYPE_CHECKING:
-    from werrimbi_odom.inference.compare import Comparison
+    from werrimbi_odom.inference.comparison.compare import Comparison
 
 HELP = "model against measurement: where it fails, and whether its covariance is honest"
 _LONG = 200  # letters of a command that is worth printing whole
@@ -37,7 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
         When robot file or runs cannot be used, or a file cannot be written.
     """
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.inference.compare import compare
+    from werrimbi_odom.inference.comparison.compare import compare
     from werrimbi_odom.report.compare_tables import tables_of
     from werrimbi_odom.report.compare_words import words_of
 

@@ -41,9 +41,9 @@ def run(arguments: argparse.Namespace) -> int:
         When robot file or runs cannot be used, or a file cannot be written.
     """
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.inference.diagnosis import diagnose
-    from werrimbi_odom.inference.manoeuvre_sight import sight_of
-    from werrimbi_odom.inference.manoeuvres import next_manoeuvre
+    from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+    from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
+    from werrimbi_odom.inference.manoeuvres.sight import sight_of
     from werrimbi_odom.report.diagnosis_json import json_of
     from werrimbi_odom.report.diagnosis_tables import tables_of
     from werrimbi_odom.report.diagnosis_words import Told, words_of

@@ -15,9 +15,9 @@ from werrimbi_odom.cli.recordings import Recordings, add_recording_arguments, re
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.inference.adding import Added
-    from werrimbi_odom.inference.diagnosis import Diagnosis
-    from werrimbi_odom.inference.drafting import Draft
+    from werrimbi_odom.inference.adding.adding import Added
+    from werrimbi_odom.inference.adding.drafting import Draft
+    from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 
 HELP = "where no known effect explains the errors: write one from what they depend on"
 
@@ -48,10 +48,10 @@ def run(arguments: argparse.Namespace) -> int:
         When something cannot be used or written, or the verdict is not unknown.
     """
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.inference.adding import add_effect
-    from werrimbi_odom.inference.diagnosis import diagnose
-    from werrimbi_odom.inference.drafting import draft_effect
-    from werrimbi_odom.inference.drafting_package import package_of
+    from werrimbi_odom.inference.adding.adding import add_effect
+    from werrimbi_odom.inference.adding.draft_package import package_of
+    from werrimbi_odom.inference.adding.drafting import draft_effect
+    from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 
     _refuse_out(arguments)
     given = read_recordings(arguments)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
     from werrimbi_odom.files.robot_file import RobotFile
     from werrimbi_odom.files.run import Run
-    from werrimbi_odom.inference.likelihood import ReferenceKind
+    from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 
 _NAMED = 8  # runs of a folder that are named before "..."
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from werrimbi_odom.inference.adding import Added
-from werrimbi_odom.inference.candidates import CALIBRATED
+from werrimbi_odom.inference.adding.adding import Added
+from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.report.decimate import MOST, small, spread_and_extremes
 from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, escaped, paled, plain
 

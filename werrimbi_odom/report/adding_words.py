@@ -8,10 +8,10 @@ import math
 import textwrap
 from typing import Any
 
-from werrimbi_odom.inference.adding import Added, Side
-from werrimbi_odom.inference.adding_values import FittedParameter
-from werrimbi_odom.inference.candidates import CALIBRATED
-from werrimbi_odom.inference.knobs import MULTIPLIERS
+from werrimbi_odom.inference.adding.adding import Added, Side
+from werrimbi_odom.inference.adding.values import FittedParameter
+from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.report.compare_tables import table
 
 WIDTH = 80

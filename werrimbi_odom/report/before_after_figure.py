@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from werrimbi_odom.inference.candidates import CALIBRATED
-from werrimbi_odom.inference.design import Point
-from werrimbi_odom.inference.diagnosis import Diagnosis
-from werrimbi_odom.inference.evidence import Dependence
-from werrimbi_odom.inference.knobs import CALIBRATION, Knob, Model
-from werrimbi_odom.inference.ownership import grasp_of
-from werrimbi_odom.inference.variables import CONSTANT
+from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.ownership import grasp_of
+from werrimbi_odom.inference.diagnosis.variables import CONSTANT
+from werrimbi_odom.inference.fitting.design import Point
+from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, Model
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.evidence_figures import amount_words, variable_words
 from werrimbi_odom.report.response import Response, parts_of, response, unit_of

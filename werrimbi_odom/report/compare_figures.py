@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.compare import KINDS, Comparison
+from werrimbi_odom.inference.comparison.compare import KINDS, Comparison
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.compare_path_figure import path_figure
 from werrimbi_odom.report.decimate import MOST, small, spread_and_extremes

@@ -9,11 +9,17 @@ from typing import Any
 
 import numpy as np
 
-from werrimbi_odom.inference.compare import KINDS, Comparison, LegFigures, OfLength, RunFigures
-from werrimbi_odom.inference.compare_legs import Legs
-from werrimbi_odom.inference.compare_verdict import verdict_of
-from werrimbi_odom.inference.leg_groups import ByVariable, Cell
-from werrimbi_odom.inference.leg_systematic import Systematic
+from werrimbi_odom.inference.comparison.compare import (
+    KINDS,
+    Comparison,
+    LegFigures,
+    OfLength,
+    RunFigures,
+)
+from werrimbi_odom.inference.comparison.groups import ByVariable, Cell
+from werrimbi_odom.inference.comparison.judged_legs import Legs
+from werrimbi_odom.inference.comparison.systematic import Systematic
+from werrimbi_odom.inference.comparison.verdict import verdict_of
 
 
 def json_of(comparison: Comparison) -> dict[str, Any]:

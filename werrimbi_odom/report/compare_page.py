@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.inference.compare import Comparison
+from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.report.compare_figures import (
     error_against_figure,
     legs_by_motion_figure,

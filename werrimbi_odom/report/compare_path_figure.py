@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.compare import Comparison
+from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, Pose

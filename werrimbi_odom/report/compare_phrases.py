@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 
-from werrimbi_odom.inference.leg_systematic import Systematic
+from werrimbi_odom.inference.comparison.systematic import Systematic
 
 
 def systematic_told(part: Systematic) -> str:

@@ -8,9 +8,9 @@ import math
 import textwrap
 from collections.abc import Sequence
 
-from werrimbi_odom.inference.compare import KINDS, Comparison, LegFigures, OfLength
-from werrimbi_odom.inference.compare_verdict import verdict_of
-from werrimbi_odom.inference.leg_groups import DEPENDS_P, ByVariable
+from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
+from werrimbi_odom.inference.comparison.groups import DEPENDS_P, ByVariable
+from werrimbi_odom.inference.comparison.verdict import verdict_of
 
 WIDTH = 80
 _MOST = 3  # variables with a table of their own

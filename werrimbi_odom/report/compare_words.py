@@ -7,8 +7,8 @@ from __future__ import annotations
 import math
 import textwrap
 
-from werrimbi_odom.inference.compare import KINDS, Comparison, LegFigures
-from werrimbi_odom.inference.compare_verdict import FEWEST, Depends, Verdict, verdict_of
+from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
+from werrimbi_odom.inference.comparison.verdict import FEWEST, Depends, Verdict, verdict_of
 from werrimbi_odom.report.compare_phrases import systematic_told
 
 WIDTH = 80

@@ -8,8 +8,8 @@ import math
 
 import numpy as np
 
-from werrimbi_odom.inference.evidence import Dependence
-from werrimbi_odom.inference.variables import CONSTANT, functions_of
+from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
 from werrimbi_odom.model.pose import Floats
 
 _VARIABLES = {

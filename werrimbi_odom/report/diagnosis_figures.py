@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis import Diagnosis, Ranked
-from werrimbi_odom.inference.holdout import Sides
-from werrimbi_odom.inference.knobs import Model
-from werrimbi_odom.inference.prediction import legs_shown, right_handed
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
+from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.prediction import legs_shown, right_handed
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot

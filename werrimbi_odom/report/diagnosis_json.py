@@ -10,11 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis import SURE, Diagnosis
-from werrimbi_odom.inference.evidence import Dependence
-from werrimbi_odom.inference.holdout import Sides
-from werrimbi_odom.inference.manoeuvre_sight import Sight
-from werrimbi_odom.inference.manoeuvres import Manoeuvre, strongest
+from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis
+from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, strongest
+from werrimbi_odom.inference.manoeuvres.sight import Sight
 from werrimbi_odom.report.diagnosis_dependence import dependence_words
 from werrimbi_odom.report.diagnosis_values import values_of
 

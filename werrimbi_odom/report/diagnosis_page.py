@@ -11,10 +11,10 @@ from pathlib import Path
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.diagnosis import Diagnosis
-from werrimbi_odom.inference.evidence import Dependence
-from werrimbi_odom.inference.manoeuvre_drives import pace_of
-from werrimbi_odom.inference.manoeuvres import Manoeuvre
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.manoeuvres.drives import pace_of
+from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
 from werrimbi_odom.report.diagnosis_figures import (
     before_after,
     before_after_figure,

@@ -9,11 +9,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.effects.page import page_of
-from werrimbi_odom.inference.diagnosis import Diagnosis
-from werrimbi_odom.inference.holdout import Sides
-from werrimbi_odom.inference.manoeuvre_sight import Sight
-from werrimbi_odom.inference.manoeuvres import Manoeuvre
-from werrimbi_odom.inference.set_up import SetUpFinding
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
+from werrimbi_odom.inference.manoeuvres.sight import Sight
+from werrimbi_odom.inference.set_up.mistakes import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis_numbers import chance_words, length, with_std
 from werrimbi_odom.report.diagnosis_values import Value, effect_named, ranked_of, values_of

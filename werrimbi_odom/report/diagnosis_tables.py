@@ -6,10 +6,10 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from werrimbi_odom.inference.diagnosis import SURE, Diagnosis
-from werrimbi_odom.inference.evidence import CHANNELS, Dependence
-from werrimbi_odom.inference.holdout import Sides
-from werrimbi_odom.inference.manoeuvre_sight import Sight
+from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis
+from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
+from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.manoeuvres.sight import Sight
 from werrimbi_odom.report.compare_tables import table
 from werrimbi_odom.report.diagnosis_numbers import length, p_words, with_std
 from werrimbi_odom.report.diagnosis_values import values_of

@@ -8,8 +8,8 @@ import math
 import textwrap
 from dataclasses import dataclass
 
-from werrimbi_odom.inference.diagnosis import SURE, VERY_SURE, Diagnosis, chance
-from werrimbi_odom.inference.set_up import IN_DEGREES
+from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, chance
+from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES
 from werrimbi_odom.report.diagnosis_dependence import dependence_words
 from werrimbi_odom.report.diagnosis_json import significant
 from werrimbi_odom.report.diagnosis_numbers import chance_words, length, listed

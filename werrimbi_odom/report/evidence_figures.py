@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis import VERY_SURE
-from werrimbi_odom.inference.evidence import CHANNELS, Amount, Dependence
-from werrimbi_odom.inference.variables import CONSTANT, functions_of
+from werrimbi_odom.inference.diagnosis.diagnosis import VERY_SURE
+from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Amount, Dependence
+from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.decimate import small
 from werrimbi_odom.report.response import unit_of

@@ -8,7 +8,7 @@ import textwrap
 
 import numpy as np
 
-from werrimbi_odom.inference.out_and_back import (
+from werrimbi_odom.inference.calibration.out_and_back import (
     ADVISED_RUNS,
     MISFIT_P,
     NoiseEstimate,

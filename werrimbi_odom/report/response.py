@@ -16,13 +16,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.candidates import orthonormal
-from werrimbi_odom.inference.design import Point, stacked, unexpected
-from werrimbi_odom.inference.evidence import Amount, legs_pushed, pushes_of
-from werrimbi_odom.inference.knobs import Knob
-from werrimbi_odom.inference.likelihood import ReferenceKind
-from werrimbi_odom.inference.prediction import path_of, predict_all
-from werrimbi_odom.inference.together import Together
+from werrimbi_odom.inference.diagnosis.candidates import orthonormal
+from werrimbi_odom.inference.diagnosis.evidence import Amount, legs_pushed, pushes_of
+from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
+from werrimbi_odom.inference.fitting.knobs import Knob
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
+from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.pose import Floats
 
 PARTS = 12

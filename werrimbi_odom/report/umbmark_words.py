@@ -7,14 +7,14 @@ from __future__ import annotations
 import math
 import textwrap
 
-from werrimbi_odom.inference.squares import (
+from werrimbi_odom.inference.calibration.squares import (
     ADVISED_RUNS,
     OTHER_VEHICLES,
     Squares,
     e_max_of_scatter,
     e_max_syst,
 )
-from werrimbi_odom.inference.umbmark import NORMAL_95, Estimate, Umbmark
+from werrimbi_odom.inference.calibration.umbmark import NORMAL_95, Estimate, Umbmark
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from werrimbi_odom.inference.compare import Comparison
+from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.decimate import small
 from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, escaped, paled, plain

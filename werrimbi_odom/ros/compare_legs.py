@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.legs import squared_deviation
+from werrimbi_odom.inference.comparison.legs import squared_deviation
 from werrimbi_odom.model.covariance import PoseCovariance, carried
 from werrimbi_odom.model.pose import Floats, between, wrap
 from werrimbi_odom.ros.compare_track import Reading

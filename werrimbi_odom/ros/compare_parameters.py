@@ -15,7 +15,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import parameters as robot_file
 from werrimbi_odom.files.effect_parameters import EFFECTS
 from werrimbi_odom.files.parameters import Parameter, Value
-from werrimbi_odom.inference.leg_reference import USUAL_SIGMA_XY, USUAL_SIGMA_YAW
+from werrimbi_odom.inference.comparison.reference_noise import USUAL_SIGMA_XY, USUAL_SIGMA_YAW
 from werrimbi_odom.ros.compare_inputs import REFERENCE_TYPES
 
 PARAMETERS: tuple[Parameter, ...] = (

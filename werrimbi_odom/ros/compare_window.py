@@ -8,7 +8,7 @@ import math
 from collections import deque
 from statistics import NormalDist
 
-from werrimbi_odom.inference.legs import CHI2_95
+from werrimbi_odom.inference.comparison.legs import CHI2_95
 
 FREEDOM = 3
 """Degrees of freedom of a leg: x, y, yaw."""

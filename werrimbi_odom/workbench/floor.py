@@ -13,8 +13,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.compare import Comparison
-from werrimbi_odom.inference.legs import CHI2_95
+from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.comparison.legs import CHI2_95
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.style import BLUE, GREY, ORANGE, plain
 

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.compare import Comparison, judged
-from werrimbi_odom.inference.compare_legs import Prepared
-from werrimbi_odom.inference.holdout import PARTS, Judge, at_home, judge_of
-from werrimbi_odom.inference.knobs import NUISANCES, Model
-from werrimbi_odom.inference.likelihood import ReferenceKind
-from werrimbi_odom.inference.matching import QUARTER_TURN, match
-from werrimbi_odom.inference.together import Together, together
+from werrimbi_odom.inference.comparison.compare import Comparison, judged
+from werrimbi_odom.inference.comparison.judged_legs import Prepared
+from werrimbi_odom.inference.diagnosis.holdout import PARTS, Judge, at_home, judge_of
+from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, match
+from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.compare import KINDS, Comparison
-from werrimbi_odom.inference.legs import LegStatistics, statistics
+from werrimbi_odom.inference.comparison.compare import KINDS, Comparison
+from werrimbi_odom.inference.comparison.legs import LegStatistics, statistics
 from werrimbi_odom.model.pose import Floats
 
 Which = NDArray[np.bool_]

@@ -14,7 +14,7 @@ from werrimbi_odom.files.parameters import PARAMETERS
 from werrimbi_odom.files.robot_file import PARAMETER_KEY, RobotFile, write_robot_file
 from werrimbi_odom.files.yaml_edit import edited
 from werrimbi_odom.files.yaml_effects import with_effects
-from werrimbi_odom.inference.knobs import MULTIPLIERS
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.workbench.steps import Session
 

@@ -11,10 +11,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from werrimbi_odom.inference.adding import Added
-from werrimbi_odom.inference.diagnosis import Diagnosis
-from werrimbi_odom.inference.manoeuvre_sight import Sight
-from werrimbi_odom.inference.manoeuvres import Manoeuvre
+from werrimbi_odom.inference.adding.adding import Added
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
+from werrimbi_odom.inference.manoeuvres.sight import Sight
 from werrimbi_odom.workbench.opened import Look
 
 GONE = -1

@@ -13,7 +13,7 @@ from typing import Any
 from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.inference.compare import Comparison
+from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.workbench.job import CancelledError, Job
 from werrimbi_odom.workbench.opened import Look, Opened
 from werrimbi_odom.workbench.parts import Part

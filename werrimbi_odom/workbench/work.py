@@ -15,12 +15,12 @@ from typing import Any
 from werrimbi_odom.effects.collection import Collection, all_effects
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.adding import add_effect
-from werrimbi_odom.inference.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.holdout import set_aside
-from werrimbi_odom.inference.manoeuvre_drives import pace_of
-from werrimbi_odom.inference.manoeuvre_sight import sight_of
-from werrimbi_odom.inference.manoeuvres import Manoeuvre, next_manoeuvre
+from werrimbi_odom.inference.adding.adding import add_effect
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.diagnosis.holdout import set_aside
+from werrimbi_odom.inference.manoeuvres.drives import pace_of
+from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, next_manoeuvre
+from werrimbi_odom.inference.manoeuvres.sight import sight_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis_figures import (
     before_after,

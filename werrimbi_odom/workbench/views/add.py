@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from nicegui import ui
 
-from werrimbi_odom.inference.adding import Added
+from werrimbi_odom.inference.adding.adding import Added
 from werrimbi_odom.report.adding_words import remark_told, value_told, words_of
 from werrimbi_odom.report.page_text import unwrapped
 from werrimbi_odom.workbench.gain import gain_figure

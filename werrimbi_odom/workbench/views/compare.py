@@ -8,9 +8,9 @@ from functools import partial
 
 import numpy as np
 
-from werrimbi_odom.inference.compare import Comparison
-from werrimbi_odom.inference.compare_verdict import verdict_of
-from werrimbi_odom.inference.legs import LegStatistics
+from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.comparison.legs import LegStatistics
+from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.report.compare_words import words_of
 from werrimbi_odom.report.page_text import unwrapped
 from werrimbi_odom.workbench.html import box, button, paragraphs, rows, text

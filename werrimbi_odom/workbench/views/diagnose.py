@@ -8,8 +8,8 @@ from functools import partial
 
 from nicegui import ui
 
-from werrimbi_odom.inference.diagnosis import Diagnosis, Ranked
-from werrimbi_odom.inference.evidence import CHANNELS, Dependence
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
+from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
 from werrimbi_odom.report.diagnosis_dependence import dependence_words
 from werrimbi_odom.report.diagnosis_numbers import chance_words
 from werrimbi_odom.report.diagnosis_words import NextSteps, Told, words_of

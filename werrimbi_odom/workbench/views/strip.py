@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from nicegui import ui
 
-from werrimbi_odom.inference.compare_verdict import verdict_of
+from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.workbench.html import box, button, text
 from werrimbi_odom.workbench.tab import VIEWS, Tab, millimetres, percent
 

@@ -1,0 +1,419 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""One more effect in the model: fitted with all calibration, judged on drives held out.
+
+An effect is taken when it lowers the held-out error beyond what calibration alone does, surely
+differs from null, and does not run against what physics allows. Else the reason is told, and only
+the user's own will puts it in.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.adding.start import (
+    Drives,
+    Start,
+    drives_of,
+    is_of_set_up,
+    knobs_held,
+    mistake_put_in,
+    start_of_held,
+    starts,
+    with_set_up,
+)
+from werrimbi_odom.inference.adding.values import (
+    FittedParameter,
+    parameters_of,
+    to_write,
+    weakest,
+    without_phases_stuck,
+)
+from werrimbi_odom.inference.calibration.any_driving import MISFIT_P, STRANGE_NOISE
+from werrimbi_odom.inference.comparison.judged_legs import Legs, Prepared, judged_legs
+from werrimbi_odom.inference.comparison.legs import LegStatistics, statistics
+from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
+from werrimbi_odom.inference.diagnosis.diagnosis import chance
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
+from werrimbi_odom.inference.diagnosis.holdout import Judge, Sides, at_home, judge_of
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.fit import Costs
+from werrimbi_odom.inference.fitting.knobs import (
+    CALIBRATION,
+    MULTIPLIERS,
+    NUISANCES,
+    Model,
+    changed,
+)
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
+from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.set_up.mistakes import SetUp, look_for_mistakes
+from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.robot import Robot
+
+BY_CHANCE = 0.01
+"""In as many cases an effect that does nothing would pass, but for the held-out drives."""
+
+ROUNDING = 1e-4
+"""Share by which the held-out error must fall to have fallen."""
+
+
+@dataclass(frozen=True)
+class Side:
+    """One set of drives, judged with three models."""
+
+    before: Legs
+    """With the robot as given."""
+    calibrated: Legs
+    """With everything fitted but the effect."""
+    after: Legs
+
+    def figures(self, which: str) -> LegStatistics:
+        """Over legs on which the reference did not jump."""
+        legs: Legs = getattr(self, which)
+        return statistics(legs.errors.chosen(~legs.outlier))
+
+    @property
+    def sides(self) -> Sides:
+        """Position error before and after [m]."""
+        before, after = self.figures("before"), self.figures("after")
+        return Sides(before.rmse_position_m, after.rmse_position_m)
+
+    @property
+    def floor(self) -> float:
+        """Position error that the noise of the final model promises [m]."""
+        errors = self.after.errors.chosen(~self.after.outlier)
+        measured = np.isfinite(errors.error[:, 0])
+        promised = errors.covariance[measured, 0, 0] + errors.covariance[measured, 1, 1]
+        return float(np.sqrt(np.mean(promised))) if promised.size else float("nan")
+
+
+@dataclass(frozen=True)
+class Added:
+    """A model with one more effect, and what speaks for it."""
+
+    effect: Effect
+    parameters: dict[str, FittedParameter]
+    also: tuple[str, ...]
+    """Set-up mistakes that were put right with it."""
+    given: Robot
+    robot: Robot
+    """To be written."""
+    multiplier_stds: dict[str, float]
+    train: Side
+    holdout: Side
+    set_aside: tuple[str, ...]
+    """Names of the runs that were put aside for judging; empty where some were given for it."""
+    written_from_all: bool
+    """Whether the written values were fitted on all runs, those put aside too."""
+    noises: dict[str, NoiseEstimate]
+    noise_written: bool
+    remaining: tuple[Dependence, ...]
+    """What the errors still depend on beyond chance."""
+    set_up: SetUp
+    per_run: tuple[str, ...]
+    """Parameters that each run has anew; the file leaves them out."""
+    p_value: float
+    """Of as much of a better fit by chance, against calibration alone."""
+    objection: str | None
+    """Why it should not be added; None: nothing speaks against it."""
+
+
+def add_effect(
+    effect: Effect,
+    runs: Sequence[Run],
+    robot: Robot,
+    kind: ReferenceKind = "absolute",
+    *,
+    holdout: Sequence[Run] = (),
+    leg: float = 1.0,
+    limits: EncoderLimits | None = None,
+    sigma_xy: float | None = None,
+    sigma_yaw: float | None = None,
+    show: Callable[[float, str], None] = lambda share, words: None,
+) -> Added:
+    """Fit an effect together with all calibration, and judge it.
+
+    Parameters
+    ----------
+    holdout
+        Runs to judge on alone. None given: some of `runs` are put aside for it.
+    leg : float
+        Length of the legs that are judged [m].
+    show
+        Told the share done, and what is being done.
+
+    Raises
+    ------
+    InputError
+        When a run cannot be used, a channel that the effect looks at was not measured, or the
+        drives do not show at all what it looks at.
+    """
+    _refuse_unmeasured(effect, [*runs, *holdout])
+    held = any(item.name == effect.name for item in robot.effects)
+    if held and effect.is_mistake:
+        raise InputError(
+            f"the robot file lists {effect.name} already; a mistake put right twice is made again"
+        )
+    show(0.0, "set-up")
+    set_up = look_for_mistakes([*runs, *holdout], robot, kind, limits)
+    judge = judge_of(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+    begun, also = with_set_up(effect, robot, set_up)
+    sigma = (sigma_xy or _stated(judge, "xy_told"), sigma_yaw or _stated(judge, "yaw_told"))
+    show(0.15, "calibration")
+    drives = drives_of(judge.train, begun, kind, limits, sigma)
+    base, fit = _fits(effect, drives, begun, robot, also, show)
+    parameters = parameters_of(effect, fit, robot)
+    show(0.75, "judging")
+    train, kept = _judged(judge, drives, robot, base, fit)
+    noises, remaining, honest = _noise(drives, fit, sigma)
+    model = fit.point.model
+    per_run = tuple(sorted(set(model.own[0]) - set(NUISANCES))) if model.own else ()
+    p_value = 0.0 if effect.name in CALIBRATED or also else chance(fit, base, 1)
+    objection = _objection(effect, parameters, kept, held, set_up, also)
+    if objection is None and p_value > BY_CHANCE and not held:
+        objection = (
+            f"the drives do not show {effect.name}: chance alone would make the fit as much better "
+            f"in {100.0 * p_value:.2g} % of cases"
+        )
+    written = fit
+    if not holdout:
+        show(0.9, "all runs")
+        written = _on_all(judge, drives, fit, robot, runs, limits)
+    final = to_write(written.point.model, robot)
+    final = with_noise(final, noises) if honest else _with_noise_of(final, robot)
+    names = [knob.name for knob, _ in written.design.columns]
+    return Added(
+        effect,
+        parameters_of(effect, written, robot) if written is not fit else parameters,
+        tuple(name for name in also if name != effect.name),
+        robot,
+        final,
+        {
+            name: float(np.sqrt(written.covariance[names.index(name), names.index(name)]))
+            for name in MULTIPLIERS
+        },
+        train,
+        kept,
+        () if holdout else tuple(run.name for run in judge.kept_back),
+        written is not fit,
+        noises,
+        honest,
+        remaining,
+        set_up,
+        per_run,
+        p_value,
+        objection,
+    )
+
+
+def _refuse_unmeasured(effect: Effect, runs: Sequence[Run]) -> None:
+    for run in runs:
+        for channel in effect.channels:
+            if channel not in run.ticks.channels:
+                raise InputError(
+                    f"{effect.name} looks at the measured channel {channel}, a column of "
+                    f"ticks.csv, and {run.name} has none"
+                )
+
+
+def _stated(judge: Judge, told: str) -> float | None:
+    """The reference's noise where all records state it."""
+    name = {"xy_told": "sigma_xy", "yaw_told": "sigma_yaw"}[told]
+    noises = [noise for _, noise in judge.train.noises]
+    if any(getattr(noise, told) not in ("stated", "given") for noise in noises):
+        return None
+    return max(float(getattr(noise, name)) for noise in noises)
+
+
+def _fits(
+    effect: Effect,
+    drives: Drives,
+    begun: Robot,
+    given: Robot,
+    also: tuple[str, ...],
+    show: Callable[[float, str], None],
+) -> tuple[Fitted, Fitted]:
+    """The model with everything fitted but the effect, and the best one with it."""
+    if effect.name in CALIBRATED:
+        start = start_of_held(drives, begun, also)
+        fit = drives.fit(start.point, also, start.knobs, given)
+        return fit, fit
+    others = tuple(item for item in begun.effects if item.name not in (effect.name, *also))
+    bare = replace(begun if not also else given, effects=others)
+    start = start_of_held(drives, bare, ())
+    base = drives.fit(start.point, (), start.knobs, given)
+    show(0.35, effect.name)
+    if also:
+        start = start_of_held(drives, begun, also)
+        options: tuple[Start, ...] = (replace(start, knobs=knobs_held(begun, start.knobs, effect)),)
+    elif effect.is_mistake:
+        options = (start_of_held(drives, mistake_put_in(bare, effect), (effect.name,)),)
+    else:
+        options = starts(drives, base, effect, start.knobs)
+    if not options:
+        raise InputError(
+            f"these drives do not show {effect.name} at all: what it looks at never happens in "
+            "them, or is the same to them as calibration"
+        )
+    fits = [_well(drives, option, given) for option in options]
+    best = min(fits, key=lambda fit: fit.total)
+    show(0.65, effect.name)
+    return base, _pruned(effect, drives, best, given)
+
+
+def _well(drives: Drives, start: Start, given: Robot) -> Fitted:
+    """A fit from a start, phases led past half a turn where they ran against it."""
+    fit = drives.fit(start.point, start.names, start.knobs, given)
+    turned = without_phases_stuck(fit.point.model, fit.knobs)
+    if turned is None:
+        return fit
+    again = drives.fit(replace(fit.point, model=turned), start.names, start.knobs, given)
+    return min(fit, again, key=lambda each: each.cost)
+
+
+def _pruned(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitted:
+    """The fit without parameters that the data do not show, one after the other."""
+    while (name := weakest(effect, parameters_of(effect, fit, given))) is not None:
+        key = f"{effect.name}.{name}"
+        model = fit.point.model
+        at_null = changed(model.robot, {key: effect.parameters[name].null})
+        knobs = tuple(knob for knob in fit.knobs if knob.name != key)
+        point = replace(fit.point, model=Model(at_null, model.own))
+        fit = drives.fit(point, fit.names, knobs, given)
+    return fit
+
+
+def _judged(
+    judge: Judge, drives: Drives, given: Robot, base: Fitted, fit: Fitted
+) -> tuple[Side, Side]:
+    """The legs of both sides; what each run has of its own is learnt in that run alone."""
+    plain = Model(given, judge.nothing_of_own)
+    train = Side(
+        _legs(judge.train, at_home(plain, drives.laid, judge.kind).model),
+        _legs(judge.train, base.point.model),
+        _legs(judge.train, _noisy(fit)),
+    )
+    kept = Side(
+        *(
+            _legs(judge.holdout, judge.at_home(model).model)
+            for model in (plain, base.point.model, _noisy(fit))
+        )
+    )
+    return train, kept
+
+
+def _noisy(fit: Fitted) -> Model:
+    """The fitted model with the wheels' noise that was fitted with it."""
+    model, variances = fit.point.model, fit.point.variances
+    robot = replace(
+        model.robot,
+        left_wheel_noise=float(np.sqrt(variances.left[0])),
+        right_wheel_noise=float(np.sqrt(variances.right[0])),
+    )
+    return Model(robot, model.own)
+
+
+def _legs(prepared: Prepared, model: Model) -> Legs:
+    own = tuple(
+        {name: value for name, value in mine.items() if name not in NUISANCES} for mine in model.own
+    )
+    return judged_legs(prepared, Model(model.robot, own), prepared.leg)
+
+
+def _noise(
+    drives: Drives, fit: Fitted, sigma: tuple[float | None, float | None]
+) -> tuple[dict[str, NoiseEstimate], tuple[Dependence, ...], bool]:
+    """Noise of the wheels, what the errors still depend on, and whether the noise is noise."""
+    held = (sigma[0] is not None, sigma[1] is not None)
+    costs = Costs(drives.laid, fit.point, drives.kind)
+    noises = noise_estimates(costs, fit.point.variances, held)
+    found = dependences(drives.laid, fit.point, drives.kind, (*CALIBRATION, *fit.knobs))
+    remaining = tuple(cell for cell in found if cell.p_value < MISFIT_P)
+    wheels = [noises[name] for name in ("left_wheel_noise", "right_wheel_noise")]
+    sane = all(not item.determined or item.value < STRANGE_NOISE for item in wheels)
+    return noises, remaining, not remaining and sane
+
+
+def _with_noise_of(robot: Robot, given: Robot) -> Robot:
+    return replace(
+        robot, left_wheel_noise=given.left_wheel_noise, right_wheel_noise=given.right_wheel_noise
+    )
+
+
+def _on_all(
+    judge: Judge,
+    drives: Drives,
+    fit: Fitted,
+    given: Robot,
+    runs: Sequence[Run],
+    limits: EncoderLimits | None,
+) -> Fitted:
+    """The same model fitted on all runs, those put aside among them."""
+    if len(runs) < 2:
+        return fit  # of a single run the last part was put aside; the rest is what there is
+    both = [
+        drives,
+        drives_of(judge.holdout, fit.point.model.robot, judge.kind, limits, drives.sigma),
+    ]
+    laid = tuple(run for part in both for run in part.laid.runs)
+    jumped = tuple(legs for part in both for legs in part.jumped)
+    every = replace(drives, laid=together(laid), jumped=jumped)
+    home = judge.at_home(fit.point.model)
+    own = (*fit.point.model.own, *home.model.own)
+    point = replace(fit.point, model=Model(fit.point.model.robot, own), excluded=jumped)
+    return every.fit(point, fit.names, fit.knobs, given)
+
+
+def _objection(
+    effect: Effect,
+    parameters: dict[str, FittedParameter],
+    kept: Side,
+    held: bool,
+    set_up: SetUp,
+    also: tuple[str, ...],
+) -> str | None:
+    """Why the effect should not be added, in a line."""
+    name = effect.name
+    before, after = kept.sides.before, kept.sides.after
+    figures = f"{1e3 * before:.3g} mm before, {1e3 * after:.3g} mm after"
+    hint = ""
+    if set_up.findings and not is_of_set_up(effect, set_up):
+        hint = f"; look at {set_up.findings[0].effect} first ({set_up.findings[0].words})"
+    for key, item in parameters.items():
+        if item.remark == "bound":
+            return (
+                f"{name} would need {key} = {item.value:g}{_in(item)}, the limit of what is "
+                f"physically possible; so it is not that effect{hint}"
+            )
+    if not np.isfinite(after):
+        return f"{name} cannot be judged: the held-out drives have no leg with measured positions"
+    if not after < before * (1.0 - ROUNDING):
+        return f"{name} does not lower the error of the held-out drives ({figures}){hint}"
+    if name in CALIBRATED or not parameters:
+        shown = [item for item in parameters.values() if item.std is not None]
+        if shown and not shown[0].significant:
+            value = f"{shown[0].value:.5g} ± {shown[0].std:.1g}"
+            return (
+                f"{name} is as the robot file says ({value}): what lowers the error of the "
+                f"held-out drives ({figures}) is the rest of the calibration{hint}"
+            )
+        return None
+    alone = kept.figures("calibrated").rmse_position_m
+    if not held and not also and not after < alone * (1.0 - ROUNDING):
+        return (
+            f"{name} does not lower the error of the held-out drives: calibration alone leaves "
+            f"{1e3 * alone:.3g} mm, with the effect it is {1e3 * after:.3g} mm{hint}"
+        )
+    return None
+
+
+def _in(item: FittedParameter) -> str:
+    return f" {item.declared.unit}" if item.declared.unit else ""

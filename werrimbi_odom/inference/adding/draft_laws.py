@@ -1,0 +1,319 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Laws that a draft may have: for each form of a dependence its parameters and its lines of code.
+
+A law is made of two parts: the share (or rate) as a function of the variable, and what an error is
+in proportion to. Both are written as Python that a user will read.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+from werrimbi_odom.inference.diagnosis.evidence import Amount
+
+INDENT = "    "
+
+
+@dataclass(frozen=True, slots=True)
+class Declared:
+    """A parameter of a draft."""
+
+    name: str
+    unit: str
+    null: float
+    typical: float
+    bounds: tuple[float, float]
+    says: str
+    per_run: bool = False
+    tries: tuple[float, ...] = ()
+
+    def source(self) -> str:
+        """As Python."""
+        low, high = (
+            f"{value:.3g}" if abs(value) != 3.1415927 else f"{value}" for value in self.bounds
+        )
+        words = [
+            f'{INDENT * 2}"{self.unit}"',
+            f"null={self.null:.4g}",
+            f"typical={self.typical:.4g}",
+            f"bounds=({low}, {high})",
+        ]
+        lines = [", ".join(words) + ",", f'{INDENT * 2}says="{self.says}",']
+        if self.per_run:
+            lines.append(f"{INDENT * 2}per_run=True,")
+        if self.tries:
+            tries = ", ".join(f"{value:.4g}" for value in self.tries)
+            lines.append(f"{INDENT * 2}tries=({tries},),")
+        body = "\n".join(lines[:1] + list(lines[1:]))
+        return f"{INDENT}{self.name}=Parameter(\n{body}\n{INDENT}),"
+
+
+@dataclass(frozen=True, slots=True)
+class Seen:
+    """A variable as an effect sees it in a step."""
+
+    name: str
+    unit: str
+    span: Callable[[str], str]
+    """Python for its span, by side (left, right); the robot's own is the same for both."""
+    middle: float = 0.0
+    """Usual value, at which a line is zero."""
+    low: float = 0.0
+    high: float = 1.0
+    per_wheel: bool = False
+    from_zero: bool = False
+    """Whether zero is a natural origin (a speed, a time)."""
+    harmonic: int = 1
+    knots: tuple[float, ...] = ()
+    waves: bool = False
+    per_run: bool = False
+    channel: str | None = None
+    rate: bool = False
+    """Whether it is a change per step (acceleration), of which only a line can be drawn."""
+
+
+@dataclass(frozen=True, slots=True)
+class Form:
+    """The share as a function of the variable."""
+
+    kind: str
+    parameters: tuple[Declared, ...]
+    expression: Callable[[str], str]
+    """Python for the share on a side."""
+    formula: str
+    uses: tuple[str, ...]
+    """Names to import from effects.shapes."""
+    numbers: int
+    """Free numbers."""
+    constants: tuple[str, ...] = ()
+    quadrature: tuple[str, str] | None = None
+    pose: bool = False
+    needs_span: bool = False
+    extra: dict[str, str] = field(default_factory=dict)
+
+
+def unit_per(base: str, per: str) -> str:
+    """The unit of a coefficient: that of the share, per unit of the variable."""
+    if not per:
+        return base
+    inverse = {
+        "m/s": "s/m",
+        "m": "1/m",
+        "s": "1/s",
+        "rad": "1/rad",
+        "rad/s": "s/rad",
+        "m/s^2": "s^2/m",
+    }.get(per)
+    if inverse is None:
+        return base
+    return inverse if not base else f"{base}*{inverse}".replace("*1/", "/")
+
+
+def unit_of(amount: Amount) -> str:
+    """The unit of the share itself."""
+    over = {"travel": "m", "path": "m", "turn": "rad", "duration": "s"}[amount.per]
+    own = "rad" if amount.channel == "heading" else "m"
+    return "" if own == over else f"{own}/{over}"
+
+
+def forms_of(seen: Seen, amount: Amount, size: float) -> tuple[Form, ...]:
+    """Forms in a variable, the simplest first.
+
+    Parameters
+    ----------
+    size : float
+        Of the share, as the evidence has it.
+    """
+    if seen.waves:
+        return (_wave(seen, amount, size),)
+    forms = [_line(seen, amount, size)]
+    if seen.rate or seen.name in ("direction", "constant"):
+        return tuple(forms)
+    if seen.from_zero:
+        forms.append(_square(seen, amount, size))
+    forms.append(_step(seen, amount, size))
+    if len(seen.knots) > 2:
+        forms.append(_curve(seen, amount, size))
+    return tuple(forms)
+
+
+def wide(typical: float) -> tuple[float, float]:
+    """Bounds far beyond what was seen."""
+    return (-100.0 * abs(typical), 100.0 * abs(typical))
+
+
+def _line(seen: Seen, amount: Amount, size: float) -> Form:
+    spread = max(seen.high - seen.low, 1e-9)
+    slope = 2.0 * size / spread
+    unit = unit_per(unit_of(amount), seen.unit)
+    constants: tuple[str, ...] = ()
+    away = "{}.mean"
+    if seen.middle and not seen.from_zero:
+        constants = (f"USUAL = {seen.middle:.4g}  # {seen.name} at which the calibration holds",)
+        away = "({}.mean - USUAL)"
+    says = f"change of the share per {seen.unit or 'unit'} of {seen.name}"
+    return Form(
+        "line",
+        (Declared("slope", unit, 0.0, slope, wide(slope), says),),
+        lambda side: f"slope * {away.format(seen.span(side))}",
+        f"share = slope * {f'({seen.name} - USUAL)' if constants else seen.name}",
+        (),
+        1,
+        constants,
+        needs_span=True,
+    )
+
+
+def _square(seen: Seen, amount: Amount, size: float) -> Form:
+    growth = 2.0 * size / max(seen.high, 1e-9) ** 2
+    unit = unit_per(unit_per(unit_of(amount), seen.unit), seen.unit)
+    unit = {"s/m*s/m": "s^2/m^2", "1/m/m": "1/m^2", "1/s/s": "1/s^2"}.get(unit, unit)
+    says = f"the share where {seen.name} is 1 {seen.unit}"
+    return Form(
+        "square",
+        (Declared("growth", unit, 0.0, growth, wide(growth), says),),
+        lambda side: f"growth * mean_square({seen.span(side)})",
+        f"share = growth * {seen.name}^2",
+        ("mean_square",),
+        1,
+        needs_span=True,
+    )
+
+
+def _step(seen: Seen, amount: Amount, size: float) -> Form:
+    low, high = seen.low, seen.high
+    tries = tuple(low + part * (high - low) for part in (0.2, 0.35, 0.5, 0.65, 0.8))
+    width = 0.05 * (high - low)
+    return Form(
+        "step",
+        (
+            Declared(
+                "height",
+                unit_of(amount),
+                0.0,
+                2.0 * size,
+                wide(2.0 * size),
+                "share above the edge, more than below it",
+            ),
+            Declared(
+                "edge",
+                seen.unit if seen.unit else "",
+                0.5 * (low + high),
+                0.5 * (low + high),
+                (low - 0.1 * (high - low), high + 0.1 * (high - low)),
+                f"{seen.name} at which it sets in",
+                tries=tries,
+            ),
+        ),
+        lambda side: f"height * mean_step({seen.span(side)}, edge, WIDTH)",
+        f"share = height, where {seen.name} > edge",
+        ("mean_step",),
+        2,
+        (f"WIDTH = {width:.2g}  # of {seen.name}, over which it sets in",),
+        needs_span=True,
+    )
+
+
+def _curve(seen: Seen, amount: Amount, size: float) -> Form:
+    knots = seen.knots
+    nearest = min(range(len(knots)), key=lambda index: abs(knots[index] - seen.middle))
+    names = [f"at_{index + 1}" for index in range(len(knots))]
+    free = [index for index in range(len(knots)) if index != nearest]
+    heights = ", ".join("0.0" if index == nearest else names[index] for index in range(len(knots)))
+    listed = ", ".join(f"{knot:.4g}" for knot in knots)
+    return Form(
+        "curve",
+        tuple(
+            Declared(
+                names[index],
+                unit_of(amount),
+                0.0,
+                2.0 * size,
+                wide(2.0 * size),
+                f"share where {seen.name} is {knots[index]:.4g}",
+            )
+            for index in free
+        ),
+        lambda side: f"mean_curve({seen.span(side)}, KNOTS, ({heights}))",
+        f"share = curve through ({heights}) at KNOTS of {seen.name}",
+        ("mean_curve",),
+        len(free),
+        (f"KNOTS = ({listed})",),
+        needs_span=True,
+    )
+
+
+def _wave(seen: Seen, amount: Amount, size: float) -> Form:
+    times = f"{seen.harmonic} * " if seen.harmonic > 1 else ""
+    unit = unit_of(amount)
+    if not seen.per_run:
+        parts = [
+            Declared(name, unit, 0.0, size, wide(size), f"share times the {name} of {seen.name}")
+            for name in ("cosine", "sine")
+        ]
+        return Form(
+            "sine",
+            tuple(parts),
+            lambda side: (
+                f"cosine * mean_cos({seen.span(side)}) + sine * mean_sin({seen.span(side)})"
+            ),
+            f"share = cosine * cos({seen.name}) + sine * sin({seen.name})",
+            ("mean_cos", "mean_sin"),
+            2,
+            needs_span=True,
+        )
+    return Form(
+        "sine",
+        (
+            Declared(
+                "amplitude", unit, 0.0, size, (0.0, 100.0 * size), "largest share, to and fro"
+            ),
+            Declared(
+                "phase",
+                "rad",
+                0.0,
+                1.0,
+                (-3.1415927, 3.1415927),
+                "where the wave begins; another one in each drive",
+                per_run=True,
+            ),
+        ),
+        lambda side: f"amplitude * mean_cos(turned({seen.span(side)}, phase))",
+        f"share = amplitude * cos({times}{seen.name} + phase)",
+        ("mean_cos",),
+        2,
+        quadrature=("amplitude", "phase"),
+        needs_span=True,
+        extra={"harmonic": f"{seen.harmonic}"},
+    )
+
+
+def spot_form(
+    places: Sequence[tuple[float, float]], radii: Sequence[float], size: float, half: float
+) -> Form:
+    """A circle of the floor."""
+    xs = tuple(dict.fromkeys(round(place[0], 3) for place in places))
+    ys = tuple(dict.fromkeys(round(place[1], 3) for place in places))
+    far = (-1000.0, 1000.0)
+    return Form(
+        "spot",
+        (
+            Declared("share", "", 0.0, size, (-0.9, 0.9), "gained on the spot; lost if negative"),
+            Declared(
+                "x", "m", 0.5, 0.5, far, "centre of the spot, in the reference's frame", tries=xs
+            ),
+            Declared("y", "m", 0.5, 0.5, far, "the same, across", tries=ys),
+            Declared("radius", "m", 0.5, 0.5, (0.02, 50.0), "of the spot", tries=tuple(radii)),
+        ),
+        lambda side: (
+            "share * share_inside(*standing(drive, "
+            f"{'HALF' if side == 'left' else '-HALF'}), x, y, radius)"
+        ),
+        "travel *= 1 + share, where the wheel stands inside the circle",
+        ("share_inside", "standing"),
+        4,
+        (f"HALF = {half:.4g}  # m, from the axle's midpoint to a wheel",),
+        pose=True,
+    )

@@ -1,0 +1,53 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The files of a draft's package, as texts: an effect file, pyproject.toml, README.md."""
+
+from __future__ import annotations
+
+from werrimbi_odom.inference.adding.drafting import Draft
+
+
+def package_of(draft: Draft) -> dict[str, str]:
+    """Texts by file name."""
+    return {
+        f"{draft.name}.py": draft.source,
+        "pyproject.toml": _project(draft.name),
+        "README.md": _readme(draft),
+    }
+
+
+def _project(name: str) -> str:
+    return f"""[build-system]
+requires = ["setuptools>=61"]
+build-backend = "setuptools.build_meta"
+
+[project]
+name = "{name.replace("_", "-")}"
+version = "0.1.0"
+description = "A physical effect of my robot, drafted by werrimbi"
+dependencies = ["werrimbi_odom"]
+
+[project.entry-points."werrimbi_odom.effects"]
+{name} = "{name}:{name}"
+
+[tool.setuptools]
+py-modules = ["{name}"]
+"""
+
+
+def _readme(draft: Draft) -> str:
+    cell = draft.dependence
+    return f"""# {draft.name}
+
+A draft of `werrimbi draft`. In the drives that it was made from, the {cell.channel} error goes with
+`{cell.name}`, and a {draft.form} describes it. That is what the data show; why it is so they cannot
+know.
+
+1. Read `{draft.name}.py`: it is short. Its docstring says the law.
+2. Try it before it is installed: every werrimbi command takes `--effects {draft.name}.py`.
+3. Find the physics, measure it with a ruler, and give the effect its name and its law: the name
+   stands in the file, in `pyproject.toml` and in your robot file.
+4. `pip install .` here; then robot files may name it, and the node runs it.
+
+`werrimbi_odom.effects.contract.check_effect` holds the laws of effects against it.
+"""

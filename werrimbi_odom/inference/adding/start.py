@@ -1,0 +1,168 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where the fit of one more effect begins: near the answer, however far from null that lies.
+
+Set-up mistakes and factors begin where the search for them ends. All other effects begin at the
+values that their score suggests, once for each shape that is worth a fit.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from werrimbi_odom.inference.comparison.judged_legs import Prepared
+from werrimbi_odom.inference.comparison.jumps import jumped_legs
+from werrimbi_odom.inference.diagnosis.candidates import (
+    CALIBRATED,
+    Score,
+    candidates,
+    knobs_of_candidate,
+    put_in,
+    scores,
+)
+from werrimbi_odom.inference.diagnosis.search import with_own_values
+from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.fitting.design import Point
+from werrimbi_odom.inference.fitting.fit import start_point
+from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, knobs_of
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, match
+from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUp
+from werrimbi_odom.model.effect import AppliedEffect, Effect
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.robot import Robot
+
+SHAPES = 3
+"""Shapes of an effect that are fitted in full."""
+
+PARTS = 4
+"""Fits use legs this much shorter than those that are judged: they tell noise from drift."""
+
+
+@dataclass(frozen=True, slots=True)
+class Drives:
+    """The drives of a fit, in short legs, without those on which the reference jumped."""
+
+    laid: Together
+    jumped: tuple[np.ndarray[tuple[int], np.dtype[np.bool_]], ...]
+    kind: ReferenceKind
+    sigma: tuple[float | None, float | None]
+
+    def begin(self, robot: Robot) -> tuple[Point, tuple[Knob, ...]]:
+        """A robot as it is, with what each run has of its own learnt; and what may be turned."""
+        point = replace(start_point(self.laid, robot, *self.sigma), excluded=self.jumped)
+        return with_own_values(self.laid, point, self.kind)
+
+    def fit(
+        self, point: Point, names: Sequence[str], knobs: Sequence[Knob], given: Robot
+    ) -> Fitted:
+        """Fit calibration, noise and `knobs`."""
+        return fitted(self.laid, point, self.kind, names, knobs, given, rounds=3, sigma=self.sigma)
+
+
+@dataclass(frozen=True, slots=True)
+class Start:
+    """A model to begin with, and the effect's own knobs."""
+
+    point: Point
+    names: tuple[str, ...]
+    """Effects beyond the given robot's."""
+    knobs: tuple[Knob, ...]
+    """Of all effects."""
+
+
+def drives_of(
+    prepared: Prepared,
+    robot: Robot,
+    kind: ReferenceKind,
+    limits: EncoderLimits | None,
+    sigma: tuple[float | None, float | None],
+) -> Drives:
+    """Cut the drives of a fit by the travel of `robot`."""
+    leg = prepared.leg / PARTS
+    runs = [match(run, robot, leg, limits, QUARTER_TURN / PARTS) for run in prepared.runs]
+    jumped = [np.zeros(run.legs, dtype=np.bool_) for run in runs]
+    for group in prepared.groups:
+        for index, every, jumps in zip(group.index, group.every.runs, group.jumps, strict=True):
+            nodes = np.searchsorted(every.measured.time, runs[index].measured.time)
+            jumped[index] = jumped_legs(jumps, nodes, kind)
+    return Drives(together(runs), tuple(jumped), kind, sigma)
+
+
+def is_of_set_up(effect: Effect, set_up: SetUp) -> bool:
+    """Whether the search for set-up mistakes found the effect, or one that is the same to it."""
+    return any(effect.name in (item.effect, *item.twins) for item in set_up.findings)
+
+
+def with_set_up(effect: Effect, robot: Robot, set_up: SetUp) -> tuple[Robot, tuple[str, ...]]:
+    """The robot with what the search for set-up mistakes found, `effect` among it.
+
+    Returns
+    -------
+    robot, names
+        All findings are put in where the effect is one of them, because one mistake mended alone
+        may leave the robot worse than before (both counters reversed). Else none but factors of
+        the sizes, which belong to the calibration.
+    """
+    found = {item.effect for item in set_up.findings} - {IN_DEGREES}
+    mended = set_up.robot
+    if effect.name not in found and is_of_set_up(effect, set_up):
+        twin = next(item.effect for item in set_up.findings if effect.name in item.twins)
+        held = tuple(item for item in mended.effects if item.name != twin)
+        return replace(mended, effects=(effect.using(), *held)), (effect.name,)
+    if effect.name in found:
+        held_before = {item.name for item in robot.effects}
+        names = [item.name for item in mended.effects if item.name not in held_before]
+        return mended, tuple(name for name in names if name not in CALIBRATED)
+    if found and found <= set(CALIBRATED):
+        return mended, ()
+    return robot, ()
+
+
+def starts(
+    drives: Drives, before: Fitted, effect: Effect, knobs: Sequence[Knob]
+) -> tuple[Start, ...]:
+    """Where fits of an effect begin: at its score's values, for the best of its shapes."""
+    runs, point = drives.laid, before.point
+    channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
+    tried = candidates([effect], (), channels, len(runs.runs))
+    found = scores(runs, point, drives.kind, (*CALIBRATION, *knobs), tried)
+    begun = []
+    for score in _best_shapes(found):
+        own = knobs_of_candidate(score.candidate)
+        model = put_in(point.model, score)
+        begun.append(
+            Start(replace(point, model=model), (*before.names, effect.name), (*knobs, *own))
+        )
+    return tuple(begun)
+
+
+def _best_shapes(found: Sequence[Score]) -> list[Score]:
+    """The best shapes; of each kind, with a phase for each run and with one for all, the best."""
+    ordered = sorted(found, key=lambda score: -score.gain)
+    chosen: list[Score] = []
+    for per_run in (True, False):
+        chosen += [score for score in ordered if score.candidate.per_run == per_run][:SHAPES]
+    return chosen
+
+
+def start_of_held(drives: Drives, robot: Robot, names: tuple[str, ...]) -> Start:
+    """A fit that begins with the values that the robot holds."""
+    point, knobs = drives.begin(robot)
+    return Start(point, names, knobs)
+
+
+def mistake_put_in(robot: Robot, effect: Effect) -> Robot:
+    """The robot with a set-up mistake undone; it comes before all other effects."""
+    return replace(robot, effects=(AppliedEffect(effect), *robot.effects))
+
+
+def knobs_held(robot: Robot, knobs: Sequence[Knob], effect: Effect) -> tuple[Knob, ...]:
+    """Knobs of a robot's effects, with those of `effect` where it is held."""
+    names = {knob.name for knob in knobs}
+    more = knobs_of(effect) if any(item.name == effect.name for item in robot.effects) else ()
+    return (*knobs, *(knob for knob in more if knob.name not in names))

@@ -1,0 +1,204 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a fit says of an effect's parameters: values, how sure they are, what was left at null."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob, Model
+from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter
+from werrimbi_odom.model.robot import Robot
+
+SIGNIFICANT = 2.0
+"""Standard deviations by which a parameter must differ from its null value."""
+
+Remark = Literal["fitted", "null", "undetermined", "bound", "per run"]
+
+
+@dataclass(frozen=True, slots=True)
+class FittedParameter:
+    """A parameter of the added effect."""
+
+    declared: Parameter
+    value: float | None
+    """None where each run has its own."""
+    std: float | None
+    """None where it was not fitted."""
+    remark: Remark
+    """null: left at its null value, because the data show no other."""
+    of_runs: tuple[float, ...] = ()
+    """Values of the fitted runs, where each has its own."""
+
+    @property
+    def significant(self) -> bool:
+        """Whether it surely differs from null."""
+        if self.value is None or not self.std:
+            return False
+        return abs(self.value - self.declared.null) > SIGNIFICANT * self.std
+
+
+def parameters_of(effect: Effect, fit: Fitted, given: Robot) -> dict[str, FittedParameter]:
+    """The effect's parameters after a fit, in the effect's order."""
+    if effect.name in CALIBRATED:
+        return {next(iter(effect.parameters)): _calibrated(effect, fit, given)}
+    model = fit.point.model
+    applied = next(item for item in model.robot.effects if item.name == effect.name)
+    knobs = {knob.name: knob for knob in fit.knobs}
+    found = {}
+    for name, item in effect.parameters.items():
+        key = f"{effect.name}.{name}"
+        knob = knobs.get(key)
+        if knob is None:
+            found[name] = FittedParameter(item, applied.values[name], None, "null")
+        elif knob.per_run:
+            own = tuple(mine[key] for mine in model.own)
+            found[name] = FittedParameter(item, None, None, "per run", own)
+        else:
+            std = std_of(fit, key)
+            found[name] = FittedParameter(
+                item, applied.values[name], std, _remark(applied.values[name], std, knob, effect)
+            )
+    return found
+
+
+def _remark(value: float, std: float, knob: Knob, effect: Effect) -> Remark:
+    name = knob.name.rpartition(".")[2]
+    is_phase = effect.quadrature is not None and name == effect.quadrature[1]
+    if std > knob.undetermined:
+        return "undetermined"
+    return "bound" if not is_phase and _at_bound(value, effect.parameters[name]) else "fitted"
+
+
+def _at_bound(value: float, item: Parameter) -> bool:
+    """Whether a value ran against what is possible; at null it is simply absent."""
+    low, high = item.bounds
+    near = 1e-6 * (high - low)
+    return min(value - low, high - value) <= near and abs(value - item.null) > near
+
+
+def std_of(fit: Fitted, name: str) -> float:
+    """Standard deviation of a shared knob of a fit."""
+    names = [knob.name for knob, _ in fit.design.columns]
+    index = names.index(name)
+    return float(np.sqrt(max(fit.covariance[index, index], 0.0)))
+
+
+def _calibrated(effect: Effect, fit: Fitted, given: Robot) -> FittedParameter:
+    """A calibration effect's number, relative to the given robot file."""
+    after, before = sizes(fit.point.model.robot), sizes(given)
+    base, left, right = (new / old for new, old in zip(after, before, strict=True))
+    names = [knob.name for knob, _ in fit.design.columns]
+    where = [names.index(name) for name in MULTIPLIERS]
+    robot = fit.point.model.robot
+    scale = np.array([getattr(robot, name) for name in MULTIPLIERS])
+    covariance = fit.covariance[np.ix_(where, where)] / np.outer(scale, scale)
+    value, row = {
+        "track_width": (base, [1.0, 0.0, 0.0]),
+        "unequal_wheel_radii": (right / left, [0.0, -1.0, 1.0]),
+        "wheel_radius_scale": (0.5 * (left + right), [0.0, 0.5, 0.5]),
+    }[effect.name]
+    std = value * math.sqrt(max(float(np.array(row) @ covariance @ np.array(row)), 0.0))
+    declared = next(iter(effect.parameters.values()))
+    return FittedParameter(declared, value, std, "fitted" if std < 0.05 * value else "undetermined")
+
+
+def sizes(robot: Robot) -> tuple[float, float, float]:
+    """Multipliers of base, left and right radius, with calibration effects that stand as such."""
+    base, left, right = (float(getattr(robot, name)) for name in MULTIPLIERS)
+    for applied in robot.effects:
+        if applied.name == "track_width":
+            base *= applied.values["multiplier"]
+        elif applied.name == "wheel_radius_scale":
+            left, right = (side * applied.values["multiplier"] for side in (left, right))
+        elif applied.name == "unequal_wheel_radii":
+            ratio = applied.values["ratio"]
+            left, right = left * 2.0 / (1.0 + ratio), right * 2.0 * ratio / (1.0 + ratio)
+    return base, left, right
+
+
+def to_write(model: Model, given: Robot) -> Robot:
+    """The robot for a file: sizes as multipliers, and what each run has of its own left unknown.
+
+    A calibration effect that the given file holds stays as it stands there.
+    """
+    held = {item.name: item for item in given.effects if item.name in CALIBRATED}
+    own = set(model.own[0]) if model.own else set()
+    effects = []
+    for applied in model.robot.effects:
+        if applied.name in CALIBRATED:
+            if applied.name in held:
+                effects.append(held[applied.name])
+            continue
+        effects.append(_forgotten(applied, own))
+    effects = [
+        replace(item, values={name: rounded(value) for name, value in item.values.items()})
+        for item in effects
+    ]
+    relative = [new / old for new, old in zip(sizes(model.robot), sizes(given), strict=True)]
+    multipliers = {
+        name: rounded(float(getattr(given, name)) * share)
+        for name, share in zip(MULTIPLIERS, relative, strict=True)
+    }
+    return replace(
+        model.robot,
+        effects=tuple(effects),
+        wheel_separation_multiplier=multipliers[MULTIPLIERS[0]],
+        left_wheel_radius_multiplier=multipliers[MULTIPLIERS[1]],
+        right_wheel_radius_multiplier=multipliers[MULTIPLIERS[2]],
+    )
+
+
+def rounded(value: float) -> float:
+    """Nine digits: more than any drive determines, and a file that can be read."""
+    return float(f"{value:.9g}")
+
+
+def _forgotten(applied: AppliedEffect, own: set[str]) -> AppliedEffect:
+    names = tuple(name for name in applied.effect.parameters if f"{applied.name}.{name}" in own)
+    if not names:
+        return applied
+    values = {**applied.values, **{name: applied.effect.nulls[name] for name in names}}
+    return AppliedEffect(applied.effect, values, names)
+
+
+def weakest(effect: Effect, found: Mapping[str, FittedParameter]) -> str | None:
+    """The parameter that the data show least of, if others remain without it."""
+    phases = effect.quadrature or ()
+    free = {
+        name: item
+        for name, item in found.items()
+        if item.std is not None and not item.declared.tries and name not in phases
+    }
+    if len(free) < 2:
+        return None
+    doubt = {
+        name: abs((item.value or 0.0) - item.declared.null) / max(item.std or 0.0, 1e-300)
+        for name, item in free.items()
+    }
+    name = min(doubt, key=lambda key: doubt[key])
+    return name if doubt[name] < SIGNIFICANT else None
+
+
+def without_phases_stuck(model: Model, knobs: Sequence[Knob]) -> Model | None:
+    """The model with phases that ran against half a turn put to its other side; None: none did."""
+    stuck = False
+    shared: dict[str, float] = {}
+    own: list[dict[str, float]] = [{} for _ in model.own]
+    for knob in knobs:
+        if knob.unit != "rad" or abs(knob.bounds[1] - math.pi) > 1e-6:
+            continue
+        for index in range(len(own)) if knob.per_run else [-1]:
+            value = model.value(knob, max(index, 0))
+            if abs(value) > math.pi - 1e-4:
+                target = shared if index < 0 else own[index]
+                target[knob.name] = -value
+                stuck = True
+    return model.turned(shared, own) if stuck else None

@@ -1,0 +1,138 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Calibration from any driving, told whole: what was found, what was not, what it cannot be."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
+from werrimbi_odom.inference.fitting.fit import Costs, ModelFit, fit_model, start_point
+from werrimbi_odom.inference.fitting.knobs import CALIBRATION, MULTIPLIERS
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind, relative_errors
+from werrimbi_odom.inference.fitting.matching import MatchedRun
+from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
+from werrimbi_odom.inference.fitting.prediction import predict
+from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+MISFIT_P = 1e-3
+"""Below this (corrected for the number of dependences tried) something other than calibration is
+missing."""
+
+STRANGE_NOISE = 0.01
+"""A wheel noise [m^0.5] above this (1 cm after 1 m) is no rolling wheel's."""
+
+
+@dataclass(frozen=True, slots=True)
+class Multiplier:
+    """A calibration factor before and after."""
+
+    before: float
+    value: float
+    std: float | None
+    """None where no honest figure can be given: not determined, or the model does not fit."""
+    determined: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Calibration:
+    """What a fit of calibration and noise says."""
+
+    robot: Robot
+    """With everything that was determined put in."""
+    multipliers: dict[str, Multiplier]
+    noises: dict[str, NoiseEstimate]
+    correlation: Floats
+    """Of the determined multipliers, in the order of `fit.free`."""
+    misfit: tuple[Dependence, ...]
+    """What the remaining errors still depend on; empty where the model explains them."""
+    strange: tuple[str, ...]
+    """In words, what no calibration can be."""
+    excluded: tuple[NDArray[np.bool_], ...]
+    """Legs of each run on which the reference jumped."""
+    fit: ModelFit
+
+    @property
+    def trusted(self) -> bool:
+        """Whether the model explains the data, so that the figures mean what they say."""
+        return not self.misfit and not self.strange
+
+
+def calibrate(
+    runs: Sequence[MatchedRun],
+    robot: Robot,
+    kind: ReferenceKind = "absolute",
+    *,
+    sigma_xy: float | None = None,
+    sigma_yaw: float | None = None,
+) -> Calibration:
+    """Fit base, radii and noise to all runs at once, and question the result.
+
+    Parameters
+    ----------
+    sigma_xy, sigma_yaw : float, optional
+        The reference's noise [m, rad] where it is known; else it is estimated too.
+    """
+    begin = start_point(runs, robot, sigma_xy, sigma_yaw)
+    fit = fit_model(runs, begin, kind, CALIBRATION, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
+    held = (sigma_xy is not None, sigma_yaw is not None)
+    noises = noise_estimates(Costs(runs, fit.point, kind), fit.point.variances, held)
+    turned = [knob for knob in CALIBRATION if knob in fit.free]
+    found = dependences(together(runs), fit.point, kind, turned)
+    misfit = tuple(item for item in found if item.p_value < MISFIT_P)
+    strange = _strange(fit, noises)
+    spread = np.sqrt(np.diag(fit.covariance))
+    names = [knob.name for knob in fit.free]
+    multipliers = {}
+    for name in MULTIPLIERS:
+        determined = name in names
+        honest = determined and not misfit and not strange
+        multipliers[name] = Multiplier(
+            float(getattr(robot, name)),
+            float(getattr(fit.robot, name)),
+            float(spread[names.index(name)]) if honest else None,
+            determined,
+        )
+    outer = np.outer(spread, spread)
+    return Calibration(
+        with_noise(fit.robot, noises),
+        multipliers,
+        noises,
+        fit.covariance / np.where(outer > 0.0, outer, 1.0),
+        misfit,
+        strange,
+        fit.point.excluded,
+        fit,
+    )
+
+
+def _strange(fit: ModelFit, noises: dict[str, NoiseEstimate]) -> tuple[str, ...]:
+    said = [f"{knob.name} ran against what is possible" for knob in fit.at_bound]
+    for name in ("left_wheel_noise", "right_wheel_noise"):
+        if noises[name].determined and noises[name].value > STRANGE_NOISE:
+            said.append(
+                f"{name} would have to be {noises[name].value:.3g} m^0.5, "
+                "which is no rolling wheel's noise"
+            )
+    return tuple(said)
+
+
+def errors_of_legs(
+    robot: Robot, runs: Sequence[MatchedRun], headings: Sequence[float | None]
+) -> Floats:
+    """Measured minus predicted (along, sideways, heading) of all legs, joined, shape (m, 3).
+
+    NaN where the reference gives no relative pose.
+    """
+    return np.concatenate(
+        [
+            relative_errors(run, predict(robot, run, heading))
+            for run, heading in zip(runs, headings, strict=True)
+        ]
+    )

@@ -1,0 +1,232 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Noise of the two wheels from drives out and back (paper, section 5.2), by maximum likelihood.
+
+On a straight drive out and back by D each wheel rolls 2 D, and the errors at the end are
+
+    e_yaw = (ε_R - ε_L) / B,   e_x = (ε_R + ε_L) / 2,   e_y = -∫ min(u, 2D - u) d(ε_R - ε_L) / B
+
+with ε_L, ε_R the errors of the wheels' travel, of variance 2 D k_L² and 2 D k_R². So e_yaw and e_y
+know the sum k_L² + k_R² alone. The difference shows in the covariance of e_x with the other two:
+D (k_R² - k_L²) / B with e_yaw. Reversing does not cancel it, for the noise of a wheel does not care
+for its sense of rolling; turning round at the far end does, for then e_x takes what the way back
+adds with the opposite sign. And e_x is small, B / 2 times e_yaw or so: the reference's noise in x
+drowns the difference long before the sum.
+
+The covariance of the whole path is linear in k_L² and k_R². The mean of the runs, what is
+systematic in them, is estimated too, so the runs' scatter counts with one degree of freedom less.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy import optimize, stats
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference.calibration.noise_likelihood import Design, Likelihood
+from werrimbi_odom.model.motion import WheelTravel
+from werrimbi_odom.model.pose import Floats
+
+LEAST_RUNS, ADVISED_RUNS = 5, 30
+"""Runs: with fewer than five there is no telling whether the model fits; thirty give k to 15 %."""
+
+UNKNOWN_SPLIT = 0.5
+"""The split (k_R² - k_L²) / (k_R² + k_L²) lies within ±1: with a std of this it is unknown."""
+
+MISFIT_P = 0.01
+"""Scatter that the model explains no better than this has something else in it."""
+
+NORMAL_95 = 1.959963984540054
+
+
+def out_and_back(
+    distance: float, track: float, *, turn_round: bool = False
+) -> list[WheelTravel[float]]:
+    """Pieces forwards by `distance` and back to the mark [m].
+
+    Parameters
+    ----------
+    turn_round : bool
+        False: backwards. True: half a turn at the far end, forwards, and the half turn undone.
+    """
+    out = WheelTravel(distance, distance)
+    if not turn_round:
+        return [out, WheelTravel(-distance, -distance)]
+    half_turn = 0.5 * math.pi * track
+    return [out, WheelTravel(-half_turn, half_turn), out, WheelTravel(half_turn, -half_turn)]
+
+
+def pivot_scatter(noise: float, track: float, turns: float) -> float:
+    """Heading scatter after `turns` about one standing wheel, by the other one alone [rad]."""
+    return noise * math.sqrt(2.0 * math.pi * turns / track)
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseEstimate:
+    """k of one wheel [m^0.5], its standard deviation and its 95 % interval."""
+
+    value: float
+    std: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseFit:
+    """What the scatter of the runs says about the wheels."""
+
+    runs: int
+    left: NoiseEstimate
+    right: NoiseEstimate
+    split_known: bool
+    """Whether drive and reference can tell the wheels apart; if not, both have the same k."""
+    difference_std: float
+    """Standard deviation of k_R - k_L [m^0.5]; infinite where the drive knows the sum alone."""
+    correlation: float
+    """Of the errors of k_L and k_R."""
+    by_moments: tuple[float, float]
+    """k_L, k_R that match the data's ellipses as the paper does [m^0.5]."""
+    mean: Floats
+    """Systematic part (x, y, yaw) [m, m, rad]."""
+    mean_std: Floats
+    mean_p: float
+    """Probability of so large a mean without anything systematic (Hotelling's test)."""
+    data: Floats
+    """Covariance of the runs about their mean, shape (3, 3)."""
+    model: Floats
+    """Covariance that the model has with k_L and k_R, the reference's noise included."""
+    misfit_p: float
+    """Probability of so bad a match under the model (likelihood ratio against any covariance)."""
+    missing_reference: tuple[float, float] | None
+    """Where the model does not match: noise of the reference (xy [m], yaw [rad]) that would."""
+
+
+def fit_noise(errors: Floats, design: Design) -> NoiseFit:
+    """k_L and k_R of greatest likelihood.
+
+    Parameters
+    ----------
+    errors : ndarray, shape (n, 3)
+        Measured minus odometry at the end of each run: x, y [m], yaw [rad]; x along the way out.
+    design : Design
+        Of the drive.
+
+    Raises
+    ------
+    InputError
+        When there are too few runs, or they do not scatter more than the reference is said to.
+    """
+    runs = len(errors)
+    if runs < LEAST_RUNS:
+        raise InputError(
+            f"too few runs: {runs} given, at least {LEAST_RUNS} needed; {ADVISED_RUNS} tell k to "
+            "about 10 %, the paper drove 60"
+        )
+    data = np.asarray(np.cov(errors.T))
+    if not (np.diag(data) > 0.0).all():
+        raise InputError("every run has the same error: without scatter there is no noise to fit")
+    likelihood = Likelihood(design, data, runs - 1)
+    same = likelihood.same()
+    best = likelihood.best(same)
+    split_known = _split_std(likelihood.covariance(same, same), same) <= UNKNOWN_SPLIT
+    left, right = _each(likelihood, best) if split_known else _alike(likelihood, same)
+    spread = _of_roots(likelihood.covariance(*(best if split_known else (same, same))), left, right)
+    mean = errors.mean(axis=0)
+    squared = float(mean @ np.linalg.solve(data / runs, mean))
+    written = (left.value**2, right.value**2)
+    misfit_p = likelihood.misfit_p(*written, 2 if split_known else 1)
+    return NoiseFit(
+        runs=runs,
+        left=left,
+        right=right,
+        split_known=split_known,
+        difference_std=math.sqrt(spread[0, 0] - 2.0 * spread[0, 1] + spread[1, 1]),
+        correlation=float(spread[0, 1] / math.sqrt(spread[0, 0] * spread[1, 1])),
+        by_moments=by_moments(data, design),
+        mean=mean,
+        mean_std=np.sqrt(np.diag(data) / runs),
+        mean_p=float(stats.f.sf(squared * (runs - 3) / (3 * (runs - 1)), 3, runs - 3)),
+        data=data,
+        model=design.covariance(*written),
+        misfit_p=misfit_p,
+        missing_reference=_missing_reference(likelihood, same) if misfit_p < MISFIT_P else None,
+    )
+
+
+def _missing_reference(likelihood: Likelihood, same: float) -> tuple[float, float] | None:
+    """Noise of the reference with which the runs do fit; None where no such noise explains them."""
+    unit = np.sqrt(np.diag(likelihood.data) / 2.0)
+
+    def with_noise(logs: Floats) -> tuple[Likelihood, float, float]:
+        left, right, xy, yaw = np.exp(logs)
+        sigma_xy, sigma_yaw = unit[0] * xy, unit[2] * yaw
+        given = 2.0 * np.diag([sigma_xy**2, sigma_xy**2, sigma_yaw**2])
+        design = replace(likelihood.design, given=given)
+        return replace(likelihood, design=design), left * same, right * same
+
+    def cost(logs: Floats) -> float:
+        assumed, left, right = with_noise(logs)
+        return assumed.cost(left, right)
+
+    start = np.log([0.5, 0.5, 0.5, 0.5])
+    bounds = [(-12.0, 3.0)] * 4
+    found = optimize.minimize(
+        cost, start, method="Nelder-Mead", bounds=bounds, options={"maxfev": 4000}
+    ).x
+    assumed, left, right = with_noise(found)
+    if assumed.misfit_p(left, right, 4) < MISFIT_P:
+        return None
+    return float(unit[0] * math.exp(found[2])), float(unit[2] * math.exp(found[3]))
+
+
+def _split_std(covariance: Floats, same: float) -> float:
+    """Standard deviation of the split, for wheels that are alike."""
+    slope = np.array([-0.5, 0.5]) / same
+    return (
+        math.sqrt(float(slope @ covariance @ slope)) if np.isfinite(covariance).all() else math.inf
+    )
+
+
+def _of_roots(covariance: Floats, left: NoiseEstimate, right: NoiseEstimate) -> Floats:
+    """Covariance of (k_L, k_R) from that of their squares."""
+    slope = 0.5 / np.array([left.value, right.value])
+    return np.asarray(slope[:, None] * covariance * slope[None, :])
+
+
+def _each(likelihood: Likelihood, best: tuple[float, float]) -> tuple[NoiseEstimate, NoiseEstimate]:
+    """Both wheels: Fisher's standard deviation, and the interval by the profile likelihood."""
+    covariance = likelihood.covariance(*best)
+    estimates = []
+    for wheel in (0, 1):
+        value = math.sqrt(best[wheel])
+        low, high = (math.sqrt(end) for end in likelihood.interval(wheel, best))
+        std = math.sqrt(covariance[wheel, wheel]) / (2.0 * value)
+        if low == 0.0:  # the parabola is no guide next to zero
+            std = max(value, high - value) / NORMAL_95
+        estimates.append(NoiseEstimate(value, std, low, high))
+    return estimates[0], estimates[1]
+
+
+def _alike(likelihood: Likelihood, same: float) -> tuple[NoiseEstimate, NoiseEstimate]:
+    """The sum shared out evenly: either wheel may have all of it, or nothing."""
+    value = math.sqrt(same)
+    high = math.sqrt(2.0 * likelihood.interval_of_same(same)[1])
+    estimate = NoiseEstimate(value, max(value, high - value) / NORMAL_95, 0.0, high)
+    return estimate, estimate
+
+
+def by_moments(data: Floats, design: Design) -> tuple[float, float]:
+    """k_L, k_R whose ellipses lie nearest the data's, each axis in units of the data's spread.
+
+    This is what the paper does by laying ellipses over scatter plots: least squares on the entries
+    of the covariance. It takes all entries for equally well known, which they are not.
+    """
+    scale = 1.0 / np.sqrt(np.outer(np.diag(data), np.diag(data)))
+    columns = np.stack([(design.left * scale).ravel(), (design.right * scale).ravel()], axis=-1)
+    size = np.linalg.norm(columns, axis=0)
+    squares, _ = optimize.nnls(columns / size, ((data - design.given) * scale).ravel())
+    left, right = np.sqrt(squares / size)
+    return float(left), float(right)

@@ -1,0 +1,220 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The offset of one recorded square: what UMBmark's tape measure would have said."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference.calibration.squares import Driven, Squares
+from werrimbi_odom.model.encoder import Counts, EncoderLimits
+from werrimbi_odom.model.motion import WheelTravel, displacement, wheels_to_body
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.recorded_counts import wheel_steps
+from werrimbi_odom.model.robot import Robot
+
+TURN_TOLERANCE = 0.6
+"""A lap turns by a whole turn to within this [rad], by odometry that may be off by 10 %."""
+
+LEG_TOLERANCE = 0.1
+"""Legs are as long as the side to within this share of it."""
+
+GAP_TOLERANCE = 0.25
+"""A lap ends where it began, by odometry or by the reference, to within this share of the side."""
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """One recorded drive: n rows of counters, m of reference, on one clock.
+
+    Parameters
+    ----------
+    name : str
+        Of the run; stands in error messages.
+    time, left, right : ndarray, shape (n,)
+        [s] and cumulative counts.
+    reference_time, reference_x, reference_y, reference_yaw : ndarray, shape (m,)
+        [s, m, m, rad]; NaN where not measured.
+    """
+
+    name: str
+    time: Floats
+    left: Counts
+    right: Counts
+    reference_time: Floats
+    reference_x: Floats
+    reference_y: Floats
+    reference_yaw: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class RecordedSquare:
+    """One square: sense +1 anticlockwise, -1 clockwise; the offset [m] as in `Squares`."""
+
+    name: str
+    sense: int
+    offset: Floats
+    driven: Driven
+
+
+@dataclass(frozen=True, slots=True)
+class _Path:
+    """Dead reckoning from the first measured position to the last, from the origin along x."""
+
+    time: Floats
+    travel: WheelTravel[Floats]
+    x: Floats
+    y: Floats
+    yaw: Floats
+
+
+def squares_of(recorded: Sequence[RecordedSquare], side: float) -> Squares:
+    """Recorded squares of both senses together.
+
+    Raises
+    ------
+    InputError
+        When a sense is missing or has too few runs.
+    """
+    cw = [run for run in recorded if run.sense < 0]
+    ccw = [run for run in recorded if run.sense > 0]
+    return Squares(
+        side,
+        np.array([run.offset for run in cw]).reshape(-1, 2),
+        np.array([run.offset for run in ccw]).reshape(-1, 2),
+        tuple(run.driven for run in cw),
+        tuple(run.driven for run in ccw),
+    )
+
+
+def recorded_square(
+    record: Record, robot: Robot, side: float, limits: EncoderLimits | None = None
+) -> RecordedSquare:
+    """Where a recorded square ended, measured minus odometry.
+
+    Both paths begin at the first measured position with the first measured heading. A heading that
+    is a little off turns both ends about the start alike, so it hardly changes their difference.
+
+    Raises
+    ------
+    InputError
+        When the drive is not one closed square of that side, or the robot holds effects.
+    """
+    if robot.effects:
+        raise InputError(
+            f"UMBmark knows base and radii alone, and the robot file holds "
+            f"{', '.join(applied.name for applied in robot.effects)}: take `calibrate fit`"
+        )
+    rows = np.flatnonzero(np.isfinite(record.reference_x) & np.isfinite(record.reference_y))
+    if rows.size < 2:
+        raise InputError(
+            f"{record.name}: the reference needs a position at the start and at the end"
+        )
+    path = _reckoned(record, robot, rows, limits)
+    sense = _sense(record.name, path)
+    corners = _corners(path, sense)
+    first_leg = math.atan2(path.y[corners[0]], path.x[corners[0]])
+    _check_legs(record.name, path, corners, side)
+    facing = _facing(record, rows, path, int(corners[0]), first_leg)
+    x, y = record.reference_x[rows], record.reference_y[rows]
+    measured = _turned(x[-1] - x[0], y[-1] - y[0], -facing)
+    reckoned = _turned(path.x[-1], path.y[-1], -first_leg)
+    gap = min(float(np.hypot(*measured)), float(np.hypot(*reckoned)))
+    if gap > GAP_TOLERANCE * side:
+        raise InputError(
+            f"{record.name}: the square is not closed: it ends {gap:.2f} m from its start, by "
+            "odometry and by the reference. Drive all four legs, back to the mark"
+        )
+    return RecordedSquare(record.name, sense, measured - reckoned, Driven(path.travel, -first_leg))
+
+
+def _reckoned(
+    record: Record, robot: Robot, rows: NDArray[np.intp], limits: EncoderLimits | None
+) -> _Path:
+    """Odometry from the first measured position to the last; at rest outside its rows."""
+    steps = wheel_steps(robot, record.time, record.left, record.right, limits)
+    if steps.first_row < 0 or steps.time.size == 0:
+        raise InputError(f"{record.name}: fewer than two usable rows of ticks")
+    node = np.concatenate([record.time[[steps.first_row]], steps.time])
+    begin, end = record.reference_time[rows[0]], record.reference_time[rows[-1]]
+    if not (np.diff(node) > 0.0).all() or not begin < node[-1] or not end > node[0]:
+        raise InputError(
+            f"{record.name}: the reference (t_s {begin:g} to {end:g}) and the ticks ({node[0]:g} "
+            f"to {node[-1]:g}) do not overlap, or a clock was set back; both need the same clock"
+        )
+    inside = node[(node > begin) & (node < end)]
+    time = np.concatenate([[begin], inside, [end]])
+    travel = WheelTravel(
+        *(
+            np.diff(np.interp(time, node, np.concatenate([[0.0], np.cumsum(part)])))
+            for part in (steps.left, steps.right)
+        )
+    )
+    motion = wheels_to_body(travel, robot.track)
+    yaw = np.concatenate([[0.0], np.cumsum(motion.turn)])
+    dx, dy = displacement(motion, yaw[:-1])
+    x, y = (np.concatenate([[0.0], np.cumsum(part)]) for part in (dx, dy))
+    return _Path(time, travel, x, y, yaw)
+
+
+def _sense(name: str, path: _Path) -> int:
+    turned = float(path.yaw[-1])
+    if abs(abs(turned) - 2.0 * math.pi) > TURN_TOLERANCE:
+        raise InputError(
+            f"{name}: the square is not closed: the heading turns by {math.degrees(turned):.0f} "
+            "degrees in all, one lap by 360. Turn the last corner too, and record each lap as a "
+            "run of its own"
+        )
+    return 1 if turned > 0.0 else -1
+
+
+def _corners(path: _Path, sense: int) -> NDArray[np.intp]:
+    """Rows half way through each of the four corners."""
+    turned = sense * path.yaw
+    half_way = (np.arange(4) + 0.5) * 0.5 * math.pi
+    return np.array([int(np.argmax(turned >= angle)) for angle in half_way])
+
+
+def _check_legs(name: str, path: _Path, corners: NDArray[np.intp], side: float) -> None:
+    """Four legs, straight and as long as the side, and nothing else driven."""
+    ends = np.concatenate([[0], corners, [path.x.size - 1]])
+    straight = np.hypot(np.diff(path.x[ends]), np.diff(path.y[ends]))[:4]
+    steps = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(path.x), np.diff(path.y)))])
+    driven = np.diff(steps[ends])
+    wrong = np.abs(np.concatenate([straight, driven[:4]]) - side) > LEG_TOLERANCE * side
+    if wrong.any() or driven[4] > LEG_TOLERANCE * side:
+        shown = ", ".join(f"{length:.2f}" for length in driven[:4])
+        raise InputError(
+            f"{name}: not a square of side {side:g} m: by odometry its legs are {shown} m, and "
+            f"{driven[4]:.2f} m follow the last corner. A square begins and ends at a corner, and "
+            "a run holds one square and nothing else; are the side and wheel_radius right?"
+        )
+
+
+def _facing(
+    record: Record, rows: NDArray[np.intp], path: _Path, corner: int, first_leg: float
+) -> float:
+    """Direction of the first leg in the frame of the reference [rad]."""
+    yaw = float(record.reference_yaw[rows[0]])
+    if math.isfinite(yaw):
+        return yaw + first_leg
+    x, y = record.reference_x[rows], record.reference_y[rows]
+    if rows.size == 2:
+        raise InputError(
+            f"{record.name}: two measured positions do not say which way the first leg led; "
+            "measure the heading at the start, or positions on the way"
+        )
+    when = record.reference_time[rows]
+    at_corner = [np.interp(path.time[corner], when, part) for part in (x, y)]
+    return math.atan2(at_corner[1] - y[0], at_corner[0] - x[0])
+
+
+def _turned(x: float, y: float, angle: float) -> Floats:
+    cos, sin = math.cos(angle), math.sin(angle)
+    return np.array([cos * x - sin * y, sin * x + cos * y])

@@ -1,0 +1,99 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The UMBmark equations as the paper has them (5 to 11), of first order; errata of MODEL.md."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference.calibration.squares import Squares
+from werrimbi_odom.model.pose import Floats
+
+QUARTER = 0.5 * math.pi
+
+LARGEST_MISTAKE = 0.25
+"""A base or a ratio of radii off by more is a slip of the pen, not a matter of calibration."""
+
+
+@dataclass(frozen=True, slots=True)
+class Angles:
+    """α and β to first order [rad], each as x and as y have it (equations 6 and 7)."""
+
+    alpha_by_x: float
+    alpha_by_y: float
+    beta_by_x: float
+    beta_by_y: float
+
+    @property
+    def alpha(self) -> float:
+        """By how much a corner falls short of 90 degrees [rad]."""
+        return 0.5 * (self.alpha_by_x + self.alpha_by_y)
+
+    @property
+    def beta(self) -> float:
+        """By how much a leg bends to the left [rad]."""
+        return 0.5 * (self.beta_by_x + self.beta_by_y)
+
+
+@dataclass(frozen=True, slots=True)
+class Factors:
+    """Corrections to what the robot file holds already: new multiplier = old one times this."""
+
+    base: float
+    """C_B: true base over the one believed (equation 9)."""
+    ratio: float
+    """E_d: right radius over left, against what was believed (equation 8)."""
+
+    @property
+    def left(self) -> float:
+        """C_L (equation 10)."""
+        return 2.0 / (self.ratio + 1.0)
+
+    @property
+    def right(self) -> float:
+        """C_R (equation 11)."""
+        return self.ratio * self.left
+
+
+def first_order_angles(squares: Squares) -> Angles:
+    """Equations 5 to 7 of the paper."""
+    return angles_of(
+        np.concatenate([squares.cw.mean(axis=0), squares.ccw.mean(axis=0)]), squares.side
+    )
+
+
+def angles_of(centres: Floats, side: float) -> Angles:
+    """Equations 6 and 7 of centres of gravity (x, y clockwise, x, y anticlockwise) [m]."""
+    x_cw, y_cw, x_ccw, y_ccw = (float(value) / (-4.0 * side) for value in centres)
+    return Angles(x_cw + x_ccw, y_cw - y_ccw, x_cw - x_ccw, y_cw + y_ccw)
+
+
+def paper_factors(angles: Angles, side: float, track: float) -> Factors:
+    """Equations 8 and 9 of the paper, the latter as its errata have it.
+
+    Parameters
+    ----------
+    side : float
+        D [m].
+    track : float
+        B as the odometry believed it to be [m].
+    """
+    bend = track * math.sin(0.5 * angles.beta)
+    base = QUARTER / (QUARTER - min(angles.alpha, 0.5 * QUARTER))
+    ratio = (side + bend) / max(side - bend, 0.5 * side)
+    check_size(base, ratio)
+    return Factors(base, ratio)
+
+
+def check_size(base: float, ratio: float) -> None:
+    """Refuse corrections that are no matter of calibration."""
+    if abs(base - 1.0) > LARGEST_MISTAKE or abs(ratio - 1.0) > LARGEST_MISTAKE:
+        raise InputError(
+            f"the offsets ask for a base {100 * (base - 1.0):+.0f} % and a ratio of the radii "
+            f"{100 * (ratio - 1.0):+.0f} % off: more than a calibration mends. Are offsets and "
+            "side both in metres, and wheel_separation and wheel_radius of the robot file right?"
+        )

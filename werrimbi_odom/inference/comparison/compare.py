@@ -1,0 +1,252 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Model against measurement, leg by leg: how wrong, at what, and whether that was promised."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.comparison.groups import ByVariable, Cell, by_variables, cells_of
+from werrimbi_odom.inference.comparison.judged_legs import (
+    Legs,
+    Prepared,
+    judged_legs,
+    paths,
+    prepare,
+)
+from werrimbi_odom.inference.comparison.legs import (
+    LegStatistics,
+    root_mean_square,
+    squared_deviation,
+    statistics,
+)
+from werrimbi_odom.inference.comparison.reference_noise import Residual
+from werrimbi_odom.inference.comparison.systematic import (
+    NoiseFactor,
+    Systematic,
+    noise_factor,
+    systematic_parts,
+)
+from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pose import Floats, wrap
+from werrimbi_odom.model.robot import Robot
+
+KINDS = ("line", "arc", "spin")
+
+
+@dataclass(frozen=True, slots=True)
+class LegFigures:
+    """Figures over some legs; NaN where there are none."""
+
+    figures: LegStatistics
+    """Without outliers, but for the median."""
+    outliers: int
+    rmse_all_position_m: float
+    """With the outliers."""
+    scatter_nees: float
+    """NEES of what is left when the systematic part is taken off."""
+    noise: NoiseFactor
+    """On the variance of the wheels' noise, that this scatter asks for."""
+
+
+@dataclass(frozen=True, slots=True)
+class OfLength:
+    """Figures over all legs of one length."""
+
+    leg: float
+    all: LegFigures
+    by_motion: Mapping[str, LegFigures]
+    systematic: tuple[Systematic, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class RunFigures:
+    """One run."""
+
+    run: Run
+    distance_m: float
+    """Travel of the axle's midpoint, both directions counted."""
+    duration_s: float
+    end_error_m: float
+    """At the last reference pose, dead reckoning having begun at the first."""
+    end_error_rad: float
+    """Measured minus predicted."""
+    rmse_path_m: float
+    """Over all reference poses."""
+    legs: LegFigures
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Comparison:
+    """Everything that was found, and the legs themselves for whoever draws them."""
+
+    prepared: Prepared
+    model: Model
+    runs: tuple[RunFigures, ...]
+    lengths: tuple[OfLength, ...]
+    """The shortest first."""
+    variables: tuple[ByVariable, ...]
+    cells: tuple[Cell, ...]
+    legs: Legs
+    """Of the length asked for."""
+    left: Floats
+    """Their errors less what is systematic, shape (m, 3)."""
+    paths: tuple[Residual, ...]
+
+    @property
+    def main(self) -> OfLength:
+        """Figures of the length asked for."""
+        return next(item for item in self.lengths if item.leg == self.prepared.leg)
+
+
+def compare(
+    runs: Sequence[Run],
+    robot: Robot | Model,
+    kind: ReferenceKind = "absolute",
+    *,
+    leg: float = 1.0,
+    limits: EncoderLimits | None = None,
+    sigma_xy: float | None = None,
+    sigma_yaw: float | None = None,
+    show: Callable[[float, str], None] = lambda share, words: None,
+) -> Comparison:
+    """Compare a model with recorded runs.
+
+    Parameters
+    ----------
+    robot : Robot or Model
+        A `Model` brings values that each run has of its own (phases, start headings).
+    kind
+        Whether each pose of the reference has noise of its own, or noise adds up along the way.
+    leg : float
+        Length of a leg [m]; a quarter turn on the spot is one too.
+    sigma_xy, sigma_yaw : float, optional
+        The reference's noise [m, rad] where it is known; else as the record states it; else it is
+        estimated from differences of the reference itself, so that no error of the model hides in
+        it.
+    show
+        Told the share done, and what is being done.
+
+    Raises
+    ------
+    InputError
+        When a run has no usable reference or no ticks.
+    """
+    own = robot.robot if isinstance(robot, Model) else robot
+    prepared = prepare(
+        runs,
+        own,
+        kind,
+        leg=leg,
+        limits=limits,
+        sigma_xy=sigma_xy,
+        sigma_yaw=sigma_yaw,
+        show=lambda share, words: show(0.5 * share, words),
+    )
+    return judged(prepared, robot, show=lambda share, words: show(0.5 + 0.5 * share, words))
+
+
+def judged(
+    prepared: Prepared,
+    robot: Robot | Model,
+    *,
+    show: Callable[[float, str], None] = lambda share, words: None,
+) -> Comparison:
+    """Compare a model over runs that were prepared: before and after over the same legs."""
+    model = robot if isinstance(robot, Model) else Model(robot, tuple({} for _ in prepared.runs))
+    lengths, main = [], None
+    for number, leg in enumerate(sorted(prepared.cuts)):
+        show(number / (len(prepared.cuts) + 1), f"legs of {leg:g} m")
+        legs = judged_legs(prepared, model, leg)
+        systematic, left = systematic_parts(legs.errors.chosen(~legs.outlier))
+        spread = np.full(legs.errors.error.shape, np.nan)
+        spread[~legs.outlier] = left
+        motions = {kind: legs.errors.kind == kind for kind in KINDS}
+        lengths.append(
+            OfLength(
+                leg,
+                _figures(legs, spread, np.ones(legs.run.size, dtype=np.bool_)),
+                {kind: _figures(legs, spread, which) for kind, which in motions.items()},
+                systematic,
+            )
+        )
+        if leg == prepared.leg:
+            main = legs, spread
+    assert main is not None
+    legs, spread = main
+    driven = paths(prepared, model)
+    kept = ~legs.outlier
+    chosen = legs.errors.chosen(kept)
+    return Comparison(
+        prepared,
+        model,
+        tuple(
+            _run_figures(run, driven[index], legs, spread, index, model.of_run(index))
+            for index, run in enumerate(prepared.runs)
+        ),
+        tuple(lengths),
+        by_variables(
+            chosen, spread[kept], {name: part[kept] for name, part in legs.variables.items()}
+        ),
+        cells_of(
+            chosen,
+            spread[kept],
+            0.5 * (legs.x + legs.end_x)[kept],
+            0.5 * (legs.y + legs.end_y)[kept],
+            prepared.leg,
+        ),
+        legs,
+        spread,
+        driven,
+    )
+
+
+def _figures(legs: Legs, left: Floats, which: np.ndarray) -> LegFigures:
+    kept = which & ~legs.outlier
+    every, chosen = legs.errors.chosen(which), legs.errors.chosen(kept)
+    figures, whole = statistics(chosen), statistics(every)
+    spread = left[kept]
+    freedom = int(np.isfinite(spread).sum())
+    scatter = squared_deviation(spread, chosen.covariance).sum() / freedom if freedom else np.nan
+    return LegFigures(
+        LegStatistics(
+            figures.count,
+            figures.rmse_position_m,
+            whole.median_position_m,
+            figures.rmse_yaw_rad,
+            figures.nees,
+            figures.coverage_95,
+        ),
+        int((which & legs.outlier).sum()),
+        root_mean_square(every.distance),
+        float(scatter),
+        noise_factor(spread, chosen.covariance, chosen.wheels),
+    )
+
+
+def _run_figures(
+    run: Run, path: Residual, legs: Legs, left: Floats, index: int, robot: Robot
+) -> RunFigures:
+    off = np.abs(path.measured - path.predicted)
+    known = np.flatnonzero(np.isfinite(off))
+    turned = np.flatnonzero(np.isfinite(path.measured_yaw))
+    last = int(turned[-1]) if turned.size > 1 else 0
+    travel = 0.5 * (
+        np.diff(run.ticks.left.astype(np.float64)) * robot.left_tick
+        + np.diff(run.ticks.right.astype(np.float64)) * robot.right_tick
+    )
+    return RunFigures(
+        run,
+        float(np.nansum(np.abs(travel))),
+        float(np.ptp(run.ticks.time)),
+        float(off[known[-1]]) if known.size else np.nan,
+        wrap(float(path.measured_yaw[last] - path.predicted_yaw[last])) if last else np.nan,
+        root_mean_square(off),
+        _figures(legs, left, legs.run == index),
+    )

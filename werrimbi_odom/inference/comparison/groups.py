@@ -1,0 +1,196 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where errors are larger than elsewhere: by speed, heading, time ..., by place on the floor."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.comparison.legs import LegErrors, LegStatistics, statistics
+from werrimbi_odom.inference.comparison.systematic import CHANNELS
+from werrimbi_odom.model.pose import Floats
+
+DEPENDS_P = 1e-4
+"""Below this (corrected for the number looked at) errors go with a variable."""
+
+_BINS = 5
+_SECTORS = 8
+_FEWEST = 8  # legs in a bin
+_CELLS = 8  # across the floor
+_FEWEST_IN_CELL = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Bin:
+    """Legs within a range of one variable."""
+
+    low: float
+    high: float
+    figures: LegStatistics
+    mean: tuple[float, float, float]
+    """Mean error along, sideways, in heading [m, m, rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class ByVariable:
+    """Errors over the range of one variable."""
+
+    name: str
+    """With its unit."""
+    bins: tuple[Bin, ...]
+    p_values: Mapping[str, float]
+    """That the mean errors along, sideways, heading, and the `size` of errors, go with it by chance
+    (corrected for all variables and channels); what is systematic in travel and turn taken off."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """A square of the floor."""
+
+    x: float
+    """Of its middle [m]."""
+    y: float
+    side: float
+    figures: LegStatistics
+    p_value: float
+    """That errors are so much larger here than elsewhere by chance (corrected)."""
+
+    @property
+    def stands_out(self) -> bool:
+        """Whether they are."""
+        return self.p_value < DEPENDS_P
+
+
+def by_variables(
+    legs: LegErrors, left: Floats, variables: Mapping[str, Floats]
+) -> tuple[ByVariable, ...]:
+    """Bins and tests of every variable that varies.
+
+    Parameters
+    ----------
+    left : ndarray, shape (m, 3)
+        Errors less what is systematic.
+    variables
+        Value of each leg by name with unit; angles (`heading`) are binned in sectors.
+    """
+    members = {name: _bins(name, values) for name, values in variables.items()}
+    members = {name: found for name, found in members.items() if len(found) > 1}
+    tried = max(len(members) * (len(CHANNELS) + 1), 1)
+    result = []
+    for name, found in members.items():
+        p_values = {
+            channel: min(1.0, tried * _differ([signs[rows] for _, _, rows in found]))
+            for channel, signs in _signals(legs, left).items()
+        }
+        bins = tuple(
+            Bin(low, high, statistics(legs.chosen(rows)), _means(legs.error[rows]))
+            for low, high, rows in found
+        )
+        result.append(ByVariable(name, bins, p_values))
+    return tuple(result)
+
+
+def _signals(legs: LegErrors, left: Floats) -> dict[str, Floats]:
+    """Errors in units of what is promised, and the logarithm of their size; shape (m,) each."""
+    promised = np.sqrt(np.maximum(np.diagonal(legs.covariance, axis1=1, axis2=2), 1e-300))
+    white = left / promised
+    signals = {channel: white[:, index] for index, channel in enumerate(CHANNELS)}
+    mean = np.nanmean(np.where(np.isfinite(white), white, 0.0) ** 2, axis=1)
+    signals["size"] = np.log(mean + 1e-2)
+    return signals
+
+
+def _bins(name: str, values: Floats) -> list[tuple[float, float, NDArray[np.bool_]]]:
+    known = np.isfinite(values)
+    if known.sum() < 2 * _FEWEST:
+        return []
+    if name.startswith("heading"):
+        edges = np.linspace(-np.pi, np.pi, _SECTORS + 1)
+        values = np.mod(values + np.pi, 2.0 * np.pi) - np.pi
+    else:
+        count = min(_BINS, int(known.sum()) // _FEWEST)
+        edges = np.unique(np.quantile(values[known], np.linspace(0.0, 1.0, count + 1)))
+        scale = float(np.abs(edges).max())
+        edges = edges[np.concatenate([[True], np.diff(edges) > 1e-3 * scale])]
+    found = []
+    for low, high in pairwise(edges.tolist()):
+        rows = known & (values >= low) & ((values < high) | (high == edges[-1]))
+        if rows.sum() >= _FEWEST:
+            found.append((float(low), float(high), rows))
+    return found
+
+
+def _differ(groups: list[Floats]) -> float:
+    """Chance that groups of equal mean differ so much: Welch's analysis of variance."""
+    from scipy.stats import f as fisher
+
+    groups = [known for group in groups if (known := group[np.isfinite(group)]).size >= _FEWEST]
+    if len(groups) < 2:
+        return 1.0
+    count = np.array([group.size for group in groups], dtype=np.float64)
+    mean = np.array([group.mean() for group in groups])
+    variance = np.array([group.var(ddof=1) for group in groups])
+    if not (variance > 0.0).all():
+        return 1.0
+    weight = count / variance
+    total = weight.sum()
+    between = float(np.sum(weight * (mean - np.sum(weight * mean) / total) ** 2))
+    free = len(groups) - 1
+    lam = float(np.sum((1.0 - weight / total) ** 2 / (count - 1.0)))
+    ratio = between / free / (1.0 + 2.0 * (free - 1) / ((free + 1) ** 2 - 1.0) * lam)
+    return float(fisher.sf(ratio, free, ((free + 1) ** 2 - 1.0) / (3.0 * max(lam, 1e-300))))
+
+
+def _means(errors: Floats) -> tuple[float, float, float]:
+    known = [column[np.isfinite(column)] for column in errors.T]
+    along, sideways, heading = (float(part.mean()) if part.size else np.nan for part in known)
+    return along, sideways, heading
+
+
+def cells_of(legs: LegErrors, left: Floats, x: Floats, y: Floats, leg: float) -> tuple[Cell, ...]:
+    """Squares of the floor with the legs driven there, those that stand out first.
+
+    Parameters
+    ----------
+    x, y : ndarray, shape (m,)
+        Middle of each leg [m]; NaN where not measured.
+    leg : float
+        Length of a leg, which no square is smaller than [m].
+    """
+    from scipy.stats import t as student
+
+    known = np.isfinite(x) & np.isfinite(y)
+    if known.sum() < 2 * _FEWEST:
+        return ()
+    extent = max(float(np.ptp(x[known])), float(np.ptp(y[known])))
+    side = max(leg, extent / _CELLS)
+    column = np.where(known, np.floor(np.nan_to_num(x) / side), np.inf)
+    row = np.where(known, np.floor(np.nan_to_num(y) / side), np.inf)
+    size = _signals(legs, left)["size"]
+    places = np.unique(np.stack([column[known], row[known]], axis=-1), axis=0)
+    found = []
+    for at in places:
+        here = known & (column == at[0]) & (row == at[1])
+        others = known & ~here
+        if here.sum() < _FEWEST_IN_CELL or others.sum() < _FEWEST:
+            continue
+        spread = np.sqrt(
+            size[here].var(ddof=1) / here.sum() + size[others].var(ddof=1) / others.sum()
+        )
+        ahead = float((size[here].mean() - size[others].mean()) / max(spread, 1e-12))
+        chance = float(student.sf(ahead, here.sum() - 1))
+        found.append(
+            Cell(
+                float((at[0] + 0.5) * side),
+                float((at[1] + 0.5) * side),
+                side,
+                statistics(legs.chosen(here)),
+                min(1.0, chance * len(places)),
+            )
+        )
+    return tuple(sorted(found, key=lambda cell: cell.p_value))

@@ -1,0 +1,318 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Runs prepared for a comparison: legs cut, the reference's noise and its jumps found, once.
+
+What is compared later over the same runs (another robot file, one more effect) is compared over the
+same legs, with the same legs left out and the same noise of the reference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.comparison.jumps import jumped_legs, jumps_of
+from werrimbi_odom.inference.comparison.legs import LegErrors, errors_of, joined
+from werrimbi_odom.inference.comparison.reference_noise import (
+    USUAL_SIGMA_XY,
+    USUAL_SIGMA_YAW,
+    Measure,
+    Residual,
+    measured_alike,
+    reference_noise,
+    residuals_of,
+)
+from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, MatchedRun, cut, every_pose
+from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+TIMES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
+"""Lengths of legs, in units of the one asked for."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceNoise:
+    """Standard deviations of the reference itself, and how they are known."""
+
+    sigma_xy: float
+    """[m]"""
+    sigma_yaw: float
+    """[rad]"""
+    xy_told: str
+    """given (an option), stated (in the record), estimated, or assumed (too few poses)."""
+    yaw_told: str
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Legs:
+    """All legs of one length, run by run, those on which the reference jumped among them."""
+
+    leg: float
+    """[m]"""
+    errors: LegErrors
+    outlier: NDArray[np.bool_]
+    run: NDArray[np.intp]
+    """Index of the run, shape (m,)."""
+    start_time: Floats
+    """[s]"""
+    end_time: Floats
+    x: Floats
+    """Measured position at the start, as the reference gives it, shape (m,) [m]."""
+    y: Floats
+    end_x: Floats
+    end_y: Floats
+    variables: Mapping[str, Floats]
+    """What errors may go with, by name with unit, shape (m,) each."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class _Group:
+    """Runs whose references measure alike."""
+
+    index: tuple[int, ...]
+    measure: Measure
+    every: Together
+    jumps: tuple[Floats, ...]
+    noise: ReferenceNoise
+    sigma_xy: Floats
+    """Of each run [m]."""
+    sigma_yaw: Floats
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Prepared:
+    """Runs ready to be judged."""
+
+    robot: Robot
+    """By whose travel the legs are cut."""
+    kind: ReferenceKind
+    leg: float
+    runs: tuple[Run, ...]
+    groups: tuple[_Group, ...]
+    cuts: Mapping[float, tuple[Together, ...]]
+    """By length, for each group."""
+
+    @property
+    def measures(self) -> tuple[Measure, ...]:
+        """What the reference of each run measures."""
+        found: dict[int, Measure] = {}
+        for group in self.groups:
+            found.update(dict.fromkeys(group.index, group.measure))
+        return tuple(found[index] for index in range(len(self.runs)))
+
+    @property
+    def noises(self) -> tuple[tuple[Measure, ReferenceNoise], ...]:
+        """The reference's noise, for each of the ways in which it measures."""
+        return tuple((group.measure, group.noise) for group in self.groups)
+
+
+def prepare(
+    runs: Sequence[Run],
+    robot: Robot,
+    kind: ReferenceKind = "absolute",
+    *,
+    leg: float = 1.0,
+    limits: EncoderLimits | None = None,
+    sigma_xy: float | None = None,
+    sigma_yaw: float | None = None,
+    show: Callable[[float, str], None] = lambda share, words: None,
+) -> Prepared:
+    """Match, find the reference's noise and jumps, and cut legs of several lengths.
+
+    Raises
+    ------
+    InputError
+        When a run has no usable reference or no ticks.
+    """
+    members: dict[Measure, list[tuple[int, MatchedRun]]] = {}
+    for index, run in enumerate(runs):
+        show(0.5 * index / len(runs), f"matching {run.name}")
+        alike, measure = measured_alike(run)
+        members.setdefault(measure, []).append((index, every_pose(alike, robot, limits)))
+    groups = tuple(
+        _group(robot, measure, found, kind, sigma_xy, sigma_yaw)
+        for measure, found in members.items()
+    )
+    cuts: dict[float, tuple[Together, ...]] = {}
+    counts: set[int] = set()
+    for times in sorted(TIMES, key=lambda times: (times != 1.0, times)):
+        show(0.5 + 0.5 * len(cuts) / len(TIMES), "cutting legs")
+        legs = tuple(
+            together(
+                [cut(run, robot, times * leg, times * QUARTER_TURN) for run in group.every.runs]
+            )
+            for group in groups
+        )
+        count = sum(part.count for part in legs)
+        if times == 1.0 or (count not in counts and count >= max(8, 2 * len(runs))):
+            cuts[times * leg] = legs
+            counts.add(count)
+    return Prepared(robot, kind, leg, tuple(runs), groups, cuts)
+
+
+def _group(
+    robot: Robot,
+    measure: Measure,
+    members: list[tuple[int, MatchedRun]],
+    kind: ReferenceKind,
+    sigma_xy: float | None,
+    sigma_yaw: float | None,
+) -> _Group:
+    every = together([run for _, run in members])
+    plain = Model(robot, tuple({} for _ in members))
+    residuals, _ = residuals_of(plain, every, measure)
+    estimated = reference_noise(robot, residuals, kind)
+    position, of_position, told = _known(
+        sigma_xy, [run.sigma_xy for run in every.runs], estimated[0], USUAL_SIGMA_XY
+    )
+    heading, of_heading, yaw_told = _known(
+        sigma_yaw, [run.sigma_yaw for run in every.runs], estimated[1], USUAL_SIGMA_YAW
+    )
+    return _Group(
+        tuple(index for index, _ in members),
+        measure,
+        every,
+        tuple(jumps_of(residual) for residual in residuals),
+        ReferenceNoise(position, heading, told, yaw_told),
+        of_position,
+        of_heading,
+    )
+
+
+def _known(
+    given: float | None, stated: list[float | None], estimated: float | None, usual: float
+) -> tuple[float, Floats, str]:
+    """One sigma for telling, those of the runs for counting, and where they are from."""
+    count = len(stated)
+    if given is not None:
+        return given, np.full(count, given), "given"
+    fallback, told = (usual, "assumed") if estimated is None else (estimated, "estimated")
+    values = np.array([fallback if value is None else value for value in stated])
+    if all(value is not None for value in stated):
+        told = "stated"
+    return float(np.sqrt(np.mean(values**2))), values, told
+
+
+def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
+    """Errors of all legs of one length, in the order of the runs."""
+    parts = []
+    for group, runs in zip(prepared.groups, prepared.cuts[leg], strict=True):
+        own = Model(model.robot, tuple(model.own[index] for index in group.index))
+        by_position = group.measure == "position"
+        if by_position:
+            _, own = residuals_of(own, group.every, group.measure)
+        errors = errors_of(
+            own,
+            runs,
+            group.sigma_xy[runs.run_of_leg],
+            group.sigma_yaw[runs.run_of_leg],
+            prepared.kind,
+            by_position=by_position,
+        )
+        parts.append(_table(prepared, group, runs, errors, leg))
+    return _in_order(parts)
+
+
+def paths(prepared: Prepared, model: Model) -> tuple[Residual, ...]:
+    """Measured and dead-reckoned path of every run, in their order."""
+    found: dict[int, Residual] = {}
+    for group in prepared.groups:
+        own = Model(model.robot, tuple(model.own[index] for index in group.index))
+        residuals, _ = residuals_of(own, group.every, group.measure)
+        found.update(zip(group.index, residuals, strict=True))
+    return tuple(found[index] for index in range(len(prepared.runs)))
+
+
+def _table(
+    prepared: Prepared, group: _Group, runs: Together, errors: LegErrors, leg: float
+) -> Legs:
+    outlier = np.concatenate(
+        [
+            jumped_legs(
+                jumps, np.searchsorted(every.measured.time, run.measured.time), prepared.kind
+            )
+            for jumps, every, run in zip(group.jumps, group.every.runs, runs.runs, strict=True)
+        ]
+    )
+    times = [run.measured.time for run in runs.runs]
+    begin = np.concatenate([time[:-1] for time in times])
+    end = np.concatenate([time[1:] for time in times])
+    return Legs(
+        leg,
+        errors,
+        outlier,
+        np.array(group.index)[runs.run_of_leg],
+        begin,
+        end,
+        runs.start[:, 0],
+        runs.start[:, 1],
+        runs.finish[:, 0],
+        runs.finish[:, 1],
+        _variables(runs, errors, begin, end),
+    )
+
+
+def _variables(runs: Together, errors: LegErrors, begin: Floats, end: Floats) -> dict[str, Floats]:
+    first = runs.legs[runs.run_of_leg]
+    driven = np.concatenate([[0.0], np.cumsum(errors.length)])
+    middle = 0.5 * (begin + end)
+    variables = {
+        "speed [m/s]": errors.length / runs.duration,
+        "turn rate [rad/s]": errors.turn / runs.duration,
+        "heading [rad]": errors.heading,
+        "time since start [s]": begin - begin[first],
+        "distance since start [m]": driven[:-1] - driven[first],
+    }
+    names = dict.fromkeys(name for run in runs.runs for name in run.counters.channels)
+    for name in names:
+        values = np.full(runs.count, np.nan)
+        for index, run in enumerate(runs.runs):
+            channel = run.counters.channels.get(name)
+            if channel is None or not np.isfinite(channel).any():
+                continue
+            known = np.isfinite(channel)
+            own = slice(runs.legs[index], runs.legs[index + 1])
+            values[own] = np.interp(middle[own], run.counters.time[known], channel[known])
+        variables[name] = values
+    return variables
+
+
+def _in_order(parts: list[Legs]) -> Legs:
+    """Legs of all groups, sorted by run."""
+    if len(parts) == 1:
+        return parts[0]
+    run = np.concatenate([part.run for part in parts])
+    order = np.argsort(run, kind="stable")
+    names = dict.fromkeys(name for part in parts for name in part.variables)
+    variables = {
+        name: np.concatenate(
+            [part.variables.get(name, np.full(part.run.size, np.nan)) for part in parts]
+        )[order]
+        for name in names
+    }
+
+    def whole(name: str) -> Any:
+        return np.concatenate([getattr(part, name) for part in parts])[order]
+
+    return Legs(
+        parts[0].leg,
+        joined([part.errors for part in parts]).chosen(order),
+        whole("outlier"),
+        whole("run"),
+        whole("start_time"),
+        whole("end_time"),
+        whole("x"),
+        whole("y"),
+        whole("end_x"),
+        whole("end_y"),
+        variables,
+    )

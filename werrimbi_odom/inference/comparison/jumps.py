@@ -1,0 +1,70 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where a reference jumped: a tracker that lost its markers, a scan match that failed."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.comparison.reference_noise import Residual
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.model.pose import Floats
+
+_JUMP = 12.0  # times the usual scatter of an interval
+_BEYOND = 0.5  # share of the motion about it that no model's error reaches at one blow
+_NORMAL = 1.4826  # from median deviation to standard deviation
+
+
+def jumps_of(item: Residual) -> Floats:
+    """What the reference jumped by in each interval, (x, y, yaw); zero where it did not; (n-1, 3).
+
+    A jump is an error of one interval beyond all others, beyond its neighbours', and beyond what
+    was driven about it: no model, however wrong, errs like this.
+    """
+    errors = np.where(np.isfinite(item.intervals), item.intervals, 0.0)
+    if errors.shape[0] < 8:
+        return np.zeros_like(errors)
+    usual = _running_median(errors)
+    left = errors - usual
+    scatter = _NORMAL * np.median(np.abs(left), axis=0)
+    driven = _running_max(np.abs(item.relative + 0.0))
+    driven[:, :2] = driven[:, :2].max(axis=1, keepdims=True)
+    limit = np.maximum(_JUMP * scatter, _BEYOND * (driven + np.abs(usual)))
+    limit[:, :2] = np.hypot(limit[:, :2], 1e-9)
+    wrong = (np.abs(left) > limit) & (np.abs(left) > 1e-9)
+    return np.where(wrong, left, 0.0)
+
+
+def _running_median(values: Floats, reach: int = 3) -> Floats:
+    """Median of each row's neighbours, itself among them."""
+    padded = np.pad(values, ((reach, reach), (0, 0)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
+    return np.asarray(np.median(windows, axis=-1))
+
+
+def _running_max(values: Floats, reach: int = 3) -> Floats:
+    padded = np.pad(values, ((reach, reach), (0, 0)), mode="edge")
+    windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
+    return np.asarray(np.max(windows, axis=-1))
+
+
+def jumped_legs(jumps: Floats, chosen: NDArray[np.intp], kind: ReferenceKind) -> NDArray[np.bool_]:
+    """Which legs a jump spoils, shape (m,).
+
+    A spike within a leg that has gone at its end spoils nothing where poses are absolute.
+
+    Parameters
+    ----------
+    chosen
+        Index of the reference pose at which each leg begins and ends, shape (m + 1,).
+    """
+    happened = np.any(jumps != 0.0, axis=1).astype(np.float64)
+    sums = np.concatenate([np.zeros((1, 3)), np.cumsum(jumps, axis=0)])
+    number = np.concatenate([[0.0], np.cumsum(happened)])
+    lasting = np.abs(np.diff(sums[chosen], axis=0))
+    count = np.diff(number[chosen])
+    if kind == "incremental":
+        return np.asarray(count > 0.0)
+    largest = np.abs(jumps).max(axis=0, initial=0.0)
+    return np.asarray((count > 0.0) & np.any(lasting > 0.2 * np.maximum(largest, 1e-12), axis=1))

@@ -1,0 +1,248 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Errors of the legs, and whether the covariance promised them: RMSE, NEES, coverage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.comparison.position_filter import position_errors
+from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind, errors_between, reading_noise
+from werrimbi_odom.inference.fitting.matching import MatchedRun
+from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all, right_handed
+from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.model.covariance import PathNoise, piece_covariance
+from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.motion import BodyMotion
+from werrimbi_odom.model.pieces import PieceKind, kind_of
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+CHI2_95 = np.array([np.inf, 3.841458820694124, 5.991464547107979, 7.814727903251179])
+"""95 % quantiles of chi-squared by its degrees of freedom."""
+
+
+@dataclass(frozen=True, slots=True)
+class LegErrors:
+    """Measured minus predicted relative pose of legs, and the covariance promised for it."""
+
+    error: Floats
+    """(x, y, yaw) in the frame of the robot at the leg's start, shape (m, 3) [m, m, rad].
+
+    NaN where not measured.
+    """
+    covariance: Floats
+    """Of the error: wheels, counts and reference, shape (m, 3, 3)."""
+    kind: NDArray[np.str_]
+    """line, arc or spin, shape (m,)."""
+    length: Floats
+    """Path driven, shape (m,) [m]."""
+    wheels: Floats
+    """The part of the covariance that the wheels' noise makes, shape (m, 3, 3)."""
+    along: Floats
+    """Signed travel, shape (m,) [m]."""
+    turn: Floats
+    """Change of heading, shape (m,) [rad]."""
+    heading: Floats
+    """At the leg's start in the reference's frame, shape (m,); NaN where unknown [rad]."""
+
+    @property
+    def distance(self) -> Floats:
+        """Position errors, shape (m,) [m]."""
+        return np.hypot(self.error[:, 0], self.error[:, 1])
+
+    @property
+    def freedom(self) -> NDArray[np.intp]:
+        """How many of x, y, yaw were measured, shape (m,)."""
+        return np.asarray(np.isfinite(self.error).sum(axis=1))
+
+    @property
+    def deviation(self) -> Floats:
+        """Squared Mahalanobis distance error' Σ⁻¹ error, shape (m,): chi-squared if honest."""
+        return squared_deviation(self.error, self.covariance)
+
+    def chosen(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> LegErrors:
+        """Some of the legs, by mask or by index."""
+        return LegErrors(
+            self.error[which],
+            self.covariance[which],
+            self.kind[which],
+            self.length[which],
+            self.wheels[which],
+            self.along[which],
+            self.turn[which],
+            self.heading[which],
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class LegStatistics:
+    """Figures over legs; NaN where there are none, or nothing of it was measured."""
+
+    count: int
+    rmse_position_m: float
+    median_position_m: float
+    rmse_yaw_rad: float
+    nees: float
+    """Mean of error' Σ⁻¹ error over its degrees of freedom: 1 where the covariance is honest."""
+    coverage_95: float
+    """Share of legs inside the 95 % ellipsoid."""
+
+
+def leg_errors(
+    robot: Robot,
+    run: MatchedRun,
+    sigma_xy: float,
+    sigma_yaw: float,
+    kind: ReferenceKind = "absolute",
+) -> LegErrors:
+    """Errors of all legs of one run; see `errors_of`."""
+    return errors_of(Model(robot, ({},)), together([run]), sigma_xy, sigma_yaw, kind)
+
+
+def errors_of(
+    model: Model,
+    runs: Together,
+    sigma_xy: float | Floats,
+    sigma_yaw: float | Floats,
+    kind: ReferenceKind = "absolute",
+    *,
+    by_position: bool = False,
+) -> LegErrors:
+    """Errors of all legs of several runs.
+
+    Parameters
+    ----------
+    sigma_xy, sigma_yaw : float, or ndarray of shape (m,)
+        Noise of the reference: of each pose (absolute) or each interval (incremental) [m, rad].
+    by_position : bool
+        The reference gives positions alone; headings then come from those before the leg.
+    """
+    robot = model.robot
+    prediction = predict_all(model, runs)
+    view = view_of(robot.effects)
+    start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
+    wheels = (
+        robot.left_wheel_noise**2 * prediction.per_left
+        + robot.right_wheel_noise**2 * prediction.per_right
+    )
+    if by_position:
+        found = position_errors(
+            prediction.relative,
+            wheels,
+            start[:, :2],
+            finish[:, :2],
+            np.square(sigma_xy) + float(reading_noise(robot)[0]),
+            runs.legs,
+            _headings(model, runs, start),
+        )
+        error, wheels, reference = found.error, found.wheels, found.reference
+        heading = found.heading
+    else:
+        heading = start[:, 2]
+        error = errors_between(start, finish, prediction)
+        reference = _reference_part(robot, runs, prediction, sigma_xy, sigma_yaw, kind)
+    return LegErrors(
+        error,
+        wheels + reference,
+        kinds_of(prediction.along, prediction.turn, robot.track),
+        prediction.length,
+        wheels,
+        prediction.along,
+        prediction.turn,
+        heading,
+    )
+
+
+def _headings(model: Model, runs: Together, start: Floats) -> Floats:
+    """Heading at the first pose of each run: measured, or else the model's, shape (runs,)."""
+    measured = start[runs.legs[:-1], 2]
+    given = [0.0 if yaw is None else yaw for yaw in model.start_yaws]
+    return np.where(np.isfinite(measured), measured, given)
+
+
+def kinds_of(along: Floats, turn: Floats, track: float) -> NDArray[np.str_]:
+    """line, arc or spin of each leg."""
+    motion = zip(along.tolist(), turn.tolist(), strict=True)
+    kinds: list[PieceKind] = [kind_of(BodyMotion(go, 0.0, by), track) for go, by in motion]
+    return np.array(kinds, dtype=np.str_)
+
+
+def _reference_part(
+    robot: Robot,
+    runs: Together,
+    prediction: Prediction,
+    sigma_xy: float | Floats,
+    sigma_yaw: float | Floats,
+    kind: ReferenceKind,
+) -> Floats:
+    """What the reference itself, and reading the counters, adds to the error of a leg."""
+    reading = reading_noise(robot)
+    xy, yaw = (np.zeros(runs.count) + np.square(sigma) for sigma in (sigma_xy, sigma_yaw))
+    if kind == "incremental":
+        none = np.zeros(runs.count)
+        leg = BodyMotion(prediction.along, none, prediction.turn)
+        swing = piece_covariance(leg, PathNoise(none, runs.intervals * yaw, none), none).matrix()
+        flat = (runs.intervals * xy)[:, None, None] * np.diag([1.0, 1.0, 0.0])
+        return np.asarray(swing + flat + 2.0 * np.diag(reading))
+    lever = np.zeros((runs.count, 3, 3)) + np.eye(3)
+    lever[:, 0, 2], lever[:, 1, 2] = -prediction.relative[:, 1], prediction.relative[:, 0]
+    pose = (np.stack([xy, xy, yaw], axis=-1) + reading)[:, :, None] * np.eye(3)
+    return np.asarray(pose + lever @ pose @ lever.transpose(0, 2, 1))
+
+
+def squared_deviation(error: Floats, covariance: Floats) -> Floats:
+    """Compute error' Σ⁻¹ error of rows (m, 3), over what was measured of each; shape (m,)."""
+    known = np.isfinite(error)
+    both = known[:, :, None] & known[:, None, :]
+    shape = np.where(both, covariance, 0.0) + np.where(known, 0.0, 1.0)[:, :, None] * np.eye(3)
+    left = np.where(known, error, 0.0)
+    solved = np.linalg.solve(shape, left[..., None])[..., 0]
+    return np.asarray(np.sum(left * solved, axis=-1))
+
+
+def statistics(legs: LegErrors) -> LegStatistics:
+    """Figures over all of the legs given."""
+    count = legs.error.shape[0]
+    freedom = legs.freedom
+    if not freedom.any():
+        nothing = float("nan")
+        return LegStatistics(count, nothing, nothing, nothing, nothing, nothing)
+    deviation = legs.deviation
+    measured = freedom > 0
+    return LegStatistics(
+        count,
+        root_mean_square(legs.distance),
+        float(np.median(known)) if (known := _finite(legs.distance)).size else float("nan"),
+        root_mean_square(legs.error[:, 2]),
+        float(deviation.sum() / freedom.sum()),
+        float(np.mean((deviation <= CHI2_95[freedom])[measured])),
+    )
+
+
+def root_mean_square(values: Floats) -> float:
+    """Over what is finite; NaN where nothing is."""
+    known = _finite(values)
+    return float(np.sqrt(np.mean(known**2))) if known.size else float("nan")
+
+
+def _finite(values: Floats) -> Floats:
+    return values[np.isfinite(values)]
+
+
+def joined(parts: list[LegErrors]) -> LegErrors:
+    """Legs of several runs as one set."""
+    return LegErrors(
+        np.concatenate([part.error for part in parts]),
+        np.concatenate([part.covariance for part in parts]),
+        np.concatenate([part.kind for part in parts]),
+        np.concatenate([part.length for part in parts]),
+        np.concatenate([part.wheels for part in parts]),
+        np.concatenate([part.along for part in parts]),
+        np.concatenate([part.turn for part in parts]),
+        np.concatenate([part.heading for part in parts]),
+    )

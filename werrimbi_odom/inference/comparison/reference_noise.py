@@ -1,0 +1,295 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a reference measures, and how noisy it is by itself.
+
+All of it is read from the reference's own intervals, before any leg is cut. A model that is wrong
+errs smoothly, or grows with the travel; the noise of a reference does neither. So its noise is
+taken from third differences of measured minus predicted path, over a few poses, and the part of
+them that grows with the span (what the wheels add) is taken off by a line through several spans.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.inference.fitting.knobs import START_YAW, Model
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind, reading_noise
+from werrimbi_odom.inference.fitting.prediction import legs_shown, right_handed
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.pose import Floats, wrap_all
+from werrimbi_odom.model.robot import Robot
+
+Measure = Literal["pose", "position", "heading"]
+"""What the reference gives at both ends of a leg."""
+
+USUAL_SIGMA_XY, USUAL_SIGMA_YAW = 2e-3, 5e-3
+"""Noise by tape and straightedge [m, rad]: assumed where poses are too few to tell."""
+
+_ENOUGH = 30  # differences, below which a scatter is not told from them
+_REACH = 0.3  # [m] path (or [rad]) that a difference may span; the model's error bends beyond it
+_GROWS = 1.25  # times, from the shortest span to the longest, that the variance grows by chance
+_LEAST = 0.25  # share of the shortest differences' variance that is taken for noise at least
+_THIRD = np.array([-1.0, 3.0, -3.0, 1.0])
+_NORMAL = 1.4826  # from median deviation to standard deviation
+
+
+@dataclass(frozen=True, slots=True)
+class Residual:
+    """Measured and predicted path of one run, at every reference pose; arrays of shape (n,)."""
+
+    measured: NDArray[np.complex128]
+    """x + iy, frame right-handed; NaN where not measured [m]."""
+    measured_yaw: Floats
+    predicted: NDArray[np.complex128]
+    """Dead reckoning of the reference's point from the first pose, start heading fitted [m]."""
+    predicted_yaw: Floats
+    """In the reference's frame [rad]."""
+    intervals: Floats
+    """Measured minus predicted relative pose of each interval, shape (n - 1, 3)."""
+    relative: Floats
+    """Predicted relative pose of each interval, shape (n - 1, 3)."""
+
+
+def measured_alike(run: Run) -> tuple[Run, Measure]:
+    """What most rows of the reference measure, and the run with the other rows left out.
+
+    Positions without headings keep the heading of the first row, where it was measured.
+    """
+    reference = run.reference
+    if reference is None:
+        return run, "pose"  # matching says what is missing
+    position, yaw = reference.has_position, reference.has_yaw
+    both = position & yaw
+    if both.sum() >= max(2, 0.5 * max(position.sum(), yaw.sum())):
+        return replace(run, reference=_rows(reference, both)), "pose"
+    if position.sum() >= max(2, yaw.sum()):
+        kept = _rows(reference, position)
+        start = np.where(np.arange(kept.yaw.size) == 0, kept.yaw, np.nan)
+        return replace(run, reference=replace(kept, yaw=start)), "position"
+    return replace(run, reference=_rows(reference, yaw)), "heading"
+
+
+def _rows(reference: Reference, which: NDArray[np.bool_]) -> Reference:
+    sigmas = (reference.sigma_xy, reference.sigma_yaw)
+    return Reference(
+        *(part[which] for part in (reference.time, reference.x, reference.y, reference.yaw)),
+        *(None if part is None else part[which] for part in sigmas),
+    )
+
+
+def residuals_of(
+    model: Model, every: Together, measure: Measure
+) -> tuple[tuple[Residual, ...], Model]:
+    """Dead reckoning along every reference pose, against what was measured, run by run.
+
+    Parameters
+    ----------
+    every
+        Runs from `matching.every_pose`.
+
+    Returns
+    -------
+    residuals, model
+        The model with the heading at the first pose of each run, where positions alone are
+        measured and the model does not say it: the one that lays the whole path onto them.
+    """
+    view = view_of(model.robot.effects)
+    relative = legs_shown(model, every)
+    if measure == "position":
+        model = _with_headings(model, every, relative)
+        relative = legs_shown(model, every)
+    found = []
+    for index, run in enumerate(every.runs):
+        own = slice(every.legs[index], every.legs[index + 1])
+        poses = np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1)
+        poses = right_handed(poses, view)
+        given = model.start_yaw(index)
+        heading = float(poses[0, 2]) if given is None else given
+        found.append(_residual(poses, relative[own], heading, measure))
+    return tuple(found), model
+
+
+def _with_headings(model: Model, every: Together, relative: Floats) -> Model:
+    mirror = -1.0 if view_of(model.robot.effects).mirrored else 1.0
+    own: list[dict[str, float]] = []
+    for index, run in enumerate(every.runs):
+        known = model.start_yaw(index) is not None or np.isfinite(run.measured.yaw[0])
+        legs = slice(every.legs[index], every.legs[index + 1])
+        measured = run.measured.x + 1j * mirror * run.measured.y
+        shape = chained(relative[legs])[0]
+        own.append({} if known else {START_YAW: fitted_heading(shape, measured)})
+    return model.turned({}, own)
+
+
+def _residual(poses: Floats, relative: Floats, heading: float, measure: Measure) -> Residual:
+    predicted, yaw = chained(relative)
+    measured = poses[:, 0] + 1j * poses[:, 1]
+    begin = 0j if measure == "heading" else measured[0]
+    facing = poses[:, 2]
+    if measure == "position":
+        facing = _facing(predicted, yaw, measured, heading)
+    moved = np.exp(-1j * facing[:-1]) * np.diff(measured)
+    turned = np.full(yaw.size - 1, np.nan)
+    if measure != "position":
+        turned = wrap_all(np.diff(poses[:, 2]) - relative[:, 2])
+    return Residual(
+        measured,
+        poses[:, 2],
+        begin + np.exp(1j * heading) * predicted,
+        heading + yaw,
+        np.stack([moved.real - relative[:, 0], moved.imag - relative[:, 1], turned], axis=-1),
+        relative,
+    )
+
+
+def chained(relative: Floats) -> tuple[NDArray[np.complex128], Floats]:
+    """Positions and headings from relative poses (m, 3), the first at the origin; (m + 1,)."""
+    yaw = np.concatenate([[0.0], np.cumsum(relative[:, 2])])
+    steps = np.exp(1j * yaw[:-1]) * (relative[:, 0] + 1j * relative[:, 1])
+    return np.concatenate([[0j], np.cumsum(steps)]), yaw
+
+
+def fitted_heading(predicted: NDArray[np.complex128], measured: NDArray[np.complex128]) -> float:
+    """Heading at the start with which the whole predicted path lies closest to the measured."""
+    known = np.isfinite(measured)
+    shape = predicted[known] - predicted[known][0]
+    return float(np.angle(np.sum(np.conj(shape) * (measured[known] - measured[known][0]))))
+
+
+def _facing(
+    predicted: NDArray[np.complex128],
+    yaw: Floats,
+    measured: NDArray[np.complex128],
+    heading: float,
+) -> Floats:
+    """Headings from the positions about each pose: predicted path laid onto the measured."""
+    reach = 10
+    count = measured.size
+    index = np.arange(count)
+    low, high = np.maximum(index - reach, 0), np.minimum(index + reach, count - 1)
+    chord, seen_chord = predicted[high] - predicted[low], measured[high] - measured[low]
+    off = np.angle(seen_chord * np.conj(chord))
+    usable = (np.abs(chord) > 0.0) & (np.abs(seen_chord) > 0.0)
+    return yaw + np.where(usable, off, heading)
+
+
+def reference_noise(
+    robot: Robot, residuals: Sequence[Residual], kind: ReferenceKind
+) -> tuple[float | None, float | None]:
+    """Standard deviations (position [m], heading [rad]) of the reference itself.
+
+    Of each pose (absolute) or of each interval (incremental). None where poses are too few to
+    tell, or where nothing of it is measured.
+    """
+    reading = reading_noise(robot)
+    if kind == "incremental":
+        errors = np.concatenate([_steps(item) for item in residuals])
+        sigmas = [_growing(errors[:, part]) for part in ((0, 1), (2,))]
+        return _less(sigmas[0], 2.0 * reading[0]), _less(sigmas[1], 2.0 * reading[2])
+    return (
+        _less(_level([_position_differences(item) for item in residuals]), float(reading[0])),
+        _less(_level([_heading_differences(item) for item in residuals]), float(reading[2])),
+    )
+
+
+Differences = dict[int, tuple[Floats, float]]
+"""By span in intervals: third differences, and the motion that one of them spans."""
+
+_SPANS = (1, 2, 4)
+
+
+def _position_differences(item: Residual) -> Differences:
+    found: Differences = {}
+    path = np.abs(item.relative[:, :2]).sum(axis=1)
+    for span in _SPANS:
+        ahead = item.measured.size - 3 * span
+        if ahead < 1:
+            break
+        rows = np.arange(ahead)
+        moved = sum(
+            factor * item.predicted[rows + number * span] for number, factor in enumerate(_THIRD)
+        )
+        seen_moved = sum(
+            factor * item.measured[rows + number * span] for number, factor in enumerate(_THIRD)
+        )
+        off = item.measured_yaw[rows] - item.predicted_yaw[rows]
+        if not np.isfinite(off).all():
+            chord = item.predicted[rows + 3 * span] - item.predicted[rows]
+            off = np.angle((item.measured[rows + 3 * span] - item.measured[rows]) * np.conj(chord))
+        left = seen_moved - np.exp(1j * off) * moved
+        left = left[np.isfinite(left)]
+        reach = float(np.median(path[path > 0.0]) if (path > 0.0).any() else 0.0) * 3 * span
+        found[span] = (np.concatenate([left.real, left.imag]), reach)
+    return found
+
+
+def _heading_differences(item: Residual) -> Differences:
+    found: Differences = {}
+    off = np.concatenate([[0.0], np.cumsum(item.intervals[:, 2])])
+    turned = np.abs(item.relative[:, 2])
+    for span in _SPANS:
+        ahead = off.size - 3 * span
+        if ahead < 1:
+            break
+        rows = np.arange(ahead)
+        left = sum(factor * off[rows + number * span] for number, factor in enumerate(_THIRD))
+        reach = float(np.mean(turned)) * 3 * span
+        found[span] = (np.asarray(left)[np.isfinite(left)], reach)
+    return found
+
+
+def _level(runs: list[Differences]) -> float | None:
+    """Variance at a span of nothing, from what grows with the span; None where too few."""
+    spans, variances, counts = [], [], []
+    for span in _SPANS:
+        here = [run[span] for run in runs if span in run]
+        left = np.concatenate([item[0] for item in here]) if here else np.zeros(0)
+        reach = max((item[1] for item in here), default=0.0)
+        if left.size < _ENOUGH or (span > 1 and reach > _REACH):
+            break
+        spans.append(float(span))
+        variances.append((_NORMAL * float(np.median(np.abs(left)))) ** 2 / 20.0)
+        counts.append(float(left.size))
+    return _intercept(np.array(spans), np.array(variances), np.array(counts)) if spans else None
+
+
+def _intercept(at: Floats, variances: Floats, counts: Floats) -> float:
+    """Where a line through variances, weighed by how well each is known, meets zero."""
+    weight = counts / np.maximum(variances, 1e-300) ** 2
+    weight = weight / weight.sum()
+    middle, mean = float(weight @ at), float(weight @ variances)
+    if variances.max() < _GROWS * variances[0]:
+        return mean  # no more than chance; a line would carry that chance on to zero
+    spread = float(weight @ (at - middle) ** 2)
+    slope = float(weight @ ((at - middle) * variances)) / spread if spread > 0.0 else 0.0
+    # Where the growth outruns the noise the line is not to be trusted down to nothing.
+    return max(mean - max(slope, 0.0) * middle, _LEAST * float(variances[0]))
+
+
+def _steps(item: Residual) -> Floats:
+    """Differences of the errors of neighbouring intervals, as those of one: systematic part gone.
+
+    Shape (n - 2, 4): x, y, yaw, and the path of the two intervals.
+    """
+    path = np.hypot(item.relative[:, 0], item.relative[:, 1])
+    left = np.diff(item.intervals, axis=0) / np.sqrt(2.0)
+    return np.concatenate([left, 0.5 * (path[1:] + path[:-1])[:, None]], axis=1)
+
+
+def _growing(columns: Floats) -> float | None:
+    known = columns[np.isfinite(columns).all(axis=1)]
+    if known.shape[0] < _ENOUGH:
+        return None
+    return (_NORMAL * float(np.median(np.abs(known)))) ** 2
+
+
+def _less(variance: float | None, reading: float) -> float | None:
+    """Standard deviation without what reading the counters adds, which the legs have already."""
+    return None if variance is None else float(np.sqrt(max(variance - reading, 0.0)))

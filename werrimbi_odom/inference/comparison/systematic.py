@@ -1,0 +1,199 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What of the legs' errors is systematic, and whether the wheels' noise is as large as stated.
+
+For each motion type the errors along, sideways and in heading are laid on travel and turn by least
+squares; standard errors come from the scatter of the legs themselves (HC3), not from the promised
+covariance, which may be what is wrong. What is left over is scatter, and tells how many times too
+small or too large the wheels' noise is stated.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from werrimbi_odom.inference.comparison.legs import LegErrors, root_mean_square
+from werrimbi_odom.model.pose import Floats
+
+CHANNELS = ("along", "sideways", "heading")
+
+TERMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]] = {
+    "line": (("travel",), ("travel",), ("travel",)),
+    "arc": (("travel",), ("travel", "travel × turn"), ("turn", "travel")),
+    "spin": (("turn",), ("turn",), ("turn", "size of turn")),
+}
+"""What the error of each channel may be in proportion to, by motion type."""
+
+CERTAIN_P = 1e-4
+"""A systematic part is a finding below this: about twenty are looked at."""
+
+WORTH_SAYING = 0.2
+"""Nor is it one unless it is this share of what the covariance promises for such a leg."""
+
+_FEWEST = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Systematic:
+    """The part of one channel's error that goes with one variable, over one type of motion."""
+
+    kind: str
+    channel: str
+    per: str
+    """travel [m], turn [rad], size of turn [rad], travel × turn [m·rad]."""
+    value: float
+    """Measured minus predicted, per unit of it [m or rad]."""
+    std: float
+    p_value: float
+    size: float
+    """Root mean square of this part over the legs [m or rad]."""
+    promised: float
+    """Root mean square of what the covariance promises for the channel [m or rad]."""
+
+    common: bool
+    """Whether most legs have it, and not a few bad ones alone."""
+
+    @property
+    def finding(self) -> bool:
+        """Certain, common, and large enough to matter."""
+        worth = self.size >= WORTH_SAYING * self.promised
+        return self.common and worth and self.p_value < CERTAIN_P
+
+
+class NoiseFactor(NamedTuple):
+    """How many times larger the variance of the wheels' noise is than stated (k² by this)."""
+
+    value: float
+    low: float
+    """Likelihood interval, 99.9 %."""
+    high: float
+
+    @property
+    def told(self) -> bool:
+        """Whether the legs tell it to better than a factor of ten either way."""
+        return bool(np.isfinite(self.value) and self.high < 100.0 * max(self.low, 1e-12))
+
+
+UNTOLD = NoiseFactor(np.nan, 0.0, np.inf)
+
+
+def systematic_parts(legs: LegErrors) -> tuple[tuple[Systematic, ...], Floats]:
+    """All systematic parts, and the errors without them; shape (m, 3).
+
+    What is no finding stays in the errors: chance would be taken off otherwise.
+    """
+    found: list[Systematic] = []
+    left = legs.error.copy()
+    for kind, channels in TERMS.items():
+        for channel, names in enumerate(channels):
+            rows = np.flatnonzero((legs.kind == kind) & np.isfinite(legs.error[:, channel]))
+            if rows.size < _FEWEST + len(names):
+                continue
+            parts, predicted = _laid_on(legs, rows, channel, kind, names)
+            found += parts
+            if any(part.finding for part in parts):
+                left[rows, channel] -= predicted
+    return tuple(found), left
+
+
+def _laid_on(
+    legs: LegErrors, rows: np.ndarray, channel: int, kind: str, names: tuple[str, ...]
+) -> tuple[list[Systematic], Floats]:
+    from scipy.stats import t as student
+
+    variables = {
+        "travel": legs.along,
+        "turn": legs.turn,
+        "size of turn": np.abs(legs.turn),
+        "travel × turn": legs.along * legs.turn,
+    }
+    design = np.stack([variables[name][rows] for name in names], axis=-1)
+    size = np.sqrt(np.sum(design**2, axis=0))
+    design = design / np.where(size > 0.0, size, 1.0)
+    error = legs.error[rows, channel]
+    # HC3: MacKinnon and White, J. Econometrics 29 (1985).
+    inverse = np.linalg.pinv(design.T @ design, rcond=1e-3, hermitian=True)
+    slopes = inverse @ design.T @ error
+    predicted = design @ slopes
+    hat = np.einsum("ij,jk,ik->i", design, inverse, design)
+    scaled = design * ((error - predicted) / np.maximum(1.0 - hat, 0.05))[:, None]
+    std = np.sqrt(np.maximum(np.diag(inverse @ (scaled.T @ scaled) @ inverse), 0.0))
+    of_most = _of_most(design, error, slopes)
+    promised = float(np.sqrt(np.mean(legs.covariance[rows, channel, channel])))
+    parts = []
+    for column, name in enumerate(names):
+        if size[column] == 0.0:
+            continue
+        ratio = slopes[column] / std[column] if std[column] > 0.0 else np.inf
+        parts.append(
+            Systematic(
+                kind,
+                CHANNELS[channel],
+                name,
+                float(slopes[column] / size[column]),
+                float(std[column] / size[column]),
+                float(2.0 * student.sf(abs(ratio), rows.size - len(names))),
+                root_mean_square(design[:, column] * slopes[column]),
+                promised,
+                bool(of_most[column] * np.sign(slopes[column]) >= 0.5 * abs(slopes[column])),
+            )
+        )
+    return parts, predicted
+
+
+def _of_most(design: Floats, error: Floats, slopes: Floats) -> Floats:
+    """Slopes that a few bad legs cannot carry: Huber's estimate, by reweighting."""
+    for _ in range(20):
+        left = np.abs(error - design @ slopes)
+        scale = 1.5 * 1.4826 * float(np.median(left))
+        weight = scale / np.maximum(left, max(scale, 1e-300))
+        root = np.sqrt(weight)
+        slopes = np.asarray(
+            np.linalg.lstsq(design * root[:, None], error * root, rcond=1e-2)[0], dtype=np.float64
+        )
+    return slopes
+
+
+_FACTORS = np.logspace(-4.0, 8.0, 241)
+_SAME = 10.828  # of minus two log-likelihood: a 99.9 % interval, for a dozen are looked at
+
+
+def noise_factor(errors: Floats, covariance: Floats, wheels: Floats) -> NoiseFactor:
+    """Factor on the wheels' part of the covariance that makes the scatter of errors likeliest.
+
+    Parameters
+    ----------
+    errors : ndarray, shape (m, 3)
+        Without their systematic part; NaN where not measured.
+    covariance, wheels : ndarray, shape (m, 3, 3)
+        All of the promised covariance, and the part that the wheels' noise makes of it.
+    """
+    known = np.isfinite(errors)
+    enough = known.any(axis=1)
+    if enough.sum() < _FEWEST or not np.any(wheels > 0.0):
+        return UNTOLD
+    known, errors = known[enough], np.where(known, errors, 0.0)[enough]
+    both = known[:, :, None] & known[:, None, :]
+    rest = np.where(both, (covariance - wheels)[enough], 0.0)
+    rest = rest + np.where(known, 0.0, 1.0)[:, :, None] * np.eye(3)
+    factor = np.linalg.cholesky(rest)
+    white = np.linalg.solve(factor, errors[..., None])[..., 0]
+    own = np.linalg.solve(factor, np.where(both, wheels[enough], 0.0))
+    own = np.linalg.solve(factor, own.transpose(0, 2, 1))
+    sizes, axes = np.linalg.eigh(0.5 * (own + own.transpose(0, 2, 1)))
+    squares = np.einsum("mji,mj->mi", axes, white) ** 2
+    sizes = np.maximum(sizes, 0.0)
+    cost = np.array(
+        [
+            float(np.sum(np.log1p(times * sizes) + squares / (1.0 + times * sizes)))
+            for times in _FACTORS
+        ]
+    )
+    best = int(np.argmin(cost))
+    near = _FACTORS[cost <= cost[best] + _SAME]
+    low = 0.0 if near[0] == _FACTORS[0] else float(near[0])
+    high = np.inf if near[-1] == _FACTORS[-1] else float(near[-1])
+    return NoiseFactor(float(_FACTORS[best]), low, high)

@@ -1,0 +1,248 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Effects that a model might be missing, and the score test of each.
+
+A score test asks what an effect would explain without fitting it: its derivative at the null value,
+less what the model can turn already, against the innovations. So all effects of a library cost one
+pass of the filter.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import product
+
+import numpy as np
+
+from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
+from werrimbi_odom.inference.fitting.knobs import STEP, Knob, Model, knobs_of
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.model.effect import AppliedEffect, Effect
+from werrimbi_odom.model.pose import Floats
+
+CALIBRATED = ("track_width", "unequal_wheel_radii", "wheel_radius_scale")
+"""Effects that are the robot file's own multipliers by another name."""
+
+
+@dataclass(frozen=True, slots=True)
+class Candidate:
+    """An effect at null, with values for its shape."""
+
+    effect: Effect
+    shape: Mapping[str, float]
+    """Values of parameters that do nothing while the others are null (a threshold, a length)."""
+    shared: tuple[str, ...] = ()
+    """Parameters that each run could have anew, taken to be the same in all of them."""
+
+    @property
+    def name(self) -> str:
+        """Of the effect."""
+        return self.effect.name
+
+    @property
+    def coordinates(self) -> tuple[Mapping[str, float], ...]:
+        """Directions from null, as values of the effect's parameters one usual size away."""
+        null = self.effect.nulls | dict(self.shape)
+        if self.effect.quadrature is not None:
+            amplitude, phase = self.effect.quadrature
+            size = STEP * self.effect.parameters[amplitude].scale
+            return tuple(null | {amplitude: size, phase: angle} for angle in (0.0, 0.5 * math.pi))
+        return tuple(
+            null | {name: null[name] + STEP * item.scale}
+            for name, item in self.effect.parameters.items()
+            if not item.tries
+        )
+
+    @property
+    def per_run(self) -> bool:
+        """Whether each run has values of its own."""
+        return any(
+            item.per_run and name not in self.shared
+            for name, item in self.effect.parameters.items()
+        )
+
+    def with_value(self, coordinate: Mapping[str, float], factor: float) -> AppliedEffect:
+        """The effect `factor` times along a coordinate."""
+        null = self.effect.nulls | dict(self.shape)
+        values = {}
+        for name, item in self.effect.parameters.items():
+            if self.effect.quadrature is not None and name == self.effect.quadrature[1]:
+                values[name] = coordinate[name]
+                continue
+            value = null[name] + factor * (coordinate[name] - null[name])
+            values[name] = min(max(value, item.bounds[0]), item.bounds[1])
+        return AppliedEffect(self.effect, values)
+
+
+@dataclass(frozen=True, slots=True)
+class Score:
+    """What a candidate would explain."""
+
+    candidate: Candidate
+    gain: float
+    """Fall of the squared innovations, in their own variances: chi-squared when it is absent."""
+    degrees: int
+    coefficients: Floats
+    """How far along its coordinates; (coordinates,) or (runs, coordinates)."""
+
+    @property
+    def excess(self) -> float:
+        """Gain beyond what as many useless parameters would bring, in units of its scatter."""
+        return (self.gain - self.degrees) / math.sqrt(2.0 * self.degrees)
+
+
+def candidates(
+    effects: Iterable[Effect], known: Iterable[str], channels: Iterable[str], runs: int
+) -> tuple[Candidate, ...]:
+    """All that may be tried: a candidate for each set of shapes of each effect.
+
+    Parameters
+    ----------
+    known
+        Effects that the model holds already.
+    channels
+        Extra measured channels of the runs; effects that need others are left out.
+    runs : int
+        How many there are: of one run, nobody can say whether a phase stays.
+    """
+    there, measured = set(known), set(channels)
+    found = []
+    for effect in effects:
+        if effect.is_mistake or effect.name in there or effect.name in CALIBRATED:
+            continue
+        if not set(effect.channels) <= measured:
+            continue
+        shapes = {name: item.tries for name, item in effect.parameters.items() if item.tries}
+        own = tuple(name for name, item in effect.parameters.items() if item.per_run)
+        for values in product(*shapes.values()):
+            shape = dict(zip(shapes, values, strict=True))
+            if own and runs > 1:
+                found.append(Candidate(effect, shape))
+            found.append(Candidate(effect, shape, own))
+    return tuple(found)
+
+
+def scores(
+    runs: Together,
+    point: Point,
+    kind: ReferenceKind,
+    knobs: Sequence[Knob],
+    tried: Sequence[Candidate],
+) -> tuple[Score, ...]:
+    """Score of each candidate beside what `knobs` can turn; those without any effect left out."""
+    prediction = predict_all(point.model, runs)
+    columns, owners = [], []
+    for number, candidate in enumerate(tried):
+        for coordinate in candidate.coordinates:
+            columns.append(_slope(runs, point.model, candidate, coordinate, prediction))
+            owners.append(number)
+    if not columns:
+        return ()
+    change = np.stack(columns, axis=-1)
+    found = unexpected(runs, point, kind, change, prediction)
+    marks = found.whitened()[1][..., :-1]
+    white, basis = stacked(runs, point, kind, knobs, prediction).flat()
+    frame = orthonormal(basis)
+    rest = white - frame @ (frame.T @ white)
+    owned = np.array(owners)
+    results = []
+    for number, candidate in enumerate(tried):
+        own = marks[..., owned == number]
+        width = own.shape[-1]
+        if candidate.per_run:
+            own = np.concatenate(
+                [
+                    own * (runs.run_of_leg == index)[:, None, None]
+                    for index in range(len(runs.runs))
+                ],
+                axis=-1,
+            )
+        flat = own.reshape(white.size, -1)
+        free = flat - frame @ (frame.T @ flat)
+        basis_of_it, heard = _heard(free, flat)
+        if not heard:
+            continue
+        gain = float(np.sum((basis_of_it.T @ rest) ** 2))
+        solution = np.asarray(-np.linalg.lstsq(free, rest, rcond=1e-6)[0], dtype=np.float64)
+        if candidate.per_run:
+            solution = solution.reshape(-1, width)
+        results.append(Score(candidate, gain, heard, solution))
+    return tuple(results)
+
+
+def _slope(
+    runs: Together,
+    model: Model,
+    candidate: Candidate,
+    coordinate: Mapping[str, float],
+    prediction: Prediction,
+) -> Floats:
+    """Change of the legs for one coordinate's step, (m, 3)."""
+    poses: list[Floats] = []
+    for factor in (1.0, -1.0):
+        applied = candidate.with_value(coordinate, factor)
+        if factor < 0.0 and applied.values == candidate.with_value(coordinate, 0.0).values:
+            return np.asarray(poses[0] - prediction.relative)  # a bound: one side alone
+        robot = replace(model.robot, effects=(*model.robot.effects, applied))
+        poses.append(legs_shown(replace(model, robot=robot), runs))
+    return np.asarray(0.5 * (poses[0] - poses[1]))
+
+
+def orthonormal(columns: Floats) -> Floats:
+    """An orthonormal basis of what the columns span."""
+    if columns.shape[-1] == 0:
+        return columns
+    size = np.sqrt(np.sum(columns**2, axis=0))
+    scaled = columns[:, size > 0.0] / size[size > 0.0]
+    values, axes = np.linalg.eigh(scaled.T @ scaled)
+    alive = values > 1e-12 * values.max(initial=0.0)
+    # Twice, since squaring the columns costs half of the digits.
+    basis, _ = np.linalg.qr(scaled @ (axes[:, alive] / np.sqrt(values[alive])))
+    return np.asarray(basis)
+
+
+def _heard(free: Floats, before: Floats) -> tuple[Floats, int]:
+    """Orthonormal basis of what of some columns is not explained already, and its size."""
+    size = np.sqrt(np.sum(before**2, axis=0))
+    kept = size > 1e-6
+    if not kept.any():
+        return free[:, :0], 0
+    scaled = free[:, kept] / size[kept]
+    values, axes = np.linalg.eigh(scaled.T @ scaled)
+    alive = values > 1e-8
+    return np.asarray(scaled @ (axes[:, alive] / np.sqrt(values[alive]))), int(alive.sum())
+
+
+def put_in(model: Model, score: Score) -> Model:
+    """The model with a candidate at the values that its score suggests."""
+    candidate = score.candidate
+    effect = candidate.effect
+    start = dict(effect.nulls) | dict(candidate.shape)
+    own: list[dict[str, float]] = [dict(mine) for mine in model.own]
+    if effect.quadrature is not None:
+        amplitude, phase = effect.quadrature
+        size = STEP * effect.parameters[amplitude].scale
+        pairs = size * np.atleast_2d(score.coefficients)
+        sizes, angles = np.hypot(*pairs.T), np.arctan2(pairs[:, 1], pairs[:, 0])
+        start[amplitude] = float(np.clip(np.median(sizes), *effect.parameters[amplitude].bounds))
+        start[phase] = float(angles[0])
+        if candidate.per_run:
+            for mine, angle in zip(own, angles.tolist(), strict=True):
+                mine[f"{effect.name}.{phase}"] = angle
+    else:
+        moving = [name for name, item in effect.parameters.items() if not item.tries]
+        for name, coefficient in zip(moving, np.ravel(score.coefficients).tolist(), strict=False):
+            item = effect.parameters[name]
+            value = start[name] + coefficient * STEP * item.scale
+            start[name] = float(np.clip(value, *item.bounds))
+    robot = replace(model.robot, effects=(*model.robot.effects, AppliedEffect(effect, start)))
+    return Model(robot, tuple(own))
+
+
+def knobs_of_candidate(candidate: Candidate) -> tuple[Knob, ...]:
+    """What a fit may turn of it."""
+    return knobs_of(candidate.effect, candidate.shared)

@@ -1,0 +1,269 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where the model fails, before any name is given to it: what the errors depend on.
+
+Under a complete model the whitened innovations depend on nothing. Each cell of the evidence map
+asks whether the error of one channel (left, right, along, sideways, heading) goes with one measured
+variable, as a line or as any smooth curve. It is a score test: the pattern that such a dependence
+would leave in the innovations, less what the model can turn already, against what is there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from werrimbi_odom.inference.diagnosis.candidates import orthonormal
+from werrimbi_odom.inference.diagnosis.variables import (
+    CONSTANT,
+    Form,
+    Variable,
+    functions_of,
+    variables_of,
+)
+from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
+from werrimbi_odom.inference.fitting.knobs import Knob
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.fitting.prediction import DrivenPath, path_of, predict_all
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.model.effect import View, view_of
+from werrimbi_odom.model.pose import Floats
+
+BATCH = 2_000_000
+"""Numbers of legs times columns that go through the filter at once."""
+
+CHANNELS = ("left", "right", "along", "sideways", "heading")
+
+
+@dataclass(frozen=True, slots=True)
+class Amount:
+    """What an error is in proportion to, beside its variable."""
+
+    channel: str
+    """left, right, along (both wheels alike), sideways or heading."""
+    per: str
+    """travel (signed), path (unsigned), turn or duration."""
+
+
+AMOUNTS = (
+    Amount("left", "travel"),
+    Amount("right", "travel"),
+    Amount("along", "travel"),
+    Amount("along", "path"),
+    Amount("along", "turn"),
+    Amount("sideways", "travel"),
+    Amount("sideways", "path"),
+    Amount("sideways", "turn"),
+    Amount("heading", "turn"),
+    Amount("heading", "travel"),
+    Amount("heading", "path"),
+    Amount("heading", "duration"),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class Dependence:
+    """One cell of the evidence map."""
+
+    amount: Amount
+    variable: Variable
+    form: Form
+    coefficients: Floats
+    """Of the form's functions; (k,), or (runs, k) where each run has its own zero."""
+    gain: float
+    """Fall of the squared innovations, in their own variances."""
+    degrees: int
+    p_value: float
+    """Corrected for the number of cells looked at (Bonferroni)."""
+
+    @property
+    def channel(self) -> str:
+        """Which error."""
+        return self.amount.channel
+
+    @property
+    def name(self) -> str:
+        """What it goes with: the variable, or where it depends on none, what it is per."""
+        return self.amount.per if self.variable.name == CONSTANT else self.variable.name
+
+
+def dependences(
+    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob]
+) -> tuple[Dependence, ...]:
+    """All cells of the map for a model, the most certain first.
+
+    `knobs` are what the model can turn: what they can explain is no evidence.
+    """
+    from scipy.stats import chi2
+
+    prediction = predict_all(point.model, runs)
+    white, basis = stacked(runs, point, kind, knobs, prediction).flat()
+    frame = orthonormal(basis)
+    rest = white - frame @ (frame.T @ white)
+    found: list[tuple[Amount, Variable, Form, Floats, float, int]] = []
+    path = path_of(point.model, runs)
+    pushes = {amount: pushes_of(runs, path, amount, point) for amount in AMOUNTS}
+    for cells_of in _batches(runs, variables_of(runs, point.model), pushes):
+        change = np.concatenate([block for *_, block in cells_of], axis=-1)
+        marks = unexpected(runs, point, kind, change, prediction).whitened()[1]
+        first = 0
+        for amount, variable, form, block in cells_of:
+            own = marks[..., first : first + block.shape[-1]]
+            first += block.shape[-1]
+            if variable.per_run:
+                own = np.concatenate(
+                    [
+                        own * (runs.run_of_leg == run)[:, None, None]
+                        for run in range(len(runs.runs))
+                    ],
+                    axis=-1,
+                )
+            tested = _tested(own.reshape(white.size, -1), frame, rest)
+            if tested is not None:
+                found.append((amount, variable, form, *tested))
+    cells = [
+        Dependence(
+            amount,
+            variable,
+            form,
+            solution.reshape(len(runs.runs), -1) if variable.per_run else solution,
+            gain,
+            degrees,
+            float(min(1.0, chi2.sf(gain, degrees) * len(found))),
+        )
+        for amount, variable, form, solution, gain, degrees in found
+    ]
+    return tuple(sorted(cells, key=lambda cell: (cell.p_value, -cell.gain / cell.degrees)))
+
+
+def _tested(flat: Floats, frame: Floats, rest: Floats) -> tuple[Floats, float, int] | None:
+    """Coefficients of some columns, what they explain, and how many they are; None if mute."""
+    cross = frame.T @ flat
+    size = np.sqrt(np.sum(flat**2, axis=0))
+    heard = size > 1e-9
+    if not heard.any():
+        return None
+    square = (flat.T @ flat - cross.T @ cross)[np.ix_(heard, heard)]
+    values, axes = np.linalg.eigh(square / np.outer(size[heard], size[heard]))
+    alive = values > 1e-6
+    if not alive.any():
+        return None
+    marks = (flat[:, heard].T @ rest) / size[heard]  # rest is clear of the frame already
+    shares = (axes[:, alive].T @ marks) / np.sqrt(values[alive])
+    solution = np.zeros(flat.shape[-1])
+    solution[heard] = -(axes[:, alive] @ (shares / np.sqrt(values[alive]))) / size[heard]
+    return solution, float(shares @ shares), int(alive.sum())
+
+
+Cell = tuple[Amount, Variable, Form, Floats]
+
+
+def _batches(
+    runs: Together, variables: Sequence[Variable], pushes: dict[Amount, tuple[Floats, Floats]]
+) -> Iterator[list[Cell]]:
+    """Cells with their changes of the legs, as many as memory bears at once."""
+    batch: list[Cell] = []
+    width = 0
+    for variable in variables:
+        for amount, form, block in _blocks(runs, variable, pushes):
+            batch.append((amount, variable, form, block))
+            width += block.shape[-1]
+        if width * runs.count > BATCH:
+            yield batch
+            batch, width = [], 0
+    if batch:
+        yield batch
+
+
+def _blocks(
+    runs: Together, variable: Variable, pushes: dict[Amount, tuple[Floats, Floats]]
+) -> Iterator[tuple[Amount, Form, Floats]]:
+    """Changes of the legs (m, 3, k) for each amount and form."""
+    for form, (left, right) in functions_of(variable).items():
+        for amount, (of_left, of_right) in pushes.items():
+            if (
+                not variable.shared
+                and variable.form != "place"
+                and amount.channel
+                not in (
+                    "left",
+                    "right",
+                    "along",
+                )
+            ):
+                continue
+            block = legs_pushed(runs, left, of_left)
+            if of_right is not None:
+                block = block + legs_pushed(runs, right, of_right)
+            yield amount, form, block
+
+
+def legs_pushed(runs: Together, functions: Floats, pushes: Floats) -> Floats:
+    """Sums over each leg's steps of functions (n, k) times pushes (n, 3), as (m, 3, k)."""
+    steps = runs.inside
+    starts = np.concatenate([[0], np.cumsum(runs.end - runs.begin)])
+    moved, functions = pushes[steps], functions[steps]
+    found = np.zeros((runs.count, 3, functions.shape[-1]))
+    filled = np.flatnonzero(np.diff(starts))  # reduceat gives an empty leg its neighbour's value
+    for first in range(0, functions.shape[-1], 8):
+        some = slice(first, first + 8)
+        sums = np.add.reduceat(
+            moved[:, :, None] * functions[:, None, some], starts[:-1][filled], axis=0
+        )
+        found[filled, :, some] = sums
+    return found
+
+
+def pushes_of(
+    runs: Together, path: DrivenPath, amount: Amount, point: Point
+) -> tuple[Floats, Floats]:
+    """What a unit error of a step does to its leg's relative pose: of left and right wheel, (n, 3).
+
+    Where the amount belongs to the robot, the second is zero.
+    """
+    robot = point.model.robot
+    travel, motion = path.travel, path.motion
+    none = np.zeros(motion.turn.size)
+    view = view_of(robot.effects)
+    if amount.channel in ("left", "right", "along") and amount.per != "turn":
+        left = travel.left if amount.per == "travel" else np.abs(travel.left)
+        right = travel.right if amount.per == "travel" else np.abs(travel.right)
+        of_left = _seen(runs, path, view, 0.5 * left, none, -left / robot.track)
+        of_right = _seen(runs, path, view, 0.5 * right, none, right / robot.track)
+        if amount.channel == "left":
+            return of_left, 0.0 * of_right
+        if amount.channel == "right":
+            return 0.0 * of_left, of_right
+        return of_left, of_right
+    base = {
+        "travel": motion.along,
+        "path": np.abs(motion.along),
+        "turn": motion.turn,
+        "duration": runs.raw_drive(robot)[1].duration,
+    }[amount.per]
+    if amount.channel == "along":
+        moved = _seen(runs, path, view, base, none, none)
+    elif amount.channel == "sideways":
+        moved = _seen(runs, path, view, none, base, none)
+    else:
+        moved = _seen(runs, path, view, none, none, base)
+    return moved, 0.0 * moved
+
+
+def _seen(
+    runs: Together, path: DrivenPath, view: View, along: Floats, sideways: Floats, turn: Floats
+) -> Floats:
+    """Errors of steps (n,) as they move the end of their leg, in its start's frame, (n, 3)."""
+    count = along.size
+    leg = np.clip(np.searchsorted(runs.begin, np.arange(count), side="right") - 1, 0, None)
+    facing = np.exp(-1j * (path.yaw[runs.begin[leg]] + view.yaw))
+    middle = np.exp(1j * (path.yaw[:-1] + 0.5 * path.motion.turn))
+    end = runs.end[leg]
+    marker = path.position[end] + complex(view.ahead, view.left) * np.exp(1j * path.yaw[end])
+    moved = facing * (
+        middle * (along + 1j * sideways)
+        + 1j * turn * (marker - 0.5 * (path.position[:-1] + path.position[1:]))
+    )
+    return np.stack([moved.real, moved.imag, turn], axis=-1)

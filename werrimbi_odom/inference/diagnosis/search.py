@@ -1,0 +1,265 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Forward search for what a model is missing: score all, fit the best few, keep what earns it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.diagnosis.candidates import (
+    CALIBRATED,
+    Candidate,
+    Score,
+    candidates,
+    knobs_of_candidate,
+    put_in,
+    scores,
+)
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
+from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.fitting.design import Point
+from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
+from werrimbi_odom.inference.fitting.knobs import (
+    CALIBRATION,
+    DRIFT_OF_YAW,
+    MULTIPLIERS,
+    YAW_DRIFT,
+    Knob,
+    Model,
+    changed,
+    knobs_of,
+)
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.model.effect import AppliedEffect, Effect
+from werrimbi_odom.model.robot import Robot
+
+REFITTED = 5
+"""Candidates that are fitted in full in each round."""
+
+EDGE = 0.3
+"""Time at both ends of a run whose legs are not counted [s]: delays are mostly shorter."""
+
+HALF_AS_GOOD = 0.25
+"""Share of the best score below which a candidate is not worth a fit."""
+
+
+@dataclass(frozen=True, slots=True)
+class Round:
+    """One round of the search."""
+
+    before: Fitted
+    scores: tuple[Score, ...]
+    """The best score of each effect, best first."""
+    tried: tuple[Fitted, ...]
+    """Fits of the best few, cheapest first."""
+    dependences: tuple[Dependence, ...]
+    """The evidence map of `before`."""
+    number: int
+    """Of candidates looked at."""
+
+
+def first_fit(
+    runs: Together,
+    robot: Robot,
+    kind: ReferenceKind,
+    sigma: tuple[float | None, float | None] = (None, None),
+) -> Fitted:
+    """The robot as given, calibrated."""
+    point = start_point(runs, robot, *sigma)
+    point = replace(point, excluded=_edges(runs))
+    point, knobs = with_own_values(runs, point, kind)
+    if kind == "incremental":
+        point = fit_model(runs, point, kind, (*CALIBRATION, *knobs), rounds=0).point
+    return fitted(runs, point, kind, (), knobs, robot, rounds=3, sigma=sigma)
+
+
+def jumps_anew(
+    runs: Together,
+    fit: Fitted,
+    kind: ReferenceKind,
+    robot: Robot,
+    sigma: tuple[float | None, float | None] = (None, None),
+) -> Fitted:
+    """The fit with the reference's jumps found by its own, better model.
+
+    Only a reference that adds up has jumps that stay: of one whose poses are each their own, a bad
+    pose costs two legs and no more.
+    """
+    if kind != "incremental":
+        return fit
+    point = without_jumps(runs, fit.point, kind)
+    both = (jumped | edge for jumped, edge in zip(point.excluded, _edges(runs), strict=True))
+    point = replace(point, excluded=tuple(both))
+    return fitted(runs, point, kind, fit.names, fit.knobs, robot, sigma=sigma)
+
+
+def _edges(runs: Together) -> tuple[NDArray[np.bool_], ...]:
+    """Legs that a shifted clock would move out of the ticks' time; of few legs none.
+
+    A record that begins or ends in motion knows nothing of the motion beyond, so such legs would
+    speak against a delay however true it is.
+    """
+    found = []
+    for run in runs.runs:
+        first, last = run.counters.time[0], run.counters.time[-1]
+        begin, end = run.measured.time[:-1], run.measured.time[1:]
+        outside = (begin < first + EDGE) | (end > last - EDGE)
+        found.append(outside if run.legs > 20 else np.zeros(run.legs, dtype=np.bool_))
+    return tuple(found)
+
+
+@dataclass(frozen=True, slots=True)
+class Instead:
+    """An effect in place of a calibration."""
+
+    effect: str
+    total: float
+    """Cost and price, to be compared with the calibrated model's."""
+
+
+def instead_of_calibration(
+    runs: Together,
+    calibrated: Fitted,
+    kind: ReferenceKind,
+    effects: Sequence[Effect],
+    given: Robot,
+    sigma: tuple[float | None, float | None] = (None, None),
+) -> tuple[Instead, ...]:
+    """Effects that would do in place of the calibration that a model needs, cheapest first.
+
+    The multipliers are put back to the given robot's, and stay there.
+    """
+    back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
+    model = calibrated.point.model
+    point = replace(calibrated.point, model=Model(changed(model.robot, back), model.own))
+    nuisances = [DRIFT_OF_YAW] if any(YAW_DRIFT in own for own in model.own) else []
+    held = {applied.name for applied in model.robot.effects}
+    channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
+    looked_at = candidates(effects, held, channels, len(runs.runs))
+    found = scores(runs, point, kind, (*calibrated.knobs, *nuisances), looked_at)
+    results = []
+    for score in worth_fitting(best_of_each(found))[:3]:
+        start = replace(point, model=put_in(point.model, score))
+        knobs = (*calibrated.knobs, *knobs_of_candidate(score.candidate), *nuisances)
+        fit = fit_model(
+            runs,
+            start,
+            kind,
+            knobs,
+            find_jumps=False,
+            rounds=2,
+            sigma_xy=sigma[0],
+            sigma_yaw=sigma[1],
+        )
+        if not fit.at_bound:
+            price = calibrated.price_of_one * len(fit.free) * calibrated.scatter
+            results.append(Instead(score.candidate.name, fit.minus_two_log_likelihood + price))
+    return tuple(sorted(results, key=lambda item: item.total))
+
+
+def with_own_values(
+    runs: Together, point: Point, kind: ReferenceKind
+) -> tuple[Point, tuple[Knob, ...]]:
+    """The point with what each run has of its own in the robot's effects, and all their knobs.
+
+    A phase can be anywhere, so it is looked for by its score, which knows no start value.
+    """
+    knobs: list[Knob] = []
+    for applied in point.model.robot.effects:
+        if applied.effect.is_mistake or applied.name in CALIBRATED:
+            continue
+        shared = tuple(
+            name
+            for name, item in applied.effect.parameters.items()
+            if item.per_run and name not in applied.unknown
+        )
+        knobs += knobs_of(applied.effect, shared)
+        if applied.unknown:
+            point = replace(point, model=_learnt(runs, point, kind, applied))
+    return point, tuple(knobs)
+
+
+def _learnt(runs: Together, point: Point, kind: ReferenceKind, applied: AppliedEffect) -> Model:
+    """The model with the phases of an effect in each run."""
+    robot = point.model.robot
+    others = tuple(item for item in robot.effects if item is not applied)
+    bare = replace(point, model=replace(point.model, robot=replace(robot, effects=others)))
+    candidate = Candidate(applied.effect, {})
+    score = scores(runs, bare, kind, CALIBRATION, [candidate])
+    if not score:
+        return bare.model
+    model = put_in(bare.model, score[0])
+    known = {
+        f"{applied.name}.{name}": value
+        for name, value in applied.values.items()
+        if name not in applied.unknown
+    }
+    return Model(changed(model.robot, known), model.own)
+
+
+def search_round(
+    runs: Together,
+    before: Fitted,
+    kind: ReferenceKind,
+    effects: Sequence[Effect],
+    given: Robot,
+    sigma: tuple[float | None, float | None] = (None, None),
+) -> Round:
+    """Look for one more effect."""
+    point = before.point
+    held = {applied.name for applied in point.model.robot.effects}
+    channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
+    looked_at = candidates(effects, held, channels, len(runs.runs))
+    turned = (*CALIBRATION, *before.knobs)
+    found = scores(runs, point, kind, turned, looked_at)
+    ordered = best_of_each(found)
+    tried = []
+    for score in worth_fitting(ordered):
+        variants = [
+            other
+            for other in found
+            if other.candidate.name == score.candidate.name
+            and other.candidate.per_run != score.candidate.per_run
+            and other.gain > 0.5 * score.gain
+        ]
+        options = [score] + ([max(variants, key=lambda other: other.gain)] if variants else [])
+        fits = []
+        for option in options:
+            start = replace(point, model=put_in(point.model, option))
+            knobs = (*before.knobs, *knobs_of_candidate(option.candidate))
+            names = (*before.names, option.candidate.name)
+            fits.append(fitted(runs, start, kind, names, knobs, given, sigma=sigma))
+        tried.append(min(fits, key=lambda fit: fit.total))
+    tried.sort(key=lambda fit: fit.total)
+    return Round(
+        before,
+        tuple(ordered),
+        tuple(tried),
+        dependences(runs, point, kind, turned),
+        len(looked_at),
+    )
+
+
+def best_of_each(found: Sequence[Score]) -> list[Score]:
+    """The best shape of each effect, best effect first."""
+    best: dict[str, Score] = {}
+    for score in sorted(found, key=lambda score: -score.excess):
+        best.setdefault(score.candidate.name, score)
+    return list(best.values())
+
+
+def worth_fitting(ordered: Sequence[Score]) -> list[Score]:
+    """The few that may be the best one after a fit."""
+    if not ordered:
+        return []
+    top = ordered[0].gain
+    return [
+        score
+        for score in ordered[: 2 * REFITTED]
+        if score.gain > HALF_AS_GOOD * top and score.gain > score.degrees + 8.0
+    ][:REFITTED]

@@ -1,0 +1,237 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Models weighed against each other: what they cost, and which of their parts they need.
+
+A model is the robot, some effects, and its multipliers. Its cost is minus two log-likelihood with
+the noise that suits it, plus a price for every number that it was free to choose. Parts that do not
+earn their price are left out: of the multipliers all eight subsets are tried, by the curvature of
+the likelihood at the fit, without fitting anew.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+
+import numpy as np
+
+from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, orthonormal
+from werrimbi_odom.inference.fitting.design import Design, Point, stacked
+from werrimbi_odom.inference.fitting.fit import FEW, fit_model
+from werrimbi_odom.inference.fitting.knobs import (
+    CALIBRATION,
+    DRIFT_OF_YAW,
+    MULTIPLIERS,
+    NUISANCES,
+    YAW_DRIFT,
+    Knob,
+)
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+RIVAL = 10.0
+"""Difference of costs up to which two models cannot be told apart (a likelihood ratio of 150)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fitted:
+    """A model fitted to all runs, and what it costs."""
+
+    names: tuple[str, ...]
+    """Effects that it holds beyond the given robot's."""
+    point: Point
+    knobs: tuple[Knob, ...]
+    """What was fitted."""
+    cost: float
+    """Minus two log-likelihood."""
+    calibrated: tuple[str, ...]
+    """Of the three calibration effects those that it needs."""
+    alternatives: tuple[tuple[str, ...], ...]
+    """Other sets of as many that would do as well."""
+    price: float
+    """For all that was free, its needless multipliers put back."""
+    price_of_one: float
+    """Of one free number."""
+    scatter: float
+    """Factor by which its costs are too large, where few data could not tell the noise."""
+    needless: float
+    """What it costs to put them back."""
+    at_bound: tuple[str, ...]
+    """Knobs that ran against what physics allows."""
+    importance: dict[str, float]
+    """By effect, how much the cost would rise without it."""
+    covariance: Floats
+    """Of the values of the design's columns."""
+    design: Design
+
+    @property
+    def total(self) -> float:
+        """Cost, price and what the needless multipliers were worth."""
+        return self.cost + self.needless + self.price * self.scatter
+
+
+def price_of_one(runs: Together) -> float:
+    """What one free number must be worth: the logarithm of the number of data (BIC)."""
+    return max(6.0, math.log(max(runs.data, 2)))
+
+
+def scatter_of(runs: Together, design: Design) -> float:
+    """By how much costs are too large where few data could not tell the noise; else 1."""
+    if runs.data >= FEW:
+        return 1.0
+    free = max(runs.data - len(design.columns), 1)
+    return max(1.0, float(np.sum(design.white**2)) / free)
+
+
+def fitted(
+    runs: Together,
+    point: Point,
+    kind: ReferenceKind,
+    names: Sequence[str],
+    knobs: Sequence[Knob],
+    given: Robot,
+    *,
+    rounds: int = 2,
+    sigma: tuple[float | None, float | None] = (None, None),
+) -> Fitted:
+    """Fit a model, calibration and all, and say which multipliers it needs."""
+    every = (*CALIBRATION, *knobs, *_nuisances(point))
+    result = fit_model(
+        runs,
+        point,
+        kind,
+        every,
+        find_jumps=False,
+        rounds=rounds,
+        sigma_xy=sigma[0],
+        sigma_yaw=sigma[1],
+    )
+    design = stacked(runs, result.point, kind, [*CALIBRATION, *_own(every), *_shared(knobs)])
+    price, scatter = price_of_one(runs), scatter_of(runs, design)
+    weighed = sorted(
+        (
+            (rise / scatter + price * len(kept), rise, kept)
+            for kept, rise in calibration_rises(design, result.robot, given)
+        ),
+        key=lambda item: item[0],
+    )
+    covariance = covariance_of(design)
+    total, rise, kept = weighed[0]
+    rises = {chosen: item for _, item, chosen in weighed}
+    importance = {name: _rise_without(name, design, covariance, result.point) for name in names}
+    for name in kept:
+        without = tuple(other for other in kept if other != name)
+        importance[name] = (rises[without] - rise) / scatter
+    counted = sum(
+        1
+        for knob, _ in design.columns
+        if knob.name not in MULTIPLIERS and knob.name not in NUISANCES
+    )
+    return Fitted(
+        tuple(names),
+        result.point,
+        tuple(knobs),
+        result.minus_two_log_likelihood,
+        kept,
+        tuple(
+            other
+            for other_total, _, other in weighed[1:]
+            if len(other) == len(kept) and other_total - total < RIVAL
+        ),
+        price * (len(kept) + counted),
+        price,
+        scatter,
+        rise,
+        tuple(knob.name for knob in result.at_bound if knob.name not in MULTIPLIERS),
+        importance,
+        covariance,
+        design,
+    )
+
+
+def calibration_rises(
+    design: Design, robot: Robot, given: Robot
+) -> list[tuple[tuple[str, ...], float]]:
+    """For each subset of the calibration effects, what the cost rises when the others are put back.
+
+    Everything else is fitted again, to first order.
+    """
+    names = [knob.name for knob, _ in design.columns]
+    white, flat = design.flat()
+    of = {name: flat[:, names.index(name)] * getattr(robot, name) for name in MULTIPLIERS}
+    base, left, right = (of[name] for name in MULTIPLIERS)
+    marks = np.stack([base, 0.5 * (right - left), left + right], axis=-1)
+    others = orthonormal(flat[:, [name not in MULTIPLIERS for name in names]])
+    marks = marks - others @ (others.T @ marks)
+    put_back = white - others @ (others.T @ white) - marks @ calibration_deviation(robot, given)
+    square, cross = marks.T @ marks, marks.T @ put_back
+    costs = {}
+    for kept in _subsets(range(3)):
+        chosen = list(kept)
+        inverse = np.linalg.pinv(square[np.ix_(chosen, chosen)], rcond=1e-9, hermitian=True)
+        gained = float(cross[chosen] @ inverse @ cross[chosen]) if chosen else 0.0
+        costs[tuple(CALIBRATED[index] for index in chosen)] = -gained
+    least = min(costs.values())
+    return [(kept, cost - least) for kept, cost in costs.items()]
+
+
+def _nuisances(point: Point) -> list[Knob]:
+    return [DRIFT_OF_YAW] if any(YAW_DRIFT in own for own in point.model.own) else []
+
+
+def _shared(knobs: Sequence[Knob]) -> list[Knob]:
+    return [knob for knob in knobs if not knob.per_run]
+
+
+def _own(knobs: Sequence[Knob]) -> list[Knob]:
+    return [knob for knob in knobs if knob.per_run]
+
+
+def covariance_of(design: Design) -> Floats:
+    """Covariance of the values that a design's least squares gives; huge where nothing is heard."""
+    flat = design.flat()[1]
+    size = np.sqrt(np.sum(flat**2, axis=0))
+    heard = size > 1e-9
+    size = np.where(heard, size, 1.0)
+    scaled = flat / size
+    inverse = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12, hermitian=True)
+    covariance = inverse / np.outer(size, size)
+    covariance[~heard, ~heard] = 1e12
+    return np.asarray(covariance)
+
+
+def calibration_deviation(robot: Robot, given: Robot) -> Floats:
+    """How far base, radii's ratio and radii's mean are from the given ones, in logarithms."""
+    base, left, right = (
+        math.log(getattr(robot, name) / getattr(given, name)) for name in MULTIPLIERS
+    )
+    return np.array([base, right - left, 0.5 * (left + right)])
+
+
+def _rise_without(name: str, design: Design, covariance: Floats, point: Point) -> float:
+    """How much the cost rises when an effect is taken out, by the curvature at the fit."""
+    chosen, away = [], []
+    for index, (knob, run) in enumerate(design.columns):
+        effect, _, parameter = knob.name.rpartition(".")
+        if effect != name:
+            continue
+        applied = next(item for item in point.model.robot.effects if item.name == name)
+        declared = applied.effect.parameters[parameter]
+        if declared.tries or declared.per_run:
+            continue
+        chosen.append(index)
+        away.append(point.model.value(knob, max(run, 0)) - declared.null)
+    if not chosen:
+        return 0.0
+    spread = covariance[np.ix_(chosen, chosen)]
+    values = np.array(away)
+    return float(values @ np.linalg.pinv(spread, hermitian=True) @ values)
+
+
+def _subsets(items: Sequence[int]) -> Iterator[tuple[int, ...]]:
+    for size in range(len(items) + 1):
+        yield from combinations(items, size)

@@ -1,0 +1,210 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What an error may depend on: measured variables of every step, and functions of them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.prediction import headings_of, path_of, right_handed
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.model.drive import Span
+from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.pose import Floats
+
+KNOTS = 6
+"""Knots of a smooth curve."""
+
+CELL = 0.5
+"""Width of the floor's cells [m]; wider on large floors."""
+
+CELLS = 40
+"""Cells of the floor, at the most."""
+
+CONSTANT = "constant"
+"""Name of the variable that is 1 everywhere: an error in proportion to its amount alone."""
+
+Form = Literal["constant", "line", "curve", "turns", "place"]
+
+
+@dataclass(frozen=True, slots=True)
+class Variable:
+    """A measured quantity at every step of all runs."""
+
+    name: str
+    unit: str
+    left: Floats
+    """Of the left wheel, or of the robot, (n,)."""
+    right: Floats
+    """Of the right wheel; the same array where it is the robot's."""
+    form: Form = "curve"
+    looks_at: tuple[str, ...] = ()
+    """Fields of `Drive` that an effect would look at to know it."""
+    per_run: bool = False
+    """Whether its zero is another one in each run (a wheel's angle)."""
+    harmonic: int = 1
+    """Of an angle."""
+
+    @property
+    def shared(self) -> bool:
+        """Whether it is one quantity of the robot."""
+        return self.left is self.right
+
+
+def variables_of(runs: Together, model: Model) -> tuple[Variable, ...]:
+    """All that was measured, the extra channels of the records among it."""
+    robot = model.laid_out(runs.run_of_step)
+    _, drive = runs.raw_drive(robot)
+    path = path_of(model, runs)
+    view = view_of(robot.effects)
+    heading = headings_of(path, runs, view, model.start_yaws)
+
+    def own(name: str, unit: str, left: Floats, right: Floats, *fields: str) -> Variable:
+        return Variable(name, unit, left, right, looks_at=fields)
+
+    def robots(name: str, unit: str, values: Floats, *fields: str) -> Variable:
+        return Variable(name, unit, values, values, looks_at=fields)
+
+    acceleration = drive.speed.change / drive.duration
+    ones = np.ones(heading.size)
+    found = [
+        Variable(CONSTANT, "", ones, ones, "constant"),
+        robots("speed", "m/s", np.abs(drive.speed.end), "speed", "left_speed", "right_speed"),
+        own(
+            "wheel_speed",
+            "m/s",
+            np.abs(drive.left_speed.end),
+            np.abs(drive.right_speed.end),
+            "left_speed",
+            "right_speed",
+            "speed",
+        ),
+        robots("direction", "", np.sign(drive.speed.end), "speed", "direction"),
+        robots("acceleration", "m/s^2", acceleration, "speed", "left_speed", "right_speed"),
+        robots("yaw_rate", "rad/s", drive.yaw_rate.end, "yaw_rate", "left_speed", "right_speed"),
+        robots(
+            "yaw_rate_size",
+            "rad/s",
+            np.abs(drive.yaw_rate.end),
+            "yaw_rate",
+            "left_speed",
+            "right_speed",
+        ),
+        robots("time", "s", drive.time.mean, "time"),
+        robots("distance", "m", drive.distance.mean, "distance"),
+        robots(
+            "travel_since_reversal",
+            "m",
+            drive.since_reversal.mean,
+            "since_reversal",
+            "left_since_reversal",
+            "right_since_reversal",
+        ),
+        Variable("heading", "rad", heading, heading, "turns", ("heading",)),
+    ]
+    for harmonic in (1, 2):
+        times = "" if harmonic == 1 else "_twice"
+        found += [
+            Variable(
+                f"left_wheel_angle{times}",
+                "rad",
+                drive.left_angle.mean,
+                drive.left_angle.mean,
+                "turns",
+                ("left_angle",),
+                True,
+                harmonic,
+            ),
+            Variable(
+                f"right_wheel_angle{times}",
+                "rad",
+                drive.right_angle.mean,
+                drive.right_angle.mean,
+                "turns",
+                ("right_angle",),
+                True,
+                harmonic,
+            ),
+        ]
+    place = _places(runs, path.position, heading, path.yaw, right_handed(runs.start, view))
+    if place is not None:
+        found.append(Variable("position", "m", place[0], place[1], "place", ("x", "y")))
+    for name, span in drive.channels.items():
+        found.append(robots(name, "", _mean(span), name))
+    return tuple(item for item in found if item.name == CONSTANT or np.ptp(item.left) > 0.0)
+
+
+def _mean(span: Span[Floats]) -> Floats:
+    return np.asarray(span.mean)
+
+
+def _places(
+    runs: Together,
+    position: NDArray[np.complex128],
+    heading: Floats,
+    yaw: Floats,
+    start: Floats,
+) -> tuple[Floats, Floats] | None:
+    """Where each step begins, in the reference's frame; None where it gives no position."""
+    known = np.isfinite(start[:, 0]) & np.isfinite(start[:, 1])
+    if not known.any() or not known[runs.legs[:-1]].all():
+        return None
+    steps = np.arange(heading.size)
+    anchors = np.searchsorted(runs.begin, steps, side="right") - 1
+    anchors = np.clip(anchors, runs.legs[:-1][runs.run_of_step], None)
+    usable = np.maximum.accumulate(
+        np.where(known, np.arange(runs.count), runs.legs[:-1][runs.run_of_leg])
+    )
+    anchor = usable[anchors]
+    first = runs.begin[anchor]
+    moved = np.exp(1j * (heading - yaw[:-1])) * (position[:-1] - position[first])
+    return start[anchor, 0] + moved.real, start[anchor, 1] + moved.imag
+
+
+def functions_of(variable: Variable) -> dict[Form, tuple[Floats, Floats]]:
+    """Functions of a variable, for left and right wheel, by form; arrays of shape (n, k)."""
+    if variable.form == "constant":
+        return {"constant": (variable.left[:, None], variable.right[:, None])}
+    if variable.form == "turns":
+        waves = [function(variable.harmonic * variable.left) for function in (np.cos, np.sin)]
+        both = np.stack(waves, axis=-1)
+        return {"turns": (both, both)}
+    if variable.form == "place":
+        cells = floor_cells(variable.left, variable.right)
+        return {"place": (cells, cells)} if cells.shape[-1] > 1 else {}
+    pooled = np.concatenate([variable.left, variable.right])
+    middle, scale = float(np.mean(pooled)), float(np.std(pooled))
+    line = [((side - middle) / scale)[:, None] for side in (variable.left, variable.right)]
+    knots = curve_knots(pooled)
+    found: dict[Form, tuple[Floats, Floats]] = {"line": (line[0], line[1])}
+    if knots.size > 2:
+        found["curve"] = (hats(variable.left, knots), hats(variable.right, knots))
+    return found
+
+
+def curve_knots(values: Floats) -> Floats:
+    """Knots of a curve: at quantiles, so that each piece rests on as many data."""
+    return np.unique(np.quantile(values, np.linspace(0.0, 1.0, KNOTS)))
+
+
+def hats(values: Floats, knots: Floats) -> Floats:
+    """Tent functions: 1 at a knot, 0 at all others, straight between; (n, knots)."""
+    unit = np.eye(knots.size)
+    return np.stack([np.interp(values, knots, row) for row in unit], axis=-1)
+
+
+def floor_cells(x: Floats, y: Floats) -> Floats:
+    """Marks of the floor's cells in which the steps are, (n, cells)."""
+    width = CELL
+    while True:
+        column = np.floor((x - x.min()) / width).astype(int)
+        row = np.floor((y - y.min()) / width).astype(int)
+        cell, counts = np.unique(column * (row.max() + 1) + row, return_inverse=True)
+        if cell.size <= CELLS:
+            return np.asarray(counts[:, None] == np.arange(cell.size), dtype=np.float64)
+        width *= 1.25

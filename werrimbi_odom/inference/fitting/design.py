@@ -1,0 +1,129 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Whitened innovations of all legs, and how they change with every knob: what a fit solves."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.fitting.knobs import (
+    HEADING_AT_START,
+    START_YAW,
+    YAW_DRIFT,
+    Knob,
+    Model,
+)
+from werrimbi_odom.inference.fitting.likelihood import (
+    Innovations,
+    ReferenceKind,
+    Variances,
+    innovations,
+)
+from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.model.pose import Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Point:
+    """Where a fit stands: the model, its noise, and the legs on which the reference jumped."""
+
+    model: Model
+    variances: Variances
+    excluded: tuple[NDArray[np.bool_], ...]
+
+    @property
+    def skip(self) -> NDArray[np.bool_]:
+        """Excluded legs of all runs, one after the other."""
+        return np.concatenate(self.excluded)
+
+
+@dataclass(frozen=True, slots=True)
+class Design:
+    """Whitened innovations (m, 3) and their derivatives (m, 3, p)."""
+
+    white: Floats
+    slopes: Floats
+    columns: tuple[tuple[Knob, int], ...]
+    """What the p are; a knob of the runs' own has one column for each run, with its index."""
+
+    def flat(self) -> tuple[Floats, Floats]:
+        """As (3 m,) and (3 m, p)."""
+        return self.white.ravel(), self.slopes.reshape(self.white.size, self.slopes.shape[-1])
+
+
+def unexpected(
+    runs: Together,
+    point: Point,
+    kind: ReferenceKind,
+    change: Floats | None = None,
+    prediction: Prediction | None = None,
+) -> Innovations:
+    """Innovations of all runs, and their derivatives for changes (m, 3, p) of the legs."""
+    return innovations(
+        point.model.robot,
+        runs,
+        prediction or predict_all(point.model, runs),
+        point.variances,
+        kind,
+        change=change,
+        excluded=point.skip,
+        start_yaws=point.model.start_yaws,
+    )
+
+
+def slopes_of(runs: Together, model: Model, knobs: Sequence[Knob]) -> Floats:
+    """Derivatives of the legs' relative poses in knobs, (m, 3, p), by central differences.
+
+    A knob of the runs' own is moved in all of them at once: legs feel their own run's alone.
+    """
+    columns = []
+    for knob in knobs:
+        if knob.name == YAW_DRIFT:
+            columns.append(np.outer(runs.duration, [0.0, 0.0, 1.0]))
+            continue
+        ahead, behind = model.moved_by(knob, knob.scale), model.moved_by(knob, -knob.scale)
+        width = ahead.value(knob) - behind.value(knob) if not knob.per_run else 2.0 * knob.scale
+        columns.append((legs_shown(ahead, runs) - legs_shown(behind, runs)) / width)
+    return np.stack(columns, axis=-1) if columns else np.zeros((runs.count, 3, 0))
+
+
+def stacked(
+    runs: Together,
+    point: Point,
+    kind: ReferenceKind,
+    knobs: Sequence[Knob],
+    prediction: Prediction | None = None,
+) -> Design:
+    """The design for knobs at a point; start headings that were not measured are among them."""
+    local = [knob for knob in knobs if knob.name != START_YAW]
+    found = unexpected(runs, point, kind, slopes_of(runs, point.model, local), prediction)
+    white, slopes = found.whitened()
+    return spread_out(runs, point.model, white, slopes, local)
+
+
+def spread_out(
+    runs: Together, model: Model, white: Floats, slopes: Floats, local: Sequence[Knob]
+) -> Design:
+    """Local columns, those of the runs' own given a column for each run.
+
+    `slopes` has one column more than `local`: that of the start headings.
+    """
+    columns: list[tuple[Knob, int]] = []
+    parts = []
+    for number, knob in enumerate([*local, HEADING_AT_START]):
+        column = slopes[..., number]
+        if not knob.per_run:
+            columns.append((knob, -1))
+            parts.append(column)
+            continue
+        for index, own in enumerate(model.own):
+            if knob.name in own:
+                columns.append((knob, index))
+                parts.append(column * (runs.run_of_leg == index)[:, None])
+    wide = np.stack(parts, axis=-1) if parts else np.zeros((runs.count, 3, 0))
+    return Design(white, wide, tuple(columns))

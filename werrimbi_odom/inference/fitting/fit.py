@@ -1,0 +1,332 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Maximum likelihood of calibration, effects and noise from any driving with a reference.
+
+Two blocks that hardly disturb each other are fitted in turn: the knobs (multipliers, parameters of
+effects, nuisances of runs) by Gauss-Newton on the whitened innovations, and the four variances on
+their likelihood. What the driving does not excite is left as it was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.fitting.design import Design, Point, stacked, unexpected
+from werrimbi_odom.inference.fitting.knobs import (
+    CALIBRATION,
+    START_YAW,
+    YAW_DRIFT,
+    Knob,
+    Model,
+)
+from werrimbi_odom.inference.fitting.likelihood import (
+    Innovations,
+    ReferenceKind,
+    Variances,
+    innovations,
+)
+from werrimbi_odom.inference.fitting.matching import MatchedRun
+from werrimbi_odom.inference.fitting.noise import held_variances, likeliest
+from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict, predict_all
+from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+JUMP = 40.0
+"""Squared deviation, in units of what is usual for the run, above which the reference jumped."""
+
+FEW = 60
+"""Fewer measured coordinates than this cannot tell the noise; it is then taken as it was given."""
+
+_MEDIAN_CHI2_3 = 2.366
+_TAIL = 4.0  # degrees of freedom of the Student-t that weighs legs until the jumps are known
+
+
+@dataclass(frozen=True, slots=True)
+class ModelFit:
+    """What a fit found."""
+
+    point: Point
+    free: tuple[Knob, ...]
+    """Shared knobs that the driving determines, and that were fitted."""
+    covariance: Floats
+    """Of the values of `free`."""
+    mute: tuple[Knob, ...]
+    """Shared knobs that the driving does not determine; left alone."""
+    at_bound: tuple[Knob, ...]
+    """Fitted knobs that ran against what is physically possible."""
+    minus_two_log_likelihood: float
+
+    @property
+    def robot(self) -> Robot:
+        """With everything put in that was determined."""
+        return self.point.model.robot
+
+
+def start_point(
+    runs: Sequence[MatchedRun] | Together,
+    robot: Robot,
+    sigma_xy: float | None = None,
+    sigma_yaw: float | None = None,
+) -> Point:
+    """Where a fit begins: the robot as given, no leg excluded, headings from the first legs."""
+    laid = _laid(runs)
+    guess = (
+        max(robot.left_wheel_noise, 1e-5),
+        max(robot.right_wheel_noise, 1e-5),
+        sigma_xy or 1e-3,
+        sigma_yaw or 2e-3,
+    )
+    own = tuple(_nuisances(robot, run) for run in laid.runs)
+    return Point(
+        Model(robot, own),
+        Variances(*(np.array([value**2]) for value in guess)),
+        tuple(np.zeros(run.legs, dtype=np.bool_) for run in laid.runs),
+    )
+
+
+def fit_model(
+    runs: Sequence[MatchedRun] | Together,
+    point: Point,
+    kind: ReferenceKind = "absolute",
+    knobs: Sequence[Knob] = CALIBRATION,
+    *,
+    sigma_xy: float | None = None,
+    sigma_yaw: float | None = None,
+    find_jumps: bool = True,
+    rounds: int = 3,
+) -> ModelFit:
+    """Fit knobs and noise to all runs at once.
+
+    Parameters
+    ----------
+    knobs
+        What may be turned; those of the runs' own among them.
+    sigma_xy, sigma_yaw : float, optional
+        The reference's noise where it is known [m, rad]; else it is estimated.
+    find_jumps : bool
+        Find the legs on which the reference jumped. Once for a set of runs: what is compared with
+        this fit later must leave the same legs out.
+    """
+    laid = _laid(runs)
+    given = point.model
+    if find_jumps:
+        point = _robustly(laid, point, kind, knobs)
+    point = replace(point, variances=held_variances(point.variances, sigma_xy, sigma_yaw))
+    held = (sigma_xy is not None, sigma_yaw is not None)
+    free, covariance = _shared(knobs), np.zeros((0, 0))
+    for _ in range(rounds):
+        if laid.data >= FEW:
+            variances = likeliest(Costs(laid, point, kind), point.variances, held)
+            point = replace(point, variances=variances)
+        free, covariance = _determined(stacked(laid, point, kind, knobs))
+        mute = {knob.name: given.value(knob) for knob in _shared(knobs) if knob not in free}
+        point = replace(point, model=point.model.turned(mute, [{}] * len(laid.runs)))
+        point, moved = _gauss_newton(laid, point, kind, [*free, *_own(knobs)])
+        if not moved:
+            break
+    costs = Costs(laid, point, kind)
+    return ModelFit(
+        point,
+        tuple(free),
+        covariance,
+        tuple(knob for knob in _shared(knobs) if knob not in free),
+        tuple(knob for knob in free if _at_bound(point.model.value(knob), knob)),
+        float(costs(point.variances)[0]),
+    )
+
+
+def _laid(runs: Sequence[MatchedRun] | Together) -> Together:
+    return runs if isinstance(runs, Together) else together(runs)
+
+
+def _shared(knobs: Sequence[Knob]) -> list[Knob]:
+    return [knob for knob in knobs if not knob.per_run]
+
+
+def _own(knobs: Sequence[Knob]) -> list[Knob]:
+    """Knobs of the runs' own; their nuisances are always among them."""
+    return [knob for knob in knobs if knob.per_run]
+
+
+def _at_bound(value: float, knob: Knob) -> bool:
+    low, high = knob.bounds
+    margin = 1e-6 * (high - low)
+    return value <= low + margin or value >= high - margin
+
+
+def _robustly(runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob]) -> Point:
+    """Come near the answer whatever the reference's jumps, then find these."""
+    for _ in range(12):
+        design = stacked(runs, point, kind, knobs)
+        deviation = np.sum(design.white**2, axis=-1)
+        counted = deviation > 0.0
+        scale = float(np.median(deviation[counted])) / _MEDIAN_CHI2_3 if counted.any() else 1.0
+        point = replace(point, variances=_scaled(point.variances, max(scale, 1e-6)))
+        weight = (_TAIL + 3.0) / (_TAIL + deviation / scale)
+        step = solved(design, weight)
+        point = replace(point, model=moved(point.model, design, step))
+        if _small(design, step):
+            break
+    return replace(point, excluded=_jumps(runs, point, kind))
+
+
+def without_jumps(runs: Together, point: Point, kind: ReferenceKind) -> Point:
+    """The point with the legs left out on which its model cannot believe the reference."""
+    return replace(point, excluded=_jumps(runs, point, kind))
+
+
+def _jumps(runs: Together, point: Point, kind: ReferenceKind) -> tuple[NDArray[np.bool_], ...]:
+    nothing = tuple(np.zeros(size, dtype=np.bool_) for size in np.diff(runs.legs))
+    white, _ = unexpected(runs, replace(point, excluded=nothing), kind).whitened()
+    deviation = np.sum(white**2, axis=-1)
+    found = []
+    for first, last in zip(runs.legs[:-1], runs.legs[1:], strict=True):
+        own = deviation[first:last]
+        usual = max(float(np.median(own)) / _MEDIAN_CHI2_3, 1.0)
+        found.append(own > JUMP * usual)
+    return tuple(found)
+
+
+def _gauss_newton(
+    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob]
+) -> tuple[Point, bool]:
+    """The point of least squares near a point, and whether it is another one."""
+    prediction = predict_all(point.model, runs)
+    best = np.inf
+    for number in range(6):
+        design = stacked(runs, point, kind, knobs, prediction)
+        best = min(best, float(np.sum(design.white**2)))
+        step = solved(design, np.ones(runs.count))
+        if _small(design, step):
+            return point, number > 0
+        for _ in range(5):
+            tried = replace(point, model=moved(point.model, design, step))
+            ahead = replace(prediction, relative=legs_shown(tried.model, runs))
+            cost = float(np.sum(unexpected(runs, tried, kind, None, ahead).whitened()[0] ** 2))
+            if cost < best:
+                break
+            step = 0.3 * step
+        else:
+            return point, number > 0
+        point, prediction, gained = tried, ahead, best - cost
+        if gained < 1e-3:
+            return point, number > 0
+    return point, True
+
+
+def _small(design: Design, step: Floats) -> bool:
+    scales = np.array([knob.scale for knob, _ in design.columns])
+    return bool(np.all(np.abs(step) < 1e-4 * scales))
+
+
+@dataclass(frozen=True, slots=True)
+class Costs:
+    """Minus two log-likelihood of sets of variances, the model being given."""
+
+    runs: Sequence[MatchedRun] | Together
+    point: Point
+    kind: ReferenceKind
+
+    def prediction(self) -> Prediction:
+        """Of all runs."""
+        return predict_all(self.point.model, _laid(self.runs))
+
+    def innovations(self, sets: Variances, prediction: Prediction) -> Innovations:
+        """For each set."""
+        model = self.point.model
+        return innovations(
+            model.robot,
+            _laid(self.runs),
+            prediction,
+            sets,
+            self.kind,
+            excluded=self.point.skip,
+            start_yaws=model.start_yaws,
+        )
+
+    def __call__(self, sets: Variances, prediction: Prediction | None = None) -> Floats:
+        """Cost of each set."""
+        found = self.innovations(sets, prediction or self.prediction())
+        return found.minus_two_log_likelihood()
+
+
+def solved(design: Design, weight: Floats) -> Floats:
+    """Weighted least squares step; directions that nothing excites are not moved."""
+    root = np.sqrt(weight)[:, None]
+    matrix = (design.slopes * root[..., None]).reshape(design.white.size, len(design.columns))
+    size = np.sqrt(np.sum(matrix**2, axis=0))
+    size = np.where(size > 0.0, size, 1.0)
+    target = (design.white * root).ravel()
+    return -np.linalg.lstsq(matrix / size, target, rcond=1e-9)[0] / size
+
+
+def moved(model: Model, design: Design, step: Floats) -> Model:
+    """The model after a step in the design's columns."""
+    shared: dict[str, float] = {}
+    own: list[dict[str, float]] = [{} for _ in model.own]
+    for (knob, index), move in zip(design.columns, step.tolist(), strict=True):
+        target = shared if index < 0 else own[index]
+        target[knob.name] = float(np.clip(model.value(knob, max(index, 0)) + move, *knob.bounds))
+    return model.turned(shared, own)
+
+
+def _scaled(variances: Variances, factor: float) -> Variances:
+    return Variances(
+        variances.left * factor,
+        variances.right * factor,
+        variances.xy * factor,
+        variances.yaw * factor,
+    )
+
+
+def _determined(design: Design) -> tuple[list[Knob], Floats]:
+    """Shared knobs that the driving determines, and their covariance."""
+    columns = design.columns
+    flat = design.flat()[1]
+    kept = list(range(len(columns)))
+    while True:
+        size = np.sqrt(np.sum(flat[:, kept] ** 2, axis=0))
+        heard = size > 1e-9
+        scaled = flat[:, kept] / np.where(heard, size, 1.0)
+        inverse = np.linalg.pinv(scaled.T @ scaled, rcond=1e-10, hermitian=True)
+        covariance = inverse / np.outer(size, size).clip(1e-300)
+        spread = np.where(heard, np.sqrt(np.diag(covariance)), np.inf)
+        limits = np.array([columns[column][0].undetermined for column in kept])
+        shared = np.array([columns[column][1] < 0 for column in kept])
+        excess = np.where(shared, spread / limits, 0.0)
+        if not kept or excess.max(initial=0.0) <= 1.0:
+            count = int(shared.sum())
+            names = [columns[column][0] for column in kept[:count]]
+            return names, np.asarray(covariance[:count, :count])
+        kept.pop(int(np.argmax(excess)))
+
+
+def _nuisances(robot: Robot, run: MatchedRun) -> dict[str, float]:
+    """What has to be fitted for a run because its reference does not measure it."""
+    heading = _first_heading(robot, run)
+    own = {} if heading is None else {START_YAW: heading}
+    if not run.measured.has_position.any():
+        own[YAW_DRIFT] = 0.0  # a heading alone is a gyro's, and gyros drift
+    return own
+
+
+def _first_heading(robot: Robot, run: MatchedRun) -> float | None:
+    """Start heading that turns the first legs onto the measured positions; None where measured."""
+    if run.measured.has_yaw[0]:
+        return None
+    heading, pose, predicted = 0.0, 0j, [0j]
+    for x, y, turn in predict(robot, run, 0.0).relative:
+        pose += np.exp(1j * heading) * complex(x, y)
+        heading += turn
+        predicted.append(pose)
+    measured = run.measured.x + 1j * run.measured.y
+    usable = np.flatnonzero(run.measured.has_position)[:12]
+    if usable.size < 2:
+        return 0.0
+    shape = np.array(predicted)[usable] - predicted[usable[0]]
+    return float(np.angle(np.sum(np.conj(shape) * (measured[usable] - measured[usable[0]]))))

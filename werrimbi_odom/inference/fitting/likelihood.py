@@ -1,0 +1,214 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the reference says that the model did not expect: innovations, white under a true model.
+
+A Kalman filter carries the pose from one reference pose to the next with the closed-form noise of
+the leg between them. What it did not expect (the innovation) has a known covariance and is
+independent from leg to leg, whatever the reference measures: full poses, positions alone, a heading
+alone, two poses in a drive. So likelihood, fits and tests for all of them rest on one loop.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.fitting.filtering import UNMEASURED, Legs, filtered
+from werrimbi_odom.inference.fitting.matching import MatchedRun
+from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.model.covariance import PathNoise, piece_covariance
+from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.motion import BodyMotion
+from werrimbi_odom.model.pose import Floats, wrap_all
+from werrimbi_odom.model.robot import Robot
+
+ReferenceKind = Literal["absolute", "incremental"]
+
+
+@dataclass(frozen=True, slots=True)
+class Variances:
+    """The four variances of the noise; arrays of shape (g,) for g sets tried at once.
+
+    The reference's are of each pose (absolute) or of each interval (incremental).
+    """
+
+    left: Floats
+    """k_L² [m]."""
+    right: Floats
+    """k_R² [m]."""
+    xy: Floats
+    """Of the reference's position, each coordinate [m²]."""
+    yaw: Floats
+    """Of the reference's heading [rad²]."""
+
+
+@dataclass(frozen=True, slots=True)
+class Innovations:
+    """Measured minus expected pose at the end of each leg.
+
+    In the frame of the robot at the leg's start: (along, sideways, heading) [m, m, rad].
+    """
+
+    value: Floats
+    """Shape (g, m, 3); zero where nothing was measured."""
+    covariance: Floats
+    """Shape (g, m, 3, 3)."""
+    change: Floats
+    """Derivative in p parameters for the first set of variances, shape (m, 3, p)."""
+    known: NDArray[np.bool_]
+    """Which coordinates were measured and are to be counted, shape (m, 3)."""
+
+    def minus_two_log_likelihood(self) -> Floats:
+        """Of each set of variances, constants left out; shape (g,)."""
+        solved = np.linalg.solve(self.covariance, self.value[..., None])[..., 0]
+        misfit = np.sum(self.value * solved, axis=-1)
+        volume = np.linalg.slogdet(self.covariance)[1]
+        counted = self.known.any(axis=-1)
+        return np.asarray(np.sum((misfit + volume)[:, counted], axis=-1))
+
+    def whitened(self) -> tuple[Floats, Floats]:
+        """Innovations of unit variance (m, 3) and their derivatives (m, 3, p), first set."""
+        factor = np.linalg.cholesky(self.covariance[0])
+        joined = np.concatenate([self.value[0][..., None], self.change], axis=-1)
+        white = np.linalg.solve(factor, joined)
+        white[~self.known] = 0.0
+        return white[..., 0], white[..., 1:]
+
+
+def innovations(
+    robot: Robot,
+    runs: Together,
+    prediction: Prediction,
+    variances: Variances,
+    kind: ReferenceKind,
+    *,
+    change: Floats | None = None,
+    excluded: NDArray[np.bool_] | None = None,
+    start_yaws: Sequence[float | None] | None = None,
+) -> Innovations:
+    """Filter all runs and keep what was unexpected.
+
+    Parameters
+    ----------
+    change : ndarray, shape (m, 3, p), optional
+        Derivatives of the legs' relative poses. In the result one more column follows: the
+        derivative in the run's heading at its first reference pose, zero where that was measured.
+    excluded : ndarray of bool, shape (m,), optional
+        Legs on which the reference jumped: not counted, and the pose starts anew after them.
+    start_yaws : sequence of float or None, optional
+        For each run the heading at the first reference pose, where that was not measured [rad].
+    """
+    count = runs.count
+    slopes = np.zeros((count, 3, 0)) if change is None else change
+    skip = np.zeros(count, dtype=np.bool_) if excluded is None else excluded
+    view = view_of(robot.effects)
+    start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
+    if kind == "incremental":
+        return _of_increments(robot, runs, (start, finish), prediction, variances, slopes, skip)
+    begins = np.zeros(count, dtype=np.bool_)
+    begins[runs.legs[:-1]] = True
+    heading = np.full(count, np.nan)
+    for index, given in enumerate(start_yaws or []):
+        if given is not None:
+            heading[runs.legs[index]] = given
+            start[runs.legs[index], 2] = np.nan
+    found = filtered(
+        Legs(
+            prediction.relative,
+            _wheel_part(prediction, variances),
+            slopes,
+            start,
+            finish,
+            _reading(robot, variances),
+            begins,
+            skip,
+            heading,
+        )
+    )
+    known = np.isfinite(finish) & ~skip[:, None]
+    return Innovations(found.value, found.covariance, found.change, known)
+
+
+def _of_increments(
+    robot: Robot,
+    runs: Together,
+    measured: tuple[Floats, Floats],
+    prediction: Prediction,
+    variances: Variances,
+    slopes: Floats,
+    skip: NDArray[np.bool_],
+) -> Innovations:
+    """Legs are independent: the noise of each interval of the reference is its own."""
+    value = errors_between(*measured, prediction)
+    known = np.isfinite(value) & ~skip[:, None]
+    none = np.zeros(runs.count)
+    leg = BodyMotion(prediction.along, none, prediction.turn)
+    swing = piece_covariance(leg, PathNoise(none, runs.intervals, none), none).matrix()
+    covariance = (
+        _wheel_part(prediction, variances)
+        + variances.yaw[:, None, None, None] * swing
+        + variances.xy[:, None, None, None]
+        * runs.intervals[:, None, None]
+        * np.diag([1.0, 1.0, 0.0])
+        + 2.0 * np.diag(reading_noise(robot))
+    )
+    covariance = covariance + UNMEASURED * _diagonal(~np.isfinite(value))
+    value = np.where(known, value, 0.0)
+    change = np.concatenate([-slopes, np.zeros((runs.count, 3, 1))], axis=-1)
+    sets = variances.left.size
+    return Innovations(np.broadcast_to(value, (sets, *value.shape)), covariance, change, known)
+
+
+def relative_errors(run: MatchedRun, prediction: Prediction) -> Floats:
+    """Measured minus predicted relative pose of each leg, shape (m, 3); NaN where not measured.
+
+    In the frame of the robot at the leg's start, as the reference gives it.
+    """
+    measured = np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1)
+    return errors_between(measured[:-1], measured[1:], prediction)
+
+
+def errors_between(start: Floats, finish: Floats, prediction: Prediction) -> Floats:
+    """The same for measured poses (m, 3) at the legs' starts and ends."""
+    step = finish - start
+    cos, sin = np.cos(start[:, 2]), np.sin(start[:, 2])
+    relative = np.stack(
+        [cos * step[:, 0] + sin * step[:, 1], cos * step[:, 1] - sin * step[:, 0], step[:, 2]],
+        axis=-1,
+    )
+    error = relative - prediction.relative
+    error[:, 2] = wrap_all(error[:, 2])
+    return np.asarray(error)
+
+
+def _reading(robot: Robot, variances: Variances) -> Floats:
+    """Covariance of a measured pose, and of the counters' reading with it; (g, 3, 3)."""
+    reading = np.zeros((variances.left.size, 3, 3))
+    reading[:, 0, 0] = reading[:, 1, 1] = variances.xy
+    reading[:, 2, 2] = variances.yaw
+    return np.asarray(reading + np.diag(reading_noise(robot)))
+
+
+def _wheel_part(prediction: Prediction, variances: Variances) -> Floats:
+    """Covariance of the legs from the wheels' noise, shape (g, m, 3, 3)."""
+    return np.asarray(
+        variances.left[:, None, None, None] * prediction.per_left
+        + variances.right[:, None, None, None] * prediction.per_right
+    )
+
+
+def reading_noise(robot: Robot) -> Floats:
+    """Variance of a pose from reading both counters once, uniform over one count; shape (3,)."""
+    left, right = robot.left_tick**2 / 12.0, robot.right_tick**2 / 12.0
+    along = 0.25 * (left + right)
+    return np.array([along, along, (left + right) / robot.track**2])
+
+
+def _diagonal(rows: NDArray[np.bool_]) -> Floats:
+    """Diagonal matrices of rows, shape (m, 3) to (m, 3, 3)."""
+    return np.asarray(rows[..., None] * np.eye(3))

@@ -1,0 +1,159 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The four variances of greatest likelihood: two wheels, the reference's position and heading."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from werrimbi_odom.inference.fitting.likelihood import Variances
+from werrimbi_odom.inference.fitting.prediction import Prediction
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+if TYPE_CHECKING:
+    from werrimbi_odom.inference.fitting.fit import Costs
+
+NOISES = ("left_wheel_noise", "right_wheel_noise", "reference_sigma_xy", "reference_sigma_yaw")
+
+_LOWEST, _HIGHEST = np.log(1e-14), np.log(10.0)
+
+
+@dataclass(frozen=True, slots=True)
+class NoiseEstimate:
+    """A standard deviation of noise, with its own; `determined` is False where data were mute."""
+
+    value: float
+    std: float
+    determined: bool
+
+
+def with_noise(robot: Robot, noises: Mapping[str, NoiseEstimate]) -> Robot:
+    """The robot with the wheels' noise put in, where it was determined."""
+    wheels = ("left_wheel_noise", "right_wheel_noise")
+    found = {name: noises[name].value for name in wheels if noises[name].determined}
+    return replace(robot, **found)  # type: ignore[arg-type]
+
+
+def held_variances(
+    variances: Variances, sigma_xy: float | None, sigma_yaw: float | None
+) -> Variances:
+    """The variances with what is known of the reference put in."""
+    if sigma_xy is not None:
+        variances = replace(variances, xy=np.array([sigma_xy**2]))
+    if sigma_yaw is not None:
+        variances = replace(variances, yaw=np.array([sigma_yaw**2]))
+    return variances
+
+
+def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Variances:
+    """Variances of greatest likelihood, the model being given; by Fisher's scoring.
+
+    The innovations' derivatives in the logarithms of the variances come from one pass of the filter
+    over all sets; expected curvature is positive, so every step goes downhill.
+    """
+    prediction = costs.prediction()
+    moving = _moving(held)
+    logs = np.clip(np.log(_row(start)[moving]), _LOWEST, _HIGHEST)
+    damping = 1e-6
+    cost, gradient, curvature = _scored(costs, prediction, start, held, logs)
+    for _ in range(25):
+        scale = np.diag(curvature)
+        step = -np.linalg.solve(
+            curvature + np.diag(damping * scale + 1e-9 * scale.max(initial=1e-12) + 1e-12), gradient
+        )
+        tried = np.clip(logs + np.clip(step, -2.0, 2.0), _LOWEST, _HIGHEST)
+        ahead = _scored(costs, prediction, start, held, tried)
+        if ahead[0] > cost + 1e-9 * abs(cost):
+            if damping > 1e4:
+                break
+            damping = max(10.0 * damping, 1e-2)
+            continue
+        gained, moved = cost - ahead[0], np.max(np.abs(tried - logs), initial=0.0)
+        logs, (cost, gradient, curvature), damping = tried, ahead, 0.1 * damping
+        if gained < 1e-3 or moved < 1e-4:
+            break
+    return _variances(start, held, logs[None, :])
+
+
+def _scored(
+    costs: Costs, prediction: Prediction, base: Variances, held: tuple[bool, bool], logs: Floats
+) -> tuple[float, Floats, Floats]:
+    """Cost at the logarithms of the variances, its gradient, and its expected curvature."""
+    step = 1e-4
+    found = costs.innovations(
+        _variances(base, held, np.concatenate([logs[None], logs + step * np.eye(logs.size)])),
+        prediction,
+    )
+    cost = found.minus_two_log_likelihood()
+    counted = found.known.any(axis=-1)
+    root = np.linalg.inv(np.linalg.cholesky(found.covariance[0, counted]))
+    of_covariance = (found.covariance[1:, counted] - found.covariance[0, counted]) / step
+    of_value = (found.value[1:, counted] - found.value[0, counted]) / step
+    spread = (root @ of_covariance @ root.swapaxes(-1, -2)).reshape(logs.size, -1)
+    shift = (root @ of_value[..., None]).reshape(logs.size, -1)
+    return float(cost[0]), (cost[1:] - cost[0]) / step, spread @ spread.T + 2.0 * shift @ shift.T
+
+
+def noise_estimates(
+    costs: Costs, variances: Variances, held: tuple[bool, bool]
+) -> dict[str, NoiseEstimate]:
+    """The four noises [m^0.5, m^0.5, m, rad] with standard deviations from the curvature."""
+    function = _in_logs(costs, variances, held)
+    moving = _moving(held)
+    sigmas = np.sqrt(_row(variances))
+    logs = 2.0 * np.log(sigmas[moving])
+    covariance = 2.0 * np.linalg.pinv(_hessian(function, logs), hermitian=True)
+    share = np.zeros(4)
+    share[moving] = 0.5 * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    return {
+        name: NoiseEstimate(float(sigma), float(sigma * part), bool(part < 0.5))
+        for name, sigma, part in zip(NOISES, sigmas, share, strict=True)
+    }
+
+
+def _moving(held: tuple[bool, bool]) -> Floats:
+    return np.array([True, True, not held[0], not held[1]])
+
+
+def _row(variances: Variances) -> Floats:
+    return np.array([variances.left[0], variances.right[0], variances.xy[0], variances.yaw[0]])
+
+
+def _variances(base: Variances, held: tuple[bool, bool], logs: Floats) -> Variances:
+    """Of rows of logarithms, shape (g, free)."""
+    table = np.tile(_row(base), (logs.shape[0], 1))
+    table[:, _moving(held)] = np.exp(logs)
+    return Variances(*table.T)
+
+
+def _in_logs(costs: Costs, base: Variances, held: tuple[bool, bool]) -> Callable[[Floats], Floats]:
+    prediction = costs.prediction()
+    return lambda logs: costs(_variances(base, held, logs), prediction)
+
+
+def _with_gradient(function: Callable[[Floats], Floats], logs: Floats) -> tuple[float, Floats]:
+    """Cost and gradient, by central differences taken in one pass."""
+    step = 1e-4
+    moves = step * np.eye(logs.size)
+    values = function(np.concatenate([logs[None], logs + moves, logs - moves]))
+    ahead, behind = values[1 : logs.size + 1], values[logs.size + 1 :]
+    return float(values[0]), (ahead - behind) / (2.0 * step)
+
+
+def _hessian(function: Callable[[Floats], Floats], logs: Floats) -> Floats:
+    """Second derivatives, by differences of gradients."""
+    step = 0.05
+    rows = []
+    for index in range(logs.size):
+        move = np.zeros(logs.size)
+        move[index] = step
+        ahead = _with_gradient(function, logs + move)[1]
+        behind = _with_gradient(function, logs - move)[1]
+        rows.append((ahead - behind) / (2.0 * step))
+    matrix = np.array(rows)
+    return np.asarray(0.5 * (matrix + matrix.T))

@@ -1,0 +1,283 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the model predicts for every leg: the relative pose that the reference shows, its noise."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.fitting.knobs import START_YAW, Model
+from werrimbi_odom.inference.fitting.matching import MatchedRun
+from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.model.covariance import (
+    PoseCovariance,
+    carried,
+    noise_of_wheel_variances,
+    piece_covariance,
+)
+from werrimbi_odom.model.driving import acts, after_effects, looks_at_pose
+from werrimbi_odom.model.effect import View, view_of
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+
+@dataclass(frozen=True, slots=True)
+class Prediction:
+    """Legs as the model sees them; each in the frame of the reference at its own start.
+
+    Arrays have shape (m, 3) for (x, y, yaw) [m, m, rad] or (m, 3, 3).
+    """
+
+    relative: Floats
+    """Relative pose of each leg's end, of the point and axis that the reference measures."""
+    per_left: Floats
+    """Covariance of the relative pose for a left wheel noise k_L² of 1 m."""
+    per_right: Floats
+    """The same for k_R²."""
+    length: Floats
+    """DrivenPath driven in each leg, shape (m,), [m]."""
+    along: Floats
+    """Signed travel in each leg, shape (m,), [m]."""
+    turn: Floats
+    """Change of heading in each leg, shape (m,), [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class DrivenPath:
+    """Poses of the nodes of all runs, one after the other; only differences mean anything."""
+
+    motion: BodyMotion[Floats]
+    travel: WheelTravel[Floats]
+    position: NDArray[np.complex128]
+    yaw: Floats
+
+
+def predict(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Prediction:
+    """What a robot predicts for the legs of one run.
+
+    Parameters
+    ----------
+    start_yaw : float, optional
+        Heading at the first reference pose where that was not measured [rad].
+    """
+    own = {} if start_yaw is None else {START_YAW: start_yaw}
+    return predict_all(Model(robot, (own,)), together([run]))
+
+
+def relative_poses(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Floats:
+    """Relative pose of every leg of one run as the reference shows it, (m, 3) [m, m, rad]."""
+    own = {} if start_yaw is None else {START_YAW: start_yaw}
+    return legs_shown(Model(robot, (own,)), together([run]))
+
+
+def legs_shown(model: Model, runs: Together) -> Floats:
+    """Relative pose of every leg as the reference shows it, shape (m, 3) [m, m, rad]."""
+    view = view_of(model.robot.effects)
+    runs = runs.delayed(view.delay)
+    robot = model.laid_out(runs.run_of_step)
+    return _shown(_path(robot, runs, view, model.start_yaws), runs, view, model.drifts)
+
+
+def predict_all(model: Model, runs: Together) -> Prediction:
+    """The same, with the noise that it has for unit noise of each wheel."""
+    view = view_of(model.robot.effects)
+    runs = runs.delayed(view.delay)
+    robot = model.laid_out(runs.run_of_step)
+    path = _path(robot, runs, view, model.start_yaws)
+    return Prediction(
+        _shown(path, runs, view, model.drifts),
+        _noise_of_legs(path, runs, robot.track, view, left=1.0, right=0.0),
+        _noise_of_legs(path, runs, robot.track, view, left=0.0, right=1.0),
+        runs.per_leg(np.abs(path.motion.along)),
+        runs.per_leg(path.motion.along),
+        path.yaw[runs.end] - path.yaw[runs.begin],
+    )
+
+
+def seen(run: MatchedRun, view: View) -> MatchedRun:
+    """The run with the reference's frame made right-handed."""
+    if not view.mirrored:
+        return run
+    measured = run.measured
+    return replace(run, measured=replace(measured, y=-measured.y, yaw=-measured.yaw))
+
+
+def right_handed(poses: Floats, view: View) -> Floats:
+    """Measured poses (m, 3) with the reference's frame made right-handed."""
+    return poses * np.array([1.0, -1.0, -1.0]) if view.mirrored else poses
+
+
+def path_of(model: Model, runs: Together) -> DrivenPath:
+    """What the model makes of the steps of all runs (the reference's delay being none)."""
+    robot = model.laid_out(runs.run_of_step)
+    return _path(robot, runs, view_of(robot.effects), model.start_yaws)
+
+
+def headings_of(
+    path: DrivenPath, runs: Together, view: View, start_yaws: Sequence[float | None]
+) -> Floats:
+    """Heading at the start of each step, in the reference's frame, shape (n,) [rad].
+
+    Every leg starts from the measured heading where there is one, as its prediction does; else the
+    path is followed from the run's start.
+    """
+    measured = right_handed(runs.start, view)[:, 2] - view.yaw
+    for index, given in enumerate(start_yaws):
+        if given is not None:
+            measured[runs.legs[index]] = given - view.yaw
+    anchors = np.searchsorted(runs.begin, np.arange(path.yaw.size - 1), side="right") - 1
+    anchors = np.clip(anchors, runs.legs[:-1][runs.run_of_step], None)
+    known = np.where(np.isfinite(measured), np.arange(runs.count), runs.legs[:-1][runs.run_of_leg])
+    anchor = np.maximum.accumulate(known)[anchors]
+    return np.asarray(
+        np.nan_to_num(measured[anchor]) + path.yaw[:-1] - path.yaw[runs.begin[anchor]]
+    )
+
+
+def _path(
+    robot: Robot, runs: Together, view: View, start_yaws: Sequence[float | None]
+) -> DrivenPath:
+    if not acts(robot):
+        raw = runs.raw(robot)
+        return _from_motion(raw, wheels_to_body(raw, robot.track))
+    raw, drive = runs.raw_drive(robot)
+    placed = looks_at_pose(robot)
+    if placed:
+        path = _from_motion(raw, wheels_to_body(raw, robot.track))
+    else:
+        path = _from_motion(*after_effects(robot, raw, drive))
+        if not _looks_at_heading(robot):
+            return path
+    # Heading and place contain the effects, and effects may look at them. Few effects turn the
+    # robot by its heading, so a pass with the heading of the first pass is mostly the answer.
+    plain = wheels_to_body(raw, robot.track)
+    for _ in range(_PASSES):
+        heading = headings_of(path, runs, view, start_yaws)
+        seen = drive.with_heading(heading, drive.heading.change)
+        if placed:
+            x, y = places_of(path, heading, runs, view)
+            seen = seen.with_place(x, y, displacement(plain, heading))
+        before, path = path, _from_motion(*after_effects(robot, raw, seen))
+        if _same(before, path, placed):
+            break
+    return path
+
+
+_PASSES = 30
+
+
+def _same(before: DrivenPath, after: DrivenPath, placed: bool) -> bool:
+    """Whether another pass would find the same poses."""
+    if not placed and np.array_equal(before.motion.turn, after.motion.turn):
+        return True
+    parts = after.motion if placed else (after.motion.turn,)
+    olds = before.motion if placed else (before.motion.turn,)
+    return all(
+        not np.max(np.abs(new - old), initial=0.0) > 1e-10
+        for new, old in zip(parts, olds, strict=True)
+    )
+
+
+def places_of(
+    path: DrivenPath, heading: Floats, runs: Together, view: View
+) -> tuple[Floats, Floats]:
+    """Where each step begins, in the reference's frame; arrays of shape (n,) [m].
+
+    Every leg starts from the measured position where there is one; else the path is followed from
+    the last one that was measured, or from zero.
+    """
+    start = right_handed(runs.start, view)
+    known = np.isfinite(start[:, 0]) & np.isfinite(start[:, 1])
+    first = runs.legs[:-1]
+    anchors = np.searchsorted(runs.begin, np.arange(heading.size), side="right") - 1
+    anchors = np.clip(anchors, first[runs.run_of_step], None)
+    latest = np.where(known, np.arange(runs.count), first[runs.run_of_leg])
+    anchor = np.maximum.accumulate(latest)[anchors]
+    begin = np.minimum(runs.begin[anchor], heading.size - 1)
+    frame = heading - path.yaw[:-1]
+    moved = np.exp(1j * frame) * (path.position[:-1] - path.position[begin])
+    arm = complex(view.ahead, view.left) * np.exp(1j * heading[begin])
+    placed = np.nan_to_num(start[anchor, 0] + 1j * start[anchor, 1]) - arm + moved
+    return np.asarray(placed.real), np.asarray(placed.imag)
+
+
+def _looks_at_heading(robot: Robot) -> bool:
+    """Whether any law mentions the heading: itself, or a function that it calls."""
+    return any(_mentions(applied.effect.apply, "heading", 3) for applied in robot.effects)
+
+
+def _mentions(law: Any, name: str, deep: int) -> bool:
+    code = getattr(law, "__code__", None)
+    if code is None:
+        return not isinstance(law, (ModuleType, type)) and callable(law) and deep == 3
+    if name in code.co_names or "getattr" in code.co_names:
+        return True
+    called = (law.__globals__.get(other) for other in code.co_names)
+    return deep > 0 and any(_mentions(other, name, deep - 1) for other in called if callable(other))
+
+
+def _from_motion(travel: WheelTravel[Floats], motion: BodyMotion[Floats]) -> DrivenPath:
+    yaw = _summed(motion.turn)
+    dx, dy = displacement(motion, yaw[:-1])
+    return DrivenPath(motion, travel, _summed(dx) + 1j * _summed(dy), yaw)
+
+
+def _summed(steps: Floats) -> Floats:
+    return np.concatenate([[0.0], np.cumsum(steps)])
+
+
+def _shown(path: DrivenPath, runs: Together, view: View, drifts: Floats) -> Floats:
+    """The legs' relative poses, seen at the reference's point, axis and times."""
+    begin, end = runs.begin, runs.end
+    turn = path.yaw[end] - path.yaw[begin]
+    moved = np.exp(-1j * path.yaw[begin]) * (path.position[end] - path.position[begin])
+    point = complex(view.ahead, view.left)
+    first, last = np.full(runs.count, view.yaw), np.full(runs.count, view.yaw)
+    if view.heading_delay != 0.0:
+        first += _late(path, runs, begin, view.heading_delay)
+        last += _late(path, runs, end, view.heading_delay)
+    shown = np.exp(-1j * first) * (moved + (np.exp(1j * turn) - 1.0) * point)
+    drift = drifts[runs.run_of_leg] * runs.duration
+    return np.stack([shown.real, shown.imag, turn + last - first + drift], axis=-1)
+
+
+def _late(path: DrivenPath, runs: Together, nodes: NDArray[np.intp], delay: float) -> Floats:
+    """How far a heading that is `delay` late [s] is behind, at each leg's node [rad]."""
+    behind = np.empty(runs.count)
+    for index, run in enumerate(runs.runs):
+        own = slice(runs.legs[index], runs.legs[index + 1])
+        steps = slice(runs.steps[index], runs.steps[index + 1] + 1)
+        here = nodes[own]
+        asked = run.time[here - runs.steps[index]] - delay
+        behind[own] = np.interp(asked, run.time, path.yaw[steps]) - path.yaw[here]
+    return behind
+
+
+def _noise_of_legs(
+    path: DrivenPath, runs: Together, track: float, view: View, *, left: float, right: float
+) -> Floats:
+    """Sum of the steps' closed forms, each carried to its leg's end, as the reference sees it."""
+    steps = runs.inside
+    leg = np.repeat(np.arange(runs.count), runs.end - runs.begin)
+    motion = BodyMotion(*(part[steps] for part in path.motion))
+    noise = noise_of_wheel_variances(
+        left * np.abs(path.travel.left[steps]), right * np.abs(path.travel.right[steps]), track
+    )
+    facing = path.yaw[runs.begin][leg] + view.yaw
+    own = piece_covariance(motion, noise, path.yaw[steps] - facing)
+    marker = path.position[runs.end] + complex(view.ahead, view.left) * np.exp(
+        1j * path.yaw[runs.end]
+    )
+    lever = np.exp(-1j * facing) * (marker[leg] - path.position[steps + 1])
+    moved = carried(own, lever.real, lever.imag)
+    starts = np.concatenate([[0], np.cumsum(runs.end - runs.begin)])
+    return PoseCovariance(
+        *(np.diff(np.concatenate([[0.0], np.cumsum(entry)])[starts]) for entry in moved)
+    ).matrix()

@@ -1,0 +1,161 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Runs laid end to end: one array for the steps of all of them, one for their legs.
+
+Effects work row by row, and legs know only their own start and end; so a session of many drives
+costs what one long drive would, and not a round of numpy calls for each.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field, fields
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.fitting.matching import MatchedRun, delayed
+from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.driving import features
+from werrimbi_odom.model.effect import Wiring, wiring_of
+from werrimbi_odom.model.motion import WheelTravel
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Together:
+    """Several matched runs on common arrays: n steps, m legs."""
+
+    runs: tuple[MatchedRun, ...]
+    steps: NDArray[np.intp]
+    """First step of each run, and the number of all steps; shape (runs + 1,)."""
+    legs: NDArray[np.intp]
+    """First leg of each run, and the number of all legs; shape (runs + 1,)."""
+    begin: NDArray[np.intp]
+    """First step of each leg, shape (m,)."""
+    end: NDArray[np.intp]
+    """One past the last step of each leg, shape (m,)."""
+    run_of_step: NDArray[np.intp]
+    run_of_leg: NDArray[np.intp]
+    start: Floats
+    """Measured pose at each leg's start, (m, 3); NaN where not measured."""
+    finish: Floats
+    """Measured pose at each leg's end, (m, 3)."""
+    intervals: Floats
+    """Reference intervals in each leg, shape (m,)."""
+    duration: Floats
+    """Of each leg, shape (m,) [s]."""
+    _features: dict[tuple[float, ...], tuple[WheelTravel[Floats], Drive[Floats]]] = field(
+        default_factory=dict
+    )
+    _delayed: dict[float, Together] = field(default_factory=dict)
+
+    @property
+    def count(self) -> int:
+        """Number of legs."""
+        return self.begin.size
+
+    @property
+    def data(self) -> int:
+        """Number of measured coordinates at the legs' ends."""
+        return int(np.isfinite(self.finish).sum())
+
+    @property
+    def inside(self) -> NDArray[np.intp]:
+        """Steps that belong to a leg."""
+        marks = np.zeros(int(self.steps[-1]) + 1)
+        np.add.at(marks, self.begin, 1.0)
+        np.add.at(marks, self.end, -1.0)
+        return np.flatnonzero(np.cumsum(marks)[:-1] > 0.5)
+
+    def per_leg(self, values: Floats) -> Floats:
+        """Sums over the steps of each leg of values for all steps."""
+        sums = np.concatenate([[0.0], np.cumsum(values)])
+        return np.asarray(sums[self.end] - sums[self.begin])
+
+    def delayed(self, delay: float) -> Together:
+        """The same legs, when the reference saw at t - `delay` [s] what it stamps t."""
+        if all(delay == run.delay for run in self.runs):
+            return self
+        known = self._delayed.get(delay)
+        if known is None:
+            known = together([delayed(run, delay) for run in self.runs])
+            _remember(self._delayed, delay, known)
+        return known
+
+    def raw(self, robot: Robot) -> WheelTravel[Floats]:
+        """Travel of all steps before any effect."""
+        left, right = (
+            np.concatenate([getattr(run, side) for run in self.runs]) for side in ("left", "right")
+        )
+        left, right = wiring_of(robot.effects).wheels(left, right)
+        return WheelTravel(left * robot.left_tick, right * robot.right_tick)
+
+    def raw_drive(self, robot: Robot) -> tuple[WheelTravel[Floats], Drive[Floats]]:
+        """Travel of all steps before any effect, and what effects may look at."""
+        wiring = wiring_of(robot.effects)
+        key = (*wiring, robot.left_tick, robot.right_tick, robot.track)
+        known = self._features.get(key)
+        if known is None:
+            parts = [raw_drive(robot, run, wiring) for run in self.runs]
+            known = _joined([travel for travel, _ in parts]), _joined([drive for _, drive in parts])
+            _remember(self._features, key, known)
+        return known
+
+
+def together(runs: Sequence[MatchedRun]) -> Together:
+    """Lay runs end to end."""
+    steps = _starts([run.time.size - 1 for run in runs])
+    legs = _starts([run.legs for run in runs])
+    poses = [np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1) for run in runs]
+    return Together(
+        tuple(runs),
+        steps,
+        legs,
+        np.concatenate([run.ends[:-1] + first for run, first in zip(runs, steps, strict=False)]),
+        np.concatenate([run.ends[1:] + first for run, first in zip(runs, steps, strict=False)]),
+        np.repeat(np.arange(len(runs)), np.diff(steps)),
+        np.repeat(np.arange(len(runs)), np.diff(legs)),
+        np.concatenate([pose[:-1] for pose in poses]),
+        np.concatenate([pose[1:] for pose in poses]),
+        np.concatenate([run.intervals for run in runs]),
+        np.concatenate([np.diff(run.time[run.ends]) for run in runs]),
+    )
+
+
+def raw_drive(
+    robot: Robot, run: MatchedRun, wiring: Wiring
+) -> tuple[WheelTravel[Floats], Drive[Floats]]:
+    """Travel of one run's wheels before any effect, and what effects may look at."""
+    left, right = wiring.wheels(run.left, run.right)
+    first_counts = wiring.wheels(run.counters.first_left, run.counters.first_right)
+    raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
+    return raw, features(robot, np.diff(run.time), raw, first_counts, run.channels)
+
+
+def _starts(sizes: Sequence[int]) -> NDArray[np.intp]:
+    return np.concatenate([[0], np.cumsum(sizes)]).astype(np.intp)
+
+
+def _remember(memory: dict[Any, Any], key: Any, value: Any) -> None:
+    """A fit comes back to a few settings only; older ones are forgotten."""
+    while len(memory) >= 8:
+        del memory[next(iter(memory))]
+    memory[key] = value
+
+
+def _joined(parts: Sequence[Any]) -> Any:
+    """Values of one kind, their arrays laid end to end."""
+    first = parts[0]
+    if isinstance(first, np.ndarray):
+        return np.concatenate(parts)
+    if isinstance(first, tuple):
+        return type(first)(*(_joined(list(column)) for column in zip(*parts, strict=True)))
+    if isinstance(first, dict):
+        common = [name for name in first if all(name in part for part in parts)]
+        return {name: _joined([part[name] for part in parts]) for name in common}
+    return type(first)(
+        *(_joined([getattr(part, item.name) for part in parts]) for item in fields(first))
+    )

@@ -1,0 +1,245 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Simple manoeuvres that anybody can drive, as ideal records: made from kinematics alone.
+
+They are what a robot without any fault would have recorded, so that it can be worked out beforehand
+what an effect would change in them. No physics engine: that is for tests.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.model.effect import Wiring, view_of, wiring_of
+from werrimbi_odom.model.motion import BodyMotion, displacement
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+REST = 0.6
+"""Standstill before and after [s]."""
+
+FINE = 0.005
+"""Steps of the ideal path [s]."""
+
+Move = tuple[float, float, float]
+"""Length [m], turn [rad], and pace: 1 for fast, less for slower."""
+
+
+@dataclass(frozen=True, slots=True)
+class Pace:
+    """What a robot can do, taken from what it did; speeds at pace 1."""
+
+    speed: float
+    """[m/s]"""
+    acceleration: float
+    """Of hard starts and stops [m/s^2]."""
+    base: float
+    """Between the wheels [m]."""
+
+    @property
+    def size(self) -> float:
+        """Unit of length for a robot of this size [m]: a metre where the wheels are 35 cm apart."""
+        return self.base / 0.35
+
+    @property
+    def yaw_rate(self) -> float:
+        """Spinning with the wheels at 0.6 of their speed [rad/s]."""
+        return 1.2 * self.speed / self.base
+
+
+@dataclass(frozen=True, slots=True)
+class Ideal:
+    """A manoeuvre of the library."""
+
+    name: str
+    """As `werrimbi_odom.simulation` calls it, where it has one."""
+    words: str
+    """What to drive."""
+    where: str
+    """The place in a sentence about what will differ there."""
+    moves: Callable[[float], Sequence[Move]]
+    """For a robot of a size [m]."""
+    hard: bool = False
+    """Started and stopped as hard as the robot does."""
+
+
+def _square(size: float) -> list[Move]:
+    sides = [(2.0 * size, 0.0, 0.6), (0.0, 0.5 * math.pi, 0.6)]
+    return sides * 4 + [(length, -turn, pace) for length, turn, pace in sides] * 4
+
+
+def _spins(size: float) -> list[Move]:
+    return [(0.0, sense * 4.0 * math.pi, pace) for pace in (1.0, 0.4) for sense in (1.0, -1.0)]
+
+
+def _arcs(size: float) -> list[Move]:
+    return [
+        (direction * radius * size * math.pi, direction * sense * math.pi, pace)
+        for pace in (0.3, 1.0)
+        for radius in (0.4, 1.2)
+        for sense in (1.0, -1.0)
+        for direction in (1.0, -1.0)
+    ]
+
+
+def _out_and_back(size: float) -> list[Move]:
+    return [(way * 3.0 * size, 0.0, pace) for pace in (0.25, 0.6, 1.0) * 2 for way in (1.0, -1.0)]
+
+
+def _start_stop(size: float) -> list[Move]:
+    # Unequal hops: else the legs, of one length, would all end at the same speed.
+    hops = (0.35, 0.5, 0.65, 0.8, 0.45, 0.6)
+    return [(way * hop * size, 0.0, 1.0) for way in (1.0, -1.0) for hop in hops] * 2
+
+
+def _figure_eight(size: float) -> list[Move]:
+    around = 2.0 * math.pi * size
+    return [(around, sense * 2.0 * math.pi, pace) for pace in (0.3, 0.8) for sense in (1.0, -1.0)]
+
+
+def _stand_still(size: float) -> list[Move]:
+    return [(0.0, 0.0, 60.0), (size, 0.0, 0.6), (0.0, 0.0, 60.0), (-size, 0.0, 0.6)]
+
+
+MANOEUVRES: tuple[Ideal, ...] = (
+    Ideal("spins", "spins on the spot, to the left and to the right, fast and slow",
+          "spinning on the spot", _spins),
+    Ideal("arcs", "small and large arcs, to both sides, forwards and backwards, slow and fast",
+          "on small and large arcs, slow and fast", _arcs),
+    Ideal("out_and_back", "lines, forwards and backwards again, slowly, then faster, then fast",
+          "on lines, slow and fast, forwards and backwards", _out_and_back),
+    Ideal("start_stop", "short hops with hard starts and hard stops, forwards and backwards",
+          "starting and stopping hard", _start_stop, True),
+    Ideal("square", "a square to the left and a square to the right, turning on the spot",
+          "round squares in both senses", _square),
+    Ideal("figure_eight", "figures of eight, slowly, then fast", "round eights, slow and fast",
+          _figure_eight),
+    Ideal("stand_still", "short lines, with a minute of standing still between them",
+          "standing still", _stand_still),
+)  # fmt: skip
+"""Simplest first: of equals the first one is taken."""
+
+
+def pace_of(runs: Together, robot: Robot) -> Pace:
+    """What the robot did, so what it can do."""
+    travel, drive = runs.raw_drive(robot)
+    duration = np.maximum(drive.duration, 1e-6)
+    rims = np.concatenate([np.abs(travel.left), np.abs(travel.right)]) / np.tile(duration, 2)
+    speed = float(np.quantile(rims[rims > 0.0], 0.95)) if (rims > 0.0).any() else 0.3
+    speed = min(max(speed, 0.02), 20.0)
+    return Pace(speed, 2.5 * speed, robot.track)
+
+
+def rates_of(runs: Together) -> tuple[float, float]:
+    """Usual time between two messages of the ticks, and between two poses of the reference [s].
+
+    A reference that has two or three poses in a drive: infinite.
+    """
+    ticks = np.concatenate([np.diff(run.counters.time) for run in runs.runs])
+    poses = [
+        np.diff(run.measured.time) / np.maximum(run.intervals, 1.0)
+        for run in runs.runs
+        if run.intervals.sum() > 3
+    ]
+    every = float(np.median(np.concatenate(poses))) if poses else math.inf
+    return float(np.median(ticks)), every
+
+
+def ideal_run(
+    ideal: Ideal,
+    robot: Robot,
+    pace: Pace,
+    *,
+    ticks: float,
+    poses: float,
+    measures: tuple[bool, bool],
+    channels: dict[str, tuple[float, float]] | None = None,
+) -> Run:
+    """What a manoeuvre would record, the robot being as the model says and without noise.
+
+    Parameters
+    ----------
+    ticks, poses : float
+        Time between two messages, and between two poses of the reference [s].
+    measures : (bool, bool)
+        Whether the reference measures positions, and headings.
+    channels
+        Extra channels with the range over which each has varied; here they rise along it.
+    """
+    time, along, turn = _path(ideal, pace)
+    yaw = np.concatenate([[0.0], np.cumsum(turn)])
+    motion = BodyMotion(along, np.zeros_like(along), turn)
+    steps = displacement(motion, yaw[:-1])
+    x, y = (np.concatenate([[0.0], np.cumsum(step)]) for step in steps)
+    at = np.arange(0.0, time[-1], min(ticks, 0.2))
+    half = 0.5 * robot.track * turn
+    left, right = (
+        np.interp(at, time, np.concatenate([[0.0], np.cumsum(travel)]))
+        for travel in (along - half, along + half)
+    )
+    left, right = _recorded(
+        wiring_of(robot.effects), left / robot.left_tick, right / robot.right_tick
+    )
+    seen = (
+        np.arange(0.5 * poses, at[-1], poses)
+        if poses < 0.25 * at[-1]
+        else np.array([0.5 * REST, at[-1] - 0.2 * REST])
+    )
+    position, heading = measures
+    view = view_of(robot.effects)
+    mirror = -1.0 if view.mirrored else 1.0
+    nothing = np.full(seen.size, np.nan)
+    facing = np.interp(seen, time, yaw)
+    reference = Reference(
+        seen,
+        np.interp(seen, time, x) if position else nothing,
+        mirror * np.interp(seen, time, y) if position else nothing,
+        mirror * (facing + view.yaw) if heading else nothing,
+    )
+    extra = {
+        name: np.linspace(low, high, at.size) for name, (low, high) in (channels or {}).items()
+    }
+    return Run(ideal.name, Path(ideal.name), Ticks(at, left, right, extra), reference)
+
+
+def _recorded(wiring: Wiring, left: Floats, right: Floats) -> tuple[Floats, Floats]:
+    """What the counters show where the wiring is wrong and the robot file says so."""
+    left, right = wiring.left_sign * left, wiring.right_sign * right
+    return (right, left) if wiring.swapped else (left, right)
+
+
+def _path(ideal: Ideal, pace: Pace) -> tuple[Floats, Floats, Floats]:
+    """Times (n + 1,), and travel [m] and turn [rad] of each step (n,)."""
+    corners: list[tuple[float, float, float]] = [(0.0, 0.0, 0.0), (REST, 0.0, 0.0)]
+    for length, turn, share in ideal.moves(pace.size):
+        start = corners[-1][0]
+        if length == 0.0 and turn == 0.0:
+            corners.append((start + share, 0.0, 0.0))
+            continue
+        ramp = pace.acceleration if ideal.hard else 0.4 * pace.acceleration
+        rate, climb = (
+            min(_ratio(full, length), _ratio(full * pace.yaw_rate / pace.speed, turn))
+            for full in (share * pace.speed, ramp)
+        )
+        rate = min(rate, math.sqrt(climb))
+        rise, cruise = rate / climb, 1.0 / rate - rate / climb
+        for later, part in ((rise, 1.0), (rise + cruise, 1.0), (2.0 * rise + cruise, 0.0)):
+            corners.append((start + later, part * rate * length, part * rate * turn))
+        corners.append((corners[-1][0] + 0.3, 0.0, 0.0))
+    corners.append((corners[-1][0] + REST, 0.0, 0.0))
+    at, speed, rate_of_turn = (np.array(column) for column in zip(*corners, strict=True))
+    time = np.union1d(np.arange(0.0, at[-1], FINE), at)
+    middle = 0.5 * (time[1:] + time[:-1])
+    step = np.diff(time)
+    return time, step * np.interp(middle, at, speed), step * np.interp(middle, at, rate_of_turn)
+
+
+def _ratio(limit: float, amount: float) -> float:
+    return limit / abs(amount) if amount else math.inf

@@ -1,0 +1,76 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A manoeuvre of the library as a given robot and a given reference would record it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from werrimbi_odom.inference.fitting.design import Point
+from werrimbi_odom.inference.fitting.fit import start_point
+from werrimbi_odom.inference.fitting.knobs import NUISANCES
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.fitting.matching import match
+from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.manoeuvres.drives import Ideal, Pace, ideal_run, rates_of
+from werrimbi_odom.inference.manoeuvres.rivals import Drives
+
+USUAL_REFERENCE = (0.05, 1e-3, 2e-3)
+"""Motion capture: time between two poses [s], noise of a position [m] and of a heading [rad]."""
+
+
+def measured_in(runs: Together) -> tuple[bool, bool]:
+    """Whether the reference measures positions, and headings."""
+    return (
+        any(bool(run.measured.has_position.any()) for run in runs.runs),
+        any(bool(run.measured.has_yaw.any()) for run in runs.runs),
+    )
+
+
+def imagined(
+    ideal: Ideal,
+    runs: Together,
+    point: Point,
+    kind: ReferenceKind,
+    pace: Pace,
+    *,
+    better: bool = False,
+) -> tuple[Drives, float]:
+    """What the manoeuvre would record, and its minutes.
+
+    Parameters
+    ----------
+    runs, point
+        Drives that were recorded, and the model and noise that suit them.
+    better : bool
+        With a reference that measures positions and headings, as well as motion capture does.
+    """
+    robot = point.model.robot
+    ticks, poses = rates_of(runs)
+    ranges = {
+        name: (
+            min(float(np.nanmin(run.counters.channels[name])) for run in runs.runs),
+            max(float(np.nanmax(run.counters.channels[name])) for run in runs.runs),
+        )
+        for name in set.intersection(*(set(run.counters.channels) for run in runs.runs))
+    }
+    measures = measured_in(runs)
+    variances = point.variances
+    if better:
+        poses, sigma_xy, sigma_yaw = USUAL_REFERENCE
+        measures = True, True
+        variances = replace(variances, xy=np.array([sigma_xy**2]), yaw=np.array([sigma_yaw**2]))
+        kind = "absolute"
+    run = ideal_run(
+        ideal, robot, pace, ticks=ticks, poses=poses, measures=measures, channels=ranges
+    )
+    leg = 0.25 * pace.size
+    laid = together([match(run, robot, leg, None, 0.5 * np.pi * 0.25)])
+    start = start_point(laid, robot)
+    first = point.model.own[0]
+    own = {name: value for name, value in first.items() if name not in NUISANCES}
+    model = replace(start.model, own=({**own, **start.model.own[0]},))
+    minutes = float(run.ticks.time[-1]) / 60.0
+    return Drives(laid, replace(start, model=model, variances=variances), kind), minutes

@@ -1,0 +1,242 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What to drive next, or to remount: the simplest thing that tells apart what these drives cannot.
+
+For rivals the manoeuvres of the library are weighed by what they would show in a minute
+(`manoeuvre_rivals`). For twins no drive can tell, and the mount or a hand has to. For an error that
+no effect explains, a drive that varies what the error depends on, and holds the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from werrimbi_odom.effects import find
+from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.search import Round
+from werrimbi_odom.inference.diagnosis.selection import RIVAL
+from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, pace_of
+from werrimbi_odom.inference.manoeuvres.imagined import imagined
+from werrimbi_odom.inference.manoeuvres.rivals import (
+    Drives,
+    Look,
+    Target,
+    difference,
+    look_at,
+    mimicry,
+    target_along,
+    target_at,
+    unlike,
+)
+from werrimbi_odom.inference.manoeuvres.unknown import Manoeuvre, for_the_unknown, strongest
+from werrimbi_odom.model.effect import AppliedEffect
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+__all__ = ["Manoeuvre", "Promise", "next_manoeuvre", "promises", "strongest"]
+
+LONGEST = 30.0
+"""Minutes of driving that one may ask for."""
+
+ENOUGH = 3.0 * RIVAL
+"""Rise of the cost that settles it, chance allowed for."""
+
+
+@dataclass(frozen=True, slots=True)
+class Promise:
+    """What a manoeuvre of the library would show."""
+
+    ideal: Ideal
+    minutes: float
+    """Duration."""
+    rise: float
+    """Of the cost of the wrong rival, the least sure pair of rivals and the lesser way round."""
+    against: str
+    """The rival that is the hardest to tell from the first one."""
+    apart: Floats
+    """By how much the legs differ between the first one and that, (m, 3)."""
+
+    @property
+    def rate(self) -> float:
+        """Rise in a minute."""
+        return self.rise / self.minutes
+
+
+def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
+    """The next thing to do; None where the diagnosis leaves nothing open that it could answer."""
+    if diagnosis.verdict == "ambiguous":
+        by_hand = _twins(diagnosis.rivals)
+        if by_hand is not None:
+            return by_hand
+        weighed = promises(diagnosis)
+        return _best(diagnosis.rivals, weighed) if weighed else None
+    if diagnosis.verdict == "unknown":
+        return for_the_unknown(diagnosis)
+    return None
+
+
+def _twins(rivals: Sequence[str]) -> Manoeuvre | None:
+    """For what no drive can tell, by algebra."""
+    there = set(rivals)
+    if {"reference_yaw_offset", "sideways_drift"} <= there and len(there) == 2:
+        return Manoeuvre(
+            "remount_reference",
+            "no drive can tell a robot that crabs from a marker mounted askew; turned by 90 "
+            "degrees, the mount's angle turns with it and a crab's stays",
+            "take the reference's marker or sensor off, mount it anew turned by 90 degrees, enter "
+            "that, and drive again",
+            0.0,
+        )
+    if "reference_mirrored" in there:
+        return Manoeuvre(
+            "turn_by_hand",
+            "no drive can tell a robot that turns the wrong way from a reference that does; a hand "
+            "can",
+            "turn the robot to the left by hand: the reference's yaw must grow, and so must right "
+            "minus left counts; whichever does not is wrong",
+            0.0,
+        )
+    if there & {"wheels_swapped", "left_wheel_reversed", "right_wheel_reversed"}:
+        return Manoeuvre(
+            "push_by_hand",
+            "no drive can tell them apart, because the robot file alone says which end is ahead; a "
+            "hand can",
+            "push the robot forwards by hand: both counters must grow; push it round its right "
+            "wheel: the left counter must run",
+            0.0,
+        )
+    if {"wheel_radius_scale", "track_width"} == there:
+        return Manoeuvre(
+            "out_and_back",
+            "where headings alone are measured only radii over base shows; a taped distance tells "
+            "the radii",
+            "drive 10 m straight by the odometry beside a tape, or use a reference that measures "
+            "positions",
+            2.0,
+        )
+    return None
+
+
+def promises(diagnosis: Diagnosis) -> list[Promise]:
+    """What each manoeuvre of the library would tell of the rivals, the best first."""
+    this = _round_of(diagnosis)
+    rivals = [_candidate(name, this, diagnosis) for name in diagnosis.rivals]
+    first = _as_fitted(rivals[0], this, diagnosis)
+    looked_at = _once([*rivals, *(Candidate(find(name), {}) for name in CALIBRATED)])
+    point, knobs = this.before.point, this.before.knobs
+    before = look_at(Drives(diagnosis.runs, point, diagnosis.kind), looked_at, knobs)
+    target = target_at(before, first)
+    sizes = {item.name: mimicry(before, target, item) for item in rivals[1:]}
+    pace = pace_of(diagnosis.runs, point.model.robot)
+    found = []
+    for ideal in MANOEUVRES:
+        drives, minutes = imagined(ideal, diagnosis.runs, point, diagnosis.kind, pace)
+        ahead = look_at(drives, looked_at, knobs)
+        there = target_at(ahead, first)
+        worst: tuple[float, Candidate] | None = None
+        for rival in rivals[1:]:
+            old, new = (
+                target_along(item, rival.name, sizes[rival.name]) for item in (before, ahead)
+            )
+            rise = min(
+                _gained((before, target), (ahead, there), rival),
+                _gained((before, old), (ahead, new), rivals[0]),
+            )
+            if worst is None or rise < worst[0]:
+                worst = rise, rival
+        assert worst is not None
+        apart = difference((before, target), (ahead, there), worst[1])
+        found.append(Promise(ideal, minutes, worst[0], worst[1].name, apart))
+    return sorted(found, key=lambda item: -item.rate)
+
+
+def _gained(known: tuple[Look, Target], ahead: tuple[Look, Target], rival: Candidate) -> float:
+    """What new drives add to the cost of a rival that stands for the target."""
+    return unlike([known, ahead], rival) - unlike([known], rival)
+
+
+def _best(rivals: Sequence[str], weighed: Sequence[Promise]) -> Manoeuvre | None:
+    best = weighed[0]
+    if best.rate * LONGEST < ENOUGH:
+        return None
+    minutes = max(ENOUGH / best.rate, 1.0)
+    why = (
+        f"{rivals[0]} and {best.against} look alike on these drives, but {best.ideal.where} "
+        f"they differ by {_size(best.apart)}"
+    )
+    return Manoeuvre(best.ideal.name, why, f"drive {best.ideal.words}", float(np.ceil(minutes)))
+
+
+def _size(apart: Floats) -> str:
+    """The larger differences, in position and heading."""
+    position = float(np.quantile(np.hypot(apart[:, 0], apart[:, 1]), 0.9))
+    heading = float(np.degrees(np.quantile(np.abs(apart[:, 2]), 0.9)))
+    parts = []
+    if position > 5e-4:
+        parts.append(f"{1e3 * position:.2g} mm" if position < 0.1 else f"{position:.2g} m")
+    if heading > 0.02:
+        parts.append(f"{heading:.2g}°")
+    return (" and ".join(parts) or "little, again and again") + " on a short leg"
+
+
+def _round_of(diagnosis: Diagnosis) -> Round:
+    """The round in which the rivals stood against each other."""
+    first = diagnosis.rivals[0]
+    for this in diagnosis.rounds:
+        if any(fit.names[-1] == first for fit in this.tried):
+            return this
+    return diagnosis.rounds[0]
+
+
+def _candidate(name: str, this: Round, diagnosis: Diagnosis) -> Candidate:
+    """A rival at the shape that suits these drives best."""
+    for score in (*this.scores, *(one for other in diagnosis.rounds for one in other.scores)):
+        if score.candidate.name == name:
+            return _with_fitted_shape(score.candidate, this)
+    return Candidate(find(name), {})
+
+
+def _with_fitted_shape(candidate: Candidate, this: Round) -> Candidate:
+    fit = next((fit for fit in this.tried if fit.names[-1] == candidate.name), None)
+    if fit is None or not candidate.shape:
+        return candidate
+    held = next(item for item in fit.point.model.robot.effects if item.name == candidate.name)
+    return replace(candidate, shape={name: held.values[name] for name in candidate.shape})
+
+
+def _as_fitted(candidate: Candidate, this: Round, diagnosis: Diagnosis) -> AppliedEffect:
+    """The first rival at its fitted size; what each run has anew as in the first of them."""
+    for fit in this.tried:
+        if fit.names[-1] == candidate.name:
+            return next(
+                item for item in fit.point.model.of_run(0).effects if item.name == candidate.name
+            )
+    sizes = sizes_of_calibration(diagnosis.robot, diagnosis.given)
+    return candidate.effect.using(
+        **{next(iter(candidate.effect.parameters)): sizes[candidate.name]}
+    )
+
+
+def sizes_of_calibration(robot: Robot, given: Robot) -> dict[str, float]:
+    """The three calibration effects as numbers: base, right over left radius, both radii."""
+    base, left, right = (
+        getattr(robot, name) / getattr(given, name)
+        for name in (
+            "wheel_separation_multiplier",
+            "left_wheel_radius_multiplier",
+            "right_wheel_radius_multiplier",
+        )
+    )
+    return {
+        "track_width": base,
+        "unequal_wheel_radii": right / left,
+        "wheel_radius_scale": 0.5 * (left + right),
+    }
+
+
+def _once(candidates: Sequence[Candidate]) -> list[Candidate]:
+    return list({item.name: item for item in reversed(candidates)}.values())

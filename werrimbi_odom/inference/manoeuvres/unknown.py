@@ -1,0 +1,105 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What to drive where no effect explains the errors: vary what they go with, and hold the rest."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis
+from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.variables import CONSTANT
+from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES
+
+NEARLY = 0.9
+"""A dependence that explains this share of what the best one does may be the better name for it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Manoeuvre:
+    """What to do next, to know more."""
+
+    name: str
+    """As `werrimbi_odom.simulation` calls it, `remount_reference`, `turn_by_hand` or `push`."""
+    why: str
+    """One plain sentence."""
+    do: str
+    """What to drive, or to do."""
+    minutes: float
+    """How long it should take; 0 where it is no drive."""
+
+
+_VARYING = {
+    "speed": ("out_and_back", "speed"),
+    "wheel_speed": ("out_and_back", "speed"),
+    "acceleration": ("start_stop", "acceleration"),
+    "yaw_rate": ("arcs", "rate of turning"),
+    "yaw_rate_size": ("arcs", "rate of turning"),
+    "direction": ("out_and_back", "sense of driving"),
+    "travel_since_reversal": ("start_stop", "travel since the last reversal"),
+    "heading": ("square", "heading"),
+    "left_wheel_angle": ("out_and_back", "angle of the left wheel"),
+    "right_wheel_angle": ("out_and_back", "angle of the right wheel"),
+    "left_wheel_angle_twice": ("out_and_back", "angle of the left wheel"),
+    "right_wheel_angle_twice": ("out_and_back", "angle of the right wheel"),
+    "turn": ("spins", "turning"),
+    "travel": ("out_and_back", "travel"),
+    "path": ("out_and_back", "travel"),
+}
+"""Manoeuvre that varies a variable alone, as far as one can, and the variable in words."""
+
+
+def for_the_unknown(diagnosis: Diagnosis) -> Manoeuvre | None:
+    """Vary what the error goes with, and hold the rest."""
+    found = strongest(diagnosis)
+    if found is None:
+        return None
+    name = found.name
+    if name in _VARYING:
+        manoeuvre, words = _VARYING[name]
+        ideal = next(item for item in MANOEUVRES if item.name == manoeuvre)
+        why = f"it varies the {words} and holds as much else as can be held, so that the law shows"
+        return Manoeuvre(manoeuvre, why, f"drive {ideal.words}", 2.0)
+    if name == "position":
+        return Manoeuvre(
+            "square",
+            "the same drive on different places of the floor shows where the error is and how wide",
+            "drive the same small square, in both senses, on and off the places where the error is "
+            "largest",
+            4.0,
+        )
+    if name in ("time", "duration", "distance"):
+        return Manoeuvre(
+            "out_and_back",
+            "the same line, repeated, shows how the error grows with time, and whether it comes "
+            "back after a rest",
+            "drive one and the same line forwards and backwards for ten minutes; then after a rest "
+            "again",
+            10.0,
+        )
+    return Manoeuvre(
+        "out_and_back",
+        f"the same short drive at different values of {name}, all else held, shows how the error "
+        "follows it",
+        f"drive one and the same line forwards and backwards, with {name} as low and as high as "
+        "it gets, and in between",
+        4.0,
+    )
+
+
+def strongest(diagnosis: Diagnosis) -> Dependence | None:
+    """The dependence that explains most; on a variable rather than a bare amount if it nearly does.
+
+    What goes with the speed also goes a little with the distance; the other way round it is rare.
+    """
+    sure = [cell for cell in diagnosis.depends_on if cell.p_value < SURE]
+    if not sure:
+        return None
+    top = max(_explains(cell) for cell in sure)
+    near = [cell for cell in sure if _explains(cell) >= NEARLY * top]
+    return max(near, key=lambda cell: (cell.variable.name != CONSTANT, _explains(cell)))
+
+
+def _explains(cell: Dependence) -> float:
+    """What a dependence explains beyond what as many useless numbers would."""
+    return cell.gain - 2.0 * cell.degrees

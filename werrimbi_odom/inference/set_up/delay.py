@@ -1,0 +1,137 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A clock that is off by seconds: the lag at which wheels and reference have most in common.
+
+No derivative finds it: a turn that is over before the reference begins it has nothing in common
+with it. The turn rate is compared as a linear function of both wheels' speeds, the squared speed as
+a quadratic one, so neither wiring nor scale of the robot file matter.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from werrimbi_odom.inference.set_up.records import Record
+from werrimbi_odom.model.pose import Floats, wrap_all
+
+LONGEST = 5.0
+"""Lags looked at, both ways [s]."""
+
+SHORTEST = 0.25
+"""Smaller ones are left to the fits [s]: a derivative finds them."""
+
+BETTER = 1.1
+"""How many times less another lag must leave unexplained to be called better, ..."""
+
+EVIDENCE = 15.0
+"""... and the logarithm of that over all independent seconds."""
+
+_PERIOD = 0.1
+
+
+def lag_of(records: Sequence[Record]) -> tuple[float, float]:
+    """By how much the reference is late [s], and how many times more it leaves unexplained at none.
+
+    Returns
+    -------
+    (lag, gain)
+        (0, 1) where no other lag is clearly better.
+    """
+    most = round(LONGEST / _PERIOD)
+    sums = [_Sums(width, most) for width in (2, 3)]
+    for record in records:
+        grid = np.arange(record.time[0], record.time[-1], _PERIOD)
+        if grid.size < 4 * most or record.seen.size < 20:
+            continue
+        left = np.diff(np.interp(grid, record.time, record.left))
+        right = np.diff(np.interp(grid, record.time, record.right))
+        products = np.stack([left**2, left * right, right**2])
+        for total, wheels, measured in (
+            (sums[0], np.stack([left, right]), _turns(record, grid)),
+            (sums[1], products, _squared_steps(record, grid)),
+        ):
+            if measured is not None:
+                total.add(wheels, measured)
+    used = [total for total in sums if total.rows > 100]
+    if not used:
+        return 0.0, 1.0
+    misfit = np.sum([total.rows * np.log(total.unexplained()) for total in used], axis=0)
+    misfit = misfit / sum(total.rows for total in used)
+    best = int(np.argmin(misfit))
+    lag = (best - most) * _PERIOD
+    if 0 < best < 2 * most:
+        before, here, after = misfit[best - 1 : best + 2]
+        bend = before - 2.0 * here + after
+        if bend > 0.0:
+            lag += 0.5 * _PERIOD * float(before - after) / float(bend)
+    gain = float(np.exp(misfit[most] - misfit[best]))
+    seconds = used[0].rows * _PERIOD
+    if abs(lag) < SHORTEST or gain < BETTER or seconds * np.log(gain) < EVIDENCE:
+        return 0.0, 1.0
+    return float(lag), gain
+
+
+class _Sums:
+    """Correlations of all runs together, at every lag."""
+
+    def __init__(self, width: int, most: int) -> None:
+        self.most = most
+        self.rows = 0
+        self.square = 0.0
+        self.gram = np.zeros((width, width))
+        self.cross = np.zeros((width, 2 * most + 1))
+
+    def add(self, wheels: Floats, measured: Floats) -> None:
+        """One run: (p, n) of the wheels, (n,) measured on the same grid, NaN where nothing was."""
+        known = np.isfinite(measured)
+        if known.sum() < 4 * self.most:
+            return
+        scale = np.std(measured[known])
+        if scale == 0.0:
+            return
+        inputs = wheels - wheels.mean(axis=1, keepdims=True)
+        output = np.where(known, measured - measured[known].mean(), 0.0) / scale
+        self.rows += int(known.sum())
+        self.square += float(output @ output)
+        self.gram += inputs @ inputs.T
+        size = 1 << (output.size + 2 * self.most).bit_length()
+        of_output = np.fft.rfft(output, size)
+        for row, values in enumerate(inputs):
+            both = np.fft.irfft(of_output * np.conj(np.fft.rfft(values, size)), size)
+            self.cross[row] += np.concatenate([both[-self.most :], both[: self.most + 1]])
+
+    def unexplained(self) -> Floats:
+        """Share of the variance at each lag."""
+        solved = np.linalg.lstsq(self.gram, self.cross, rcond=1e-9)[0]
+        explained = np.sum(self.cross * solved, axis=0) / self.square
+        return np.asarray(np.clip(1.0 - explained, 1e-3, 1.0))
+
+
+def _turns(record: Record, grid: Floats) -> Floats | None:
+    known = np.isfinite(record.yaw)
+    if known.sum() < 20:
+        return None
+    yaw = np.concatenate([[0.0], np.cumsum(wrap_all(np.diff(record.yaw[known])))])
+    steps = np.diff(np.interp(grid, record.seen[known], yaw, left=np.nan, right=np.nan))
+    return _tamed(steps)
+
+
+def _squared_steps(record: Record, grid: Floats) -> Floats | None:
+    known = np.isfinite(record.place)
+    if known.sum() < 20:
+        return None
+    place = np.interp(grid, record.seen[known], record.place[known].real, np.nan, np.nan) + (
+        1j * np.interp(grid, record.seen[known], record.place[known].imag)
+    )
+    return _tamed(np.abs(np.diff(place)) ** 2)
+
+
+def _tamed(values: Floats) -> Floats:
+    """Outliers (a failed match) drawn in."""
+    size = np.abs(values[np.isfinite(values)])
+    if size.size == 0:
+        return values
+    limit = 3.0 * float(np.quantile(size, 0.9))
+    return np.clip(values, -limit, limit)

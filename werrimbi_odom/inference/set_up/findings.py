@@ -1,0 +1,187 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Set-up mistakes as findings: what is wrong, by which factor, and who makes such a mistake."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+
+from werrimbi_odom.effects import find
+from werrimbi_odom.inference.set_up.explanation import ASKEW, Setting, Wired, twins_of
+from werrimbi_odom.inference.set_up.factors import (
+    NEAR,
+    base_words,
+    is_ordinary,
+    metre_words,
+    radius_words,
+    side_words,
+    simple_factor,
+    turning_words,
+)
+
+Misfit = Callable[[Setting], float]
+"""Typical error of a set-up, in units of the best one's."""
+
+WIDE = 1.5
+"""A finding makes the typical error at least this much smaller."""
+
+
+@dataclass(frozen=True)
+class SetUpFinding:
+    """One thing that is set up wrongly."""
+
+    effect: str
+    """Name in the library; `IN_DEGREES` for a reference that no effect can mend."""
+    values: Mapping[str, float]
+    """The effect's parameters, all that the robot file already held of it included; empty for
+    mistakes, which are made or not."""
+    factor: str | None
+    """Name of the simple factor that the value is near, or None."""
+    words: str
+    """One plain sentence: what is wrong, and the mistake that makes it."""
+    twins: tuple[str, ...] = ()
+    """Effects that explain these records as well."""
+    gain: float = math.inf
+    """How many times larger the typical error is without it."""
+    without: Setting | None = field(default=None, compare=False, repr=False)
+    """The set-up found, less this."""
+
+
+LONGEST_ARM = 5.0
+"""What the effect's bounds allow [m]."""
+
+IN_DEGREES = "reference_yaw_in_degrees"
+"""The one finding that is no effect: the reference is to be recorded, or converted, anew."""
+
+WIRING_WORDS = {
+    "wheels_swapped": "left and right counters are exchanged: left turns come out as right turns",
+    "left_wheel_reversed": "the left counter has the wrong sign: it counts backwards",
+    "right_wheel_reversed": "the right counter has the wrong sign: it counts backwards",
+}
+
+
+def findings_of(
+    setting: Setting, ways: list[Wired], misfit: Misfit, *, yaw_alone: bool = False
+) -> list[SetUpFinding]:
+    """All that is wrong and makes the errors much larger, the most important first.
+
+    Parameters
+    ----------
+    ways : list of Wired
+        All wirings that explain the signs, `setting`'s own first.
+    misfit : callable
+        Of a setting; only ratios count.
+    yaw_alone : bool
+        The reference measures no position: only radii over base are known.
+    """
+    best = misfit(setting)
+    found = []
+    for proposal in _proposals(setting, ways, yaw_alone):
+        assert proposal.without is not None
+        gain = misfit(proposal.without) / best
+        if gain > WIDE:
+            found.append(replace(proposal, gain=gain))
+    return found
+
+
+def _proposals(setting: Setting, ways: list[Wired], yaw_alone: bool) -> Iterator[SetUpFinding]:
+    yield from _wiring(setting, ways)
+    yield from _sizes(setting, yaw_alone)
+    yaw = setting.wired.yaw
+    if abs(yaw) > ASKEW:
+        without = replace(setting, wired=replace(setting.wired, yaw=0.0))
+        words = (
+            f"the reference's forward axis is turned by {math.degrees(yaw):.0f}° against the "
+            "robot's: its marker or laser is mounted otherwise than was entered"
+        )
+        twins = (*find("reference_yaw_offset").twins, *twins_of("reference_yaw_offset", ways))
+        yield SetUpFinding("reference_yaw_offset", {"angle": yaw}, None, words, twins, 1.0, without)
+
+
+def _wiring(setting: Setting, ways: list[Wired]) -> Iterator[SetUpFinding]:
+    wired = setting.wired
+    marks = {
+        "wheels_swapped": ("swapped", wired.swapped),
+        "left_wheel_reversed": ("left_reversed", wired.left_reversed),
+        "right_wheel_reversed": ("right_reversed", wired.right_reversed),
+    }
+    for name, (mark, made) in marks.items():
+        if made:
+            right = replace(wired, **{mark: False})
+            twins = twins_of(name, ways)
+            words = WIRING_WORDS[name]
+            if "reference_mirrored" in twins:
+                words += "; or the reference's frame is left-handed (y down)"
+            yield SetUpFinding(name, {}, None, words, twins, 1.0, replace(setting, wired=right))
+
+
+def _sizes(setting: Setting, yaw_alone: bool) -> Iterator[SetUpFinding]:
+    left, right, base = setting.left, setting.right, setting.base
+    common = math.sqrt(left * right)
+    ratio = right / left
+    if not is_ordinary(ratio):
+        side, common = _odd_side(left, right)
+        share = ratio if side == "right" else 1.0 / ratio
+        yield SetUpFinding(
+            "unequal_wheel_radii",
+            {"ratio": ratio},
+            simple_factor(ratio),
+            side_words(side, share, simple_factor(share)),
+            (),
+            1.0,
+            replace(setting, left=common, right=common),
+        )
+    factor = simple_factor(common)
+    smaller = replace(setting, left=left / common, right=right / common)
+    values = {"multiplier": common}
+    if yaw_alone:
+        if not is_ordinary(common):
+            words = turning_words(common, factor)
+            yield SetUpFinding(
+                "wheel_radius_scale", values, factor, words, ("track_width",), 1.0, smaller
+            )
+        return
+    odd_radius, odd_base = not is_ordinary(common), not is_ordinary(base)
+    wider = replace(setting, base=1.0)
+    of_base = simple_factor(base)
+    if odd_radius and odd_base and abs(math.log(common / base)) < math.log(NEAR):
+        words = metre_words(common, factor)
+        without = replace(smaller, base=1.0)
+        yield SetUpFinding("wheel_radius_scale", values, factor, words, (), 1.0, without)
+        yield SetUpFinding("track_width", {"multiplier": base}, of_base, words, (), 1.0, without)
+        return
+    if odd_radius:
+        words = radius_words(common, factor)
+        yield SetUpFinding("wheel_radius_scale", values, factor, words, (), 1.0, smaller)
+    if odd_base:
+        words = base_words(base, of_base)
+        yield SetUpFinding("track_width", {"multiplier": base}, of_base, words, (), 1.0, wider)
+
+
+def _odd_side(left: float, right: float) -> tuple[str, float]:
+    """The wheel that is off alone, and the size of the other one."""
+    known = {"right": left, "left": right}
+    side = min(known, key=lambda name: abs(math.log(known[name])))
+    for name, other in known.items():
+        if not is_ordinary(known[side]) and simple_factor(other) and not simple_factor(known[side]):
+            side = name
+    return side, known[side]
+
+
+def arm_finding(setting: Setting, misfit: Misfit, base: float) -> list[SetUpFinding]:
+    """A lever arm longer than the base: no inexact mount, but another place than was entered."""
+    arm = setting.arm
+    if not base < abs(arm) or max(abs(arm.real), abs(arm.imag)) > LONGEST_ARM:
+        return []
+    without = replace(setting, arm=0j)
+    gain = misfit(without) / misfit(setting)
+    words = (
+        f"the reference measures a point {arm.real:.2f} m ahead of the axle's middle and "
+        f"{arm.imag:.2f} m to its left: its marker, laser or aerial is mounted there"
+    )
+    values = {"x": arm.real, "y": arm.imag}
+    if gain < WIDE:
+        return []
+    return [SetUpFinding("reference_lever_arm", values, None, words, (), gain, without)]

@@ -1,0 +1,101 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The search for set-up mistakes, before anything else is looked for.
+
+They are the commonest cause of bad odometry, and so large that no derivative at the null value
+finds them: counters exchanged or of the wrong sign, factors of 2, 4, pi, 57.3 or 1000, a laser
+mounted at 90 degrees, a clock that is off by seconds. See docs/set_up.md.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.set_up.delay import lag_of
+from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding
+from werrimbi_odom.inference.set_up.headings import search_headings
+from werrimbi_odom.inference.set_up.poses import degrees_gain, search_poses
+from werrimbi_odom.inference.set_up.positions import search_positions
+from werrimbi_odom.inference.set_up.records import measured_by, record_of
+from werrimbi_odom.inference.set_up.robot import with_findings
+from werrimbi_odom.inference.set_up.sparse import is_sparse, search_sparse
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.robot import Robot
+
+__all__ = ["IN_DEGREES", "SetUp", "SetUpFinding", "look_for_mistakes"]
+
+
+@dataclass(frozen=True)
+class SetUp:
+    """What is set up wrongly, and the robot with it put right."""
+
+    findings: tuple[SetUpFinding, ...]
+    """The most important first; empty where all is set up right."""
+    robot: Robot
+    """The given robot with the findings' effects, and sizes near enough for fits to begin.
+
+    Where one wheel alone is off, a `wheel_radius_scale` goes with the ratio, which keeps the mean
+    of the radii."""
+
+
+def look_for_mistakes(
+    runs: Sequence[Run],
+    robot: Robot,
+    kind: ReferenceKind,
+    limits: EncoderLimits | None = None,
+) -> SetUp:
+    """Search the whole range of what can be set up wrongly.
+
+    Parameters
+    ----------
+    robot : Robot
+        As the robot file has it; effects that it holds already are kept and undone first.
+    kind : "absolute" or "incremental"
+        Outliers of either are left aside; the search is the same.
+    """
+    records = [each for run in runs if (each := record_of(run, robot, limits)) is not None]
+    measured = measured_by(records)
+    if measured is None:
+        return SetUp((), robot)
+    extra = []
+    gain = degrees_gain(records, robot, measured)
+    if gain > 1.0:
+        records = [each.in_degrees() for each in records]
+        extra.append(_in_degrees(gain))
+    lag, gain = lag_of(records)
+    if lag != 0.0:
+        records = [each.delayed(lag) for each in records]
+        extra.append(_late(lag, gain))
+    if is_sparse(records, robot, measured):
+        found, setting = search_sparse(records, robot, measured)
+    elif measured == "poses":
+        found, setting = search_poses(records, robot)
+    elif measured == "positions":
+        found, setting = search_positions(records, robot)
+    else:
+        found, setting = search_headings(records, robot)
+    mount = [each for each in found if each.effect.startswith("reference_")]
+    wheels = sorted((each for each in found if each not in mount), key=lambda each: -each.gain)
+    degrees = [each for each in extra if each.effect == IN_DEGREES]
+    late = [each for each in extra if each.effect != IN_DEGREES]
+    mended, findings = with_findings(robot, [*degrees, *wheels, *late, *mount], setting)
+    return SetUp(findings, mended)
+
+
+def _in_degrees(gain: float) -> SetUpFinding:
+    words = (
+        "the reference's yaw is in degrees, and yaw_rad means radians: convert that column "
+        "(times pi/180) and diagnose again"
+    )
+    return SetUpFinding(IN_DEGREES, {}, "180/pi", words, (), gain)
+
+
+def _late(lag: float, gain: float) -> SetUpFinding:
+    words = (
+        f"the reference's stamps are {abs(lag):.1f} s too {'late' if lag > 0.0 else 'early'} "
+        "against the encoders': two computers whose clocks differ"
+    )
+    return SetUpFinding("reference_delay", {"delay": lag}, None, words, (), gain)

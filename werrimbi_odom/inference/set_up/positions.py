@@ -1,0 +1,234 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The search where positions alone were measured: the heading comes from the wheels.
+
+The drives are cut into windows of some metres, each with a heading of its own at its start (closed
+form, as in Procrustes' problem). What is left of a window tells whether the wheels turn the robot
+as they should. The wheels' turning is searched over its whole range, then refined.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.set_up.explanation import (
+    Estimate,
+    Setting,
+    setting_of,
+    wirings,
+)
+from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
+from werrimbi_odom.inference.set_up.records import Complexes, Cuts, Record, cut, effective_track
+from werrimbi_odom.inference.set_up.regression import swept
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+WINDOW = 12
+"""Cuts in a window."""
+
+COARSE, FINE = 20, 60
+"""Windows looked at, spread over all drives: over the whole range, and while refining."""
+
+LONGEST = 6.0
+"""Longest lever arm that is believed, in half bases."""
+
+WIDE_MARGIN = 2.0
+"""Another set-up must make the typical error this much smaller than the given one, refined."""
+
+
+@dataclass(frozen=True, slots=True)
+class Windows:
+    """Windows of consecutive cuts, as cuts from each window's start; w windows."""
+
+    cuts: Cuts
+    """Of w * WINDOW stretches, the first one cut long, the last one a window."""
+    floor: float
+    """Error below which one fit is as good as another [m]."""
+
+    def misfit(
+        self, left: float, right: float, half_base: float | None = None, arm: complex = 0j
+    ) -> float:
+        """Typical error of a window [m], its own heading fitted, and the scale where not given."""
+        gone, swing, move = self._shapes(left, right)
+        if half_base is None:
+            half_base = _scale(gone, move) if arm == 0j else self._mount(gone, swing, move, arm)[0]
+        model = half_base * gone + arm * swing
+        rms = _rms(move - _facing(model, move) * model)
+        return float(np.exp(np.mean(np.log(rms + self.floor))))
+
+    def mount(self, left: float, right: float, arm: complex = 0j) -> tuple[float, complex]:
+        """Half the base and the lever arm that fit best [m]."""
+        return self._mount(*self._shapes(left, right), arm)
+
+    def half_base(self, left: float, right: float) -> float:
+        """Half the base that fits best without a lever arm [m]."""
+        gone, _, move = self._shapes(left, right)
+        return _scale(gone, move)
+
+    def _shapes(self, left: float, right: float) -> tuple[Complexes, Complexes, Complexes]:
+        gone, turn = swept(self.cuts, left, right)
+        swing = np.exp(1j * turn) - 1.0
+        return (
+            gone.reshape(-1, WINDOW),
+            swing.reshape(-1, WINDOW),
+            self.cuts.move.reshape(-1, WINDOW),
+        )
+
+    def _mount(
+        self, gone: Complexes, swing: Complexes, move: Complexes, arm: complex
+    ) -> tuple[float, complex]:
+        """Headings and mount in turn, each in closed form; windows that fit badly count less."""
+        half_base = complex(_scale(gone, move))
+        columns = np.stack([gone.ravel(), swing.ravel()], axis=-1)
+        for _ in range(8):
+            model = half_base * gone + arm * swing
+            facing = _facing(model, move)
+            weight = 1.0 / (_rms(move - facing * model) + self.floor)
+            weights = np.repeat(weight, WINDOW)[:, None]
+            straight = (facing.conj() * move).ravel()[:, None]
+            solved = np.linalg.lstsq(weights * columns, weights * straight, rcond=1e-6)[0][:, 0]
+            # What half the base has of an angle belongs to the headings.
+            axis = np.exp(-1j * np.angle(solved[0]))
+            half_base, arm = solved[0] * axis, complex(solved[1] * axis)
+        return float(half_base.real), arm
+
+
+def _rms(off: Complexes) -> Floats:
+    return np.asarray(np.sqrt(np.mean(np.abs(off) ** 2, axis=1)))
+
+
+def _facing(model: Complexes, move: Complexes) -> Complexes:
+    """Heading of each window, shape (w, 1)."""
+    match = np.sum(model.conj() * move, axis=1, keepdims=True)
+    return np.asarray(np.exp(1j * np.angle(match)))
+
+
+def _scale(gone: Complexes, move: Complexes) -> float:
+    """Median over windows, so that a jump of the reference does no harm."""
+    match = np.abs(np.sum(gone.conj() * move, axis=1))
+    size = np.sum(np.abs(gone) ** 2, axis=1)
+    moved = size > 0.0
+    return float(np.median(match[moved] / size[moved])) if moved.any() else 0.0
+
+
+def windows_of(cuts: Cuts, most: int = FINE) -> Windows | None:
+    """Windows spread over all drives; None where there is not one."""
+    starts = np.arange(0, cuts.count - WINDOW + 1, WINDOW // 2)
+    starts = starts[cuts.run[starts] == cuts.run[starts + WINDOW - 1]]
+    if starts.size == 0:
+        return None
+    if starts.size > most:
+        starts = starts[np.linspace(0, starts.size - 1, most).astype(int)]
+    inside = starts[:, None] + np.arange(WINDOW)
+    begin = np.repeat(cuts.begin[starts], WINDOW)
+    move = np.cumsum(cuts.move[inside], axis=1).ravel()
+    end = cuts.end[inside].ravel()
+    floor = 0.01 * float(np.median(np.abs(cuts.move))) + 1e-12
+    nothing = np.full(end.size, np.nan)
+    stretches = Cuts(cuts.left, cuts.right, begin, end, nothing, nothing, move, end * 0)
+    return Windows(_compact(stretches), floor)
+
+
+def _compact(cuts: Cuts) -> Cuts:
+    """Only the steps that some stretch needs."""
+    needed = np.zeros(cuts.left.size + 1, dtype=np.intp)
+    np.add.at(needed, cuts.begin, 1)
+    last: NDArray[np.intp] = cuts.end.reshape(-1, WINDOW)[:, -1]
+    first: NDArray[np.intp] = cuts.begin.reshape(-1, WINDOW)[:, -1]
+    needed[:] = 0
+    np.add.at(needed, first, 1)
+    np.add.at(needed, last, -1)
+    keep = np.cumsum(needed[:-1]) > 0
+    place = np.concatenate([[0], np.cumsum(keep)])
+    return Cuts(
+        cuts.left[keep],
+        cuts.right[keep],
+        place[cuts.begin],
+        place[cuts.end],
+        cuts.duration,
+        cuts.turn,
+        cuts.move,
+        cuts.run,
+    )
+
+
+def search_positions(
+    records: Sequence[Record], robot: Robot
+) -> tuple[list[SetUpFinding], Setting | None]:
+    """What is wrong, and the sizes that were measured."""
+    cuts = cut(records, robot, "positions", fewest=60)
+    windows, some = windows_of(cuts), windows_of(cuts, COARSE)
+    if windows is None or some is None:
+        return [], None
+    track = effective_track(robot)
+    tried = sorted(
+        (some.misfit(left / track, right / track), left, right) for left, right in _grid()
+    )
+    best = min(_refined(windows, left / track, right / track) for _, left, right in tried[:6])
+    given = _refined(windows, 1.0 / track, 1.0 / track)
+    if given[0] < 1.05 * best[0]:
+        best = given
+    _, left, right = best
+    arm = 0j
+    for _ in range(3):
+        half_base, arm = windows.mount(left, right, arm)
+        if abs(arm) > LONGEST * half_base:  # circles alone do not tell an arm from a base
+            half_base, arm = windows.half_base(left, right), 0j
+            break
+        _, left, right = _refined(windows, left, right, arm, step=0.03)
+    if half_base <= 0.0:
+        return [], None
+    estimate = Estimate(left, right, 2.0 * half_base, None, arm)
+    ways = wirings(estimate)
+    setting = setting_of(estimate, ways[0], track)
+
+    def misfit(one: Setting) -> float:
+        left, right, half_base, _ = one.numbers(track)
+        return windows.misfit(left, right, abs(half_base), arm)
+
+    found = findings_of(setting, ways, misfit)
+    entered = windows.misfit(1.0 / track, 1.0 / track, 0.5 * track)
+    if not found or entered < WIDE_MARGIN * misfit(setting):
+        return [], None
+    return found, setting
+
+
+def _grid() -> list[tuple[float, float]]:
+    """Turning of both wheels over the robot file's, all signs, the whole range."""
+    sizes = np.exp(np.arange(-31, 32) * 0.25)
+    ratios = (1.0, 2.0, 0.5, 4.0, 0.25)
+    signs = tuple(product((1.0, -1.0), repeat=2))
+    return [
+        (sign_left * size / math.sqrt(ratio), sign_right * size * math.sqrt(ratio))
+        for size in sizes.tolist()
+        for ratio in ratios
+        for sign_left, sign_right in signs
+    ]
+
+
+def _refined(
+    windows: Windows, left: float, right: float, arm: complex = 0j, *, step: float = 0.15
+) -> tuple[float, float, float]:
+    """Descend from a start by ever smaller steps of common size and ratio."""
+    size, ratio = 0.0, 0.0
+    best = windows.misfit(left, right, None, arm)
+    while step > 0.002:
+        tries: list[tuple[float, float, float]] = []
+        for du, dv in ((step, 0.0), (-step, 0.0), (0.0, step), (0.0, -step)):
+            factors = (
+                math.exp(size + du - 0.5 * (ratio + dv)),
+                math.exp(size + du + 0.5 * (ratio + dv)),
+            )
+            tries.append((windows.misfit(left * factors[0], right * factors[1], None, arm), du, dv))
+        value, du, dv = min(tries)
+        if value < best:
+            best, size, ratio = value, size + du, ratio + dv
+        else:
+            step *= 0.5
+    return best, left * math.exp(size - 0.5 * ratio), right * math.exp(size + 0.5 * ratio)

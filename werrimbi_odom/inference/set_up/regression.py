@@ -1,0 +1,148 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Both wheels, base, mount and lever arm in closed form, whatever their size or sign.
+
+After Censi, Franchi, Marchionni, Oriolo, "Simultaneous calibration of odometry and sensor
+parameters for mobile robots", IEEE T-RO 2013: the turn of a cut is linear in the travel of both
+wheels, and once that is known its displacement is linear in the base, turned by the mount's angle,
+and in the lever arm.
+
+    turn = right * R - left * L
+    move = (B / 2) exp(-i yaw) S + exp(-i yaw) p (exp(i turn) - 1),
+    S = sum over steps of (left L + right R) exp(i heading)
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from werrimbi_odom.inference.set_up.records import Complexes, Cuts
+from werrimbi_odom.model.motion import sinc
+from werrimbi_odom.model.pose import Floats, wrap_all
+
+_LARGE = 4.685
+"""Tukey's biweight: 95 % as good as least squares where there are no outliers."""
+
+
+@dataclass(frozen=True, slots=True)
+class Turning:
+    """How the measured heading follows the wheels."""
+
+    left: float
+    """Of the file's left wheel [rad/m], of the sign with which it turns the robot right."""
+    right: float
+    """Of the file's right wheel [rad/m], of the sign with which it turns the robot left."""
+    left_std: float
+    right_std: float
+    scatter: float
+    """Of a cut [rad], outliers aside."""
+
+
+@dataclass(frozen=True, slots=True)
+class Moving:
+    """How the measured displacement follows the wheels."""
+
+    half_base: complex
+    """(B / 2) exp(-i yaw) [m]."""
+    arm: complex
+    """exp(-i yaw) (ahead + i left) [m]; 0 where the drives do not show it."""
+    half_base_std: float
+    arm_std: float
+    scatter: float
+    """Of a cut [m], outliers aside."""
+
+
+def turning(cuts: Cuts, *, with_bias: bool = False) -> Turning | None:
+    """Regress measured turns on the travel of both wheels; None where they do not tell.
+
+    Parameters
+    ----------
+    with_bias : bool
+        Let the heading also creep with time, as a gyro's does.
+    """
+    columns = [cuts.summed(cuts.right), -cuts.summed(cuts.left)]
+    if with_bias:
+        columns.append(cuts.duration)
+    fit = robust(np.stack(columns, axis=-1), cuts.turn)
+    if fit is None:
+        return None
+    value, std, scatter = fit
+    return Turning(
+        float(value[1].real), float(value[0].real), float(std[1]), float(std[0]), scatter
+    )
+
+
+def moving(cuts: Cuts, left: float, right: float) -> Moving | None:
+    """Regress measured displacements on what the wheels do, their turning known."""
+    gone, turn = swept(cuts, left, right)
+    swing = np.exp(1j * turn) - 1.0
+    both = robust(np.stack([gone, swing], axis=-1), cuts.move)
+    alone = robust(gone[:, None], cuts.move)
+    if alone is None:
+        return None
+    if both is not None and both[1][0] < 0.02 * abs(both[0][0]):
+        value, std, scatter = both
+        return Moving(complex(value[0]), complex(value[1]), float(std[0]), float(std[1]), scatter)
+    # A circle is a circle about any point: base and lever arm are then one.
+    value, std, scatter = alone
+    return Moving(complex(value[0]), 0j, float(std[0]), np.inf, scatter)
+
+
+def swept(cuts: Cuts, left: float, right: float) -> tuple[Complexes, Floats]:
+    """S of the module's formula for each cut, and its turn; both for the given turning."""
+    along, turn = left * cuts.left + right * cuts.right, right * cuts.right - left * cuts.left
+    heading = np.concatenate([[0.0], np.cumsum(turn)])
+    chord = along * sinc(0.5 * turn) * np.exp(1j * (heading[:-1] + 0.5 * turn))
+    path = np.concatenate([[0j], np.cumsum(chord)])
+    gone = (path[cuts.end] - path[cuts.begin]) * np.exp(-1j * heading[cuts.begin])
+    return gone, heading[cuts.end] - heading[cuts.begin]
+
+
+def errors(cuts: Cuts, left: float, right: float, half_base: complex, arm: complex) -> Complexes:
+    """Measured less expected displacement, and turn: shape (2, k); the turn as a real number."""
+    gone, turn = swept(cuts, left, right)
+    move = cuts.move - half_base * gone - arm * (np.exp(1j * turn) - 1.0)
+    return np.stack([move, wrap_all(cuts.turn - turn).astype(complex)])
+
+
+def robust(
+    columns: Complexes | Floats, values: Complexes | Floats
+) -> tuple[Complexes | Floats, Floats, float] | None:
+    """Linear regression, least sum of absolute errors first, then Tukey's biweight.
+
+    Returns
+    -------
+    (coefficients (p,), standard deviations (p,), scatter) or None
+        None where the columns do not tell the coefficients.
+    """
+    known = np.isfinite(values) & np.isfinite(columns).all(axis=-1)
+    rows, aims = columns[known], values[known]
+    count, width = rows.shape
+    size = np.sqrt(np.mean(np.abs(rows) ** 2, axis=0)) if count else np.zeros(width)
+    if count <= width + 1 or not (size > 0.0).all():
+        return None
+    rows = rows / size
+    weight = np.ones(count)
+    floor = 1e-9 * float(np.max(np.abs(aims), initial=0.0)) + 1e-300
+    for turn in range(40):
+        normal = (rows.conj().T * weight) @ rows
+        if np.linalg.cond(normal) > 1e12:
+            return None
+        value = np.linalg.solve(normal, (rows.conj().T * weight) @ aims)
+        off = np.abs(aims - rows @ value)
+        # Median absolute deviation of a normal scatter.
+        scatter = 1.4826 * float(np.median(off)) + floor
+        before = weight
+        if turn < 15:
+            weight = 1.0 / np.maximum(off, 0.05 * scatter + floor)
+            weight = weight / weight.max()
+        else:
+            weight = np.clip(1.0 - (off / (_LARGE * scatter)) ** 2, 0.0, None) ** 2
+            if turn > 16 and np.abs(weight - before).max() < 1e-4:
+                break
+    if np.linalg.matrix_rank((rows.conj().T * weight) @ rows) < width:
+        return None
+    spread = np.linalg.inv((rows.conj().T * weight) @ rows).diagonal().real
+    return np.asarray(value / size), np.asarray(np.sqrt(spread) * scatter / size), scatter

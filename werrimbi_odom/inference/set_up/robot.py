@@ -1,0 +1,102 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The robot with what was found put in, near enough for fits to begin."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from werrimbi_odom.effects import find
+from werrimbi_odom.inference.set_up.explanation import Setting
+from werrimbi_odom.inference.set_up.factors import is_ordinary
+from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding
+from werrimbi_odom.model.effect import AppliedEffect, wiring_of
+from werrimbi_odom.model.pose import wrap
+from werrimbi_odom.model.robot import Robot
+
+_ADDING = ("reference_yaw_offset", "reference_lever_arm", "reference_delay")
+
+
+def with_findings(
+    robot: Robot, findings: Sequence[SetUpFinding], setting: Setting | None
+) -> tuple[Robot, tuple[SetUpFinding, ...]]:
+    """The robot with the findings' effects before its own, and the findings with their values.
+
+    An effect that the robot already holds is changed where it stands, so a finding's values are the
+    ones of the whole. What is left of the sizes, some percent, goes into the multipliers.
+
+    Parameters
+    ----------
+    setting : Setting, optional
+        Where sizes were measured.
+    """
+    exchanged = any(finding.effect == "wheels_swapped" for finding in findings)
+    wiring = wiring_of(robot.effects)
+    if exchanged and wiring.left_sign != wiring.right_sign:
+        # The file's own reversed counter goes with its plug to the other side.
+        for name in ("left_wheel_reversed", "right_wheel_reversed"):
+            robot, _ = _with(robot, name, {})
+    before, told = robot, []
+    for finding in findings:
+        values: Mapping[str, float] = {}
+        if finding.effect != IN_DEGREES:
+            robot, values = _with(robot, finding.effect, finding.values)
+        told.append(replace(finding, values=values))
+    if findings and setting is not None:
+        robot = _calibrated(robot, before, setting)
+    return robot, tuple(told)
+
+
+def _with(robot: Robot, name: str, values: Mapping[str, float]) -> tuple[Robot, dict[str, float]]:
+    effect = find(name)
+    held = [each for each in robot.effects if each.name == name]
+    others = tuple(each for each in robot.effects if each.name != name)
+    if effect.is_mistake:
+        effects = others if held else (effect.using(), *others)
+        return replace(robot, effects=effects), {}
+    if not held:
+        applied = effect.using(**values)
+        return replace(robot, effects=(applied, *robot.effects)), dict(applied.values)
+    before = held[0].values
+    if name in _ADDING:
+        joint = {key: before[key] + values.get(key, 0.0) for key in before}
+        if name == "reference_yaw_offset":
+            joint = {key: wrap(value) for key, value in joint.items()}
+    else:
+        joint = {key: before[key] * values.get(key, 1.0) for key in before}
+    changed = AppliedEffect(effect, joint)
+    effects = tuple(changed if each is held[0] else each for each in robot.effects)
+    return replace(robot, effects=effects), joint
+
+
+def _calibrated(robot: Robot, before: Robot, setting: Setting) -> Robot:
+    """What the findings leave of the measured sizes, put into the multipliers."""
+    ratio, ratio_before = (_value(each, "unequal_wheel_radii", "ratio") for each in (robot, before))
+    scale = _value(robot, "wheel_radius_scale", "multiplier")
+    scale /= _value(before, "wheel_radius_scale", "multiplier")
+    base = setting.base * _value(before, "track_width", "multiplier")
+    base /= _value(robot, "track_width", "multiplier")
+    of_left = (1.0 + ratio_before) / (1.0 + ratio)
+    of_right = of_left * ratio / ratio_before
+    left, right = setting.left / scale / of_left, setting.right / scale / of_right
+    common = math.sqrt(left * right)
+    if ratio != ratio_before and not is_ordinary(common):
+        # The ratio keeps the mean of the radii; here one of them was right and is to stay.
+        robot, _ = _with(robot, "wheel_radius_scale", {"multiplier": common})
+        left, right = left / common, right / common
+    if not (is_ordinary(left) and is_ordinary(right) and is_ordinary(base)):
+        return robot
+    return replace(
+        robot,
+        wheel_separation_multiplier=robot.wheel_separation_multiplier * base,
+        left_wheel_radius_multiplier=robot.left_wheel_radius_multiplier * left,
+        right_wheel_radius_multiplier=robot.right_wheel_radius_multiplier * right,
+    )
+
+
+def _value(robot: Robot, name: str, parameter: str) -> float:
+    """A factor that the robot holds as an effect, 1 where it does not."""
+    held = [each.values[parameter] for each in robot.effects if each.name == name]
+    return math.prod(held)

@@ -1,0 +1,179 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The search with two poses a drive, or few more: a dozen numbers tell mistakes apart, not sizes.
+
+Every set-up of at most one factor and one wiring predicts where each drive ends, with an error that
+grows with what was driven. Nothing is claimed but by a wide margin over all others.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from werrimbi_odom.inference.set_up.explanation import (
+    AS_ENTERED,
+    Estimate,
+    Setting,
+    setting_of,
+    wirings,
+)
+from werrimbi_odom.inference.set_up.factors import FACTORS
+from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
+from werrimbi_odom.inference.set_up.records import Cuts, Measured, Record, cut, effective_track
+from werrimbi_odom.inference.set_up.regression import errors
+from werrimbi_odom.model.motion import sinc
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+SHARES = (0.002, 0.005, 0.01, 0.02, 0.04)
+"""What a robot that is set up right may err by, of its path and turning; the likeliest counts."""
+
+STEPS = 4000
+"""In all drives together, some tenths of a second each."""
+
+MARGIN = 10.0
+"""Log-likelihood by which a set-up must be better than the one entered ..."""
+
+APART = 5.0
+"""... and better than any that says otherwise."""
+
+
+def is_sparse(records: Sequence[Record], robot: Robot, measured: Measured) -> bool:
+    """Whether the reference is too rare to follow the robot through its turns."""
+    cuts = cut(records, robot, measured)
+    return cuts.count < 4 * len(records) + 16
+
+
+def search_sparse(
+    records: Sequence[Record], robot: Robot, measured: Measured
+) -> tuple[list[SetUpFinding], Setting | None]:
+    """What is wrong; sizes are not measured, so the second is always None."""
+    cuts = _thinned(cut(records, robot, measured))
+    track = effective_track(robot)
+    if cuts.count == 0 or measured == "headings":
+        return [], None
+    drives = _Drives(cuts, track, measured == "poses")
+    tried = sorted(
+        ((drives.fits(each), i, each) for i, each in enumerate(_settings())), reverse=True
+    )
+    (best, _, setting), given = tried[0], drives.fits(AS_ENTERED)
+    if best < given + MARGIN:
+        return [], None
+    left, right, half_base, _ = setting.numbers(track)
+    yaw = -float(np.angle(half_base)) if measured == "poses" else None
+    ways = wirings(Estimate(left, right, 2.0 * abs(half_base), yaw))
+    # Before a mirrored reference the same signs are another prediction.
+    upright = [way for way in ways if not way.mirrored]
+    estimate = Estimate(left, right, 2.0 * abs(half_base), yaw)
+    same = [setting_of(estimate, way, track) for way in upright]
+    for value, _, other in tried[1:]:
+        if value < best - APART:
+            break
+        if not any(_alike(other, one, measured == "poses") for one in same):
+            return [], None
+
+    def misfit(one: Setting) -> float:
+        return math.exp(min((best - drives.fits(one)) / cuts.count, 50.0))
+
+    found = findings_of(same[0], ways, misfit)
+    return found, None
+
+
+def _thinned(cuts: Cuts) -> Cuts:
+    """Neighbouring steps taken together: so many set-ups are tried that fine steps cost time."""
+    together = max(1, cuts.left.size // STEPS)
+    nodes = np.union1d(np.arange(0, cuts.left.size, together), cuts.left.size)
+    nodes = np.union1d(nodes, np.concatenate([cuts.begin, cuts.end])).astype(np.intp)
+    left, right = (
+        np.diff(np.concatenate([[0.0], np.cumsum(side)])[nodes]) for side in (cuts.left, cuts.right)
+    )
+    begin, end = np.searchsorted(nodes, cuts.begin), np.searchsorted(nodes, cuts.end)
+    return replace(cuts, left=left, right=right, begin=begin, end=end)
+
+
+def _settings() -> Iterator[Setting]:
+    """All wirings, right ones first, each with at most one factor."""
+    for half_turn in (0.0, math.pi):
+        for swapped in (False, True):
+            for back in ((False, False), (True, False), (False, True), (True, True)):
+                wired = replace(
+                    AS_ENTERED.wired,
+                    swapped=swapped,
+                    left_reversed=back[0],
+                    right_reversed=back[1],
+                    yaw=half_turn,
+                )
+                if half_turn and swapped:
+                    continue  # the same as neither, by algebra
+                plain = replace(AS_ENTERED, wired=wired)
+                yield plain
+                for factor in FACTORS.values():
+                    yield replace(plain, left=factor, right=factor)
+                    yield replace(plain, base=factor)
+                    yield replace(plain, left=factor, right=factor, base=factor)
+                    if 0.2 < factor < 5.0:
+                        yield replace(plain, left=factor)
+                        yield replace(plain, right=factor)
+
+
+def _alike(a: Setting, b: Setting, facing: bool) -> bool:
+    """Whether two set-ups predict the same."""
+    one, other = a.numbers(1.0), b.numbers(1.0)
+    same = bool(np.allclose(one[:2], other[:2]))
+    if facing:
+        return same and bool(np.isclose(one[2], other[2]))
+    return same and bool(np.isclose(abs(one[2]), abs(other[2])))
+
+
+@dataclass(frozen=True, slots=True)
+class _Drives:
+    cuts: Cuts
+    track: float
+    facing: bool
+
+    def fits(self, setting: Setting) -> float:
+        """Log-likelihood of all drives, with errors that grow with what this set-up drove."""
+        left, right, half_base, arm = setting.numbers(self.track)
+        cuts = self.cuts
+        turned = cuts.summed(np.abs(right * cuts.right - left * cuts.left))
+        path = cuts.summed(abs(half_base) * np.abs(left * cuts.left + right * cuts.right))
+        extent = self._extent(left, right, half_base)
+        off, of_heading = errors(cuts, left, right, half_base, arm)
+        values = []
+        for share in SHARES:
+            of_turn = 0.005 + share * turned
+            of_move = 0.003 + share * path + of_turn * extent
+            if self.facing:
+                value = -0.5 * np.abs(off / of_move) ** 2 - 2.0 * np.log(of_move)
+                value += _log_wrapped(of_heading.real, of_turn)
+            else:
+                value = _log_radius(np.abs(cuts.move), np.abs(cuts.move - off), of_move)
+            values.append(float(np.sum(value)))
+        return max(values)
+
+    def _extent(self, left: float, right: float, half_base: complex) -> Floats:
+        """Root mean square distance of the path from each drive's start [m]."""
+        along = abs(half_base) * (left * self.cuts.left + right * self.cuts.right)
+        turn = right * self.cuts.right - left * self.cuts.left
+        heading = np.concatenate([[0.0], np.cumsum(turn)])
+        chord = along * sinc(0.5 * turn) * np.exp(1j * (heading[:-1] + 0.5 * turn))
+        path = np.concatenate([[0j], np.cumsum(chord)])
+        spans = zip(self.cuts.begin.tolist(), self.cuts.end.tolist(), strict=True)
+        return np.array(
+            [np.sqrt(np.mean(np.abs(path[b : e + 1] - path[b]) ** 2)) for b, e in spans]
+        )
+
+
+def _log_radius(measured: Floats, expected: Floats, sigma: Floats) -> Floats:
+    """Without headings only distances tell."""
+    return np.asarray(-0.5 * ((measured - expected) / sigma) ** 2 - np.log(sigma))
+
+
+def _log_wrapped(off: Floats, sigma: Floats) -> Floats:
+    """Normal while it is narrow, all directions alike where it is wide."""
+    wide = np.minimum(sigma, math.pi / math.sqrt(3.0))
+    return np.asarray(-0.5 * (off / wide) ** 2 - np.log(wide))
