@@ -1,3 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""From measurements back to the robot: calibration and its error bars; knows no ROS and no plot."""
+"""From measurements back to the robot; knows no ROS and no plot.
+
+Each folder stands on those after it: `adding` (an effect put in, or drafted), `manoeuvres` (what to
+drive next), `calibration` (the paper's, and any driving), `diagnosis` (what is missing), `set_up`
+(mistakes that no derivative sees), `comparison` (errors of legs), `fitting`.
+"""
