@@ -10,8 +10,9 @@ would leave in the innovations, less what the model can turn already, against wh
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -104,8 +105,8 @@ def dependences(
     rest = white - frame @ (frame.T @ white)
     found: list[tuple[Amount, Variable, Form, Floats, float, int]] = []
     path = path_of(point.model, runs)
-    pushes = {amount: pushes_of(runs, path, amount, point) for amount in AMOUNTS}
-    for cells_of in _batches(runs, variables_of(runs, point.model), pushes):
+    levers = {amount: _levers(runs, pushes_of(runs, path, amount, point)) for amount in AMOUNTS}
+    for cells_of in _batches(runs, variables_of(runs, point.model), levers):
         change = np.concatenate([block for *_, block in cells_of], axis=-1)
         marks = unexpected(runs, point, kind, change, prediction).whitened()[1]
         first = 0
@@ -161,13 +162,13 @@ Cell = tuple[Amount, Variable, Form, Floats]
 
 
 def _batches(
-    runs: Together, variables: Sequence[Variable], pushes: dict[Amount, tuple[Floats, Floats]]
+    runs: Together, variables: Sequence[Variable], levers: Mapping[Amount, _Levers]
 ) -> Iterator[list[Cell]]:
     """Cells with their changes of the legs, as many as memory bears at once."""
     batch: list[Cell] = []
     width = 0
     for variable in variables:
-        for amount, form, block in _blocks(runs, variable, pushes):
+        for amount, form, block in _blocks(runs, variable, levers):
             batch.append((amount, variable, form, block))
             width += block.shape[-1]
         if width * runs.count > BATCH:
@@ -178,42 +179,51 @@ def _batches(
 
 
 def _blocks(
-    runs: Together, variable: Variable, pushes: dict[Amount, tuple[Floats, Floats]]
+    runs: Together, variable: Variable, levers: Mapping[Amount, _Levers]
 ) -> Iterator[tuple[Amount, Form, Floats]]:
     """Changes of the legs (m, 3, k) for each amount and form."""
+    steps = runs.inside
     for form, (left, right) in functions_of(variable).items():
-        for amount, (of_left, of_right) in pushes.items():
-            if (
-                not variable.shared
-                and variable.form != "place"
-                and amount.channel
-                not in (
-                    "left",
-                    "right",
-                    "along",
-                )
-            ):
-                continue
-            block = legs_pushed(runs, left, of_left)
-            if of_right is not None:
-                block = block + legs_pushed(runs, right, of_right)
-            yield amount, form, block
+        alike = left is right
+        of_left = left[steps]
+        of_right = of_left if alike else right[steps]
+        for amount, lever in levers.items():
+            if alike:
+                yield amount, form, _summed(lever.both, of_left)
+            elif amount.channel in ("left", "right", "along"):
+                yield amount, form, _summed(lever.left, of_left) + _summed(lever.right, of_right)
+
+
+class _Levers(NamedTuple):
+    """Sums over each leg's steps as sparse matrices (m, steps in legs), for x, y and yaw."""
+
+    left: list[Any]
+    right: list[Any]
+    both: list[Any]
+
+
+def _levers(runs: Together, pushes: tuple[Floats, Floats]) -> _Levers:
+    steps = runs.inside
+    left, right = (_sums(runs, part[steps]) for part in pushes)
+    return _Levers(left, right, _sums(runs, pushes[0][steps] + pushes[1][steps]))
+
+
+def _sums(runs: Together, pushes: Floats) -> list[Any]:
+    from scipy.sparse import csr_array
+
+    ends = np.concatenate([[0], np.cumsum(runs.end - runs.begin)])
+    columns, shape = np.arange(pushes.shape[0]), (runs.count, pushes.shape[0])
+    return [csr_array((part, columns, ends), shape=shape) for part in pushes.T.copy()]
+
+
+def _summed(sums: list[Any], functions: Floats) -> Floats:
+    return np.stack([part @ functions for part in sums], axis=1)
 
 
 def legs_pushed(runs: Together, functions: Floats, pushes: Floats) -> Floats:
     """Sums over each leg's steps of functions (n, k) times pushes (n, 3), as (m, 3, k)."""
     steps = runs.inside
-    starts = np.concatenate([[0], np.cumsum(runs.end - runs.begin)])
-    moved, functions = pushes[steps], functions[steps]
-    found = np.zeros((runs.count, 3, functions.shape[-1]))
-    filled = np.flatnonzero(np.diff(starts))  # reduceat gives an empty leg its neighbour's value
-    for first in range(0, functions.shape[-1], 8):
-        some = slice(first, first + 8)
-        sums = np.add.reduceat(
-            moved[:, :, None] * functions[:, None, some], starts[:-1][filled], axis=0
-        )
-        found[filled, :, some] = sums
-    return found
+    return _summed(_sums(runs, pushes[steps]), functions[steps])
 
 
 def pushes_of(

@@ -169,7 +169,7 @@ def _places(
 def functions_of(variable: Variable) -> dict[Form, tuple[Floats, Floats]]:
     """Functions of a variable, for left and right wheel, by form; arrays of shape (n, k)."""
     if variable.form == "constant":
-        return {"constant": (variable.left[:, None], variable.right[:, None])}
+        return {"constant": (variable.left[:, None],) * 2}
     if variable.form == "turns":
         waves = [function(variable.harmonic * variable.left) for function in (np.cos, np.sin)]
         both = np.stack(waves, axis=-1)
@@ -179,11 +179,13 @@ def functions_of(variable: Variable) -> dict[Form, tuple[Floats, Floats]]:
         return {"place": (cells, cells)} if cells.shape[-1] > 1 else {}
     pooled = np.concatenate([variable.left, variable.right])
     middle, scale = float(np.mean(pooled)), float(np.std(pooled))
-    line = [((side - middle) / scale)[:, None] for side in (variable.left, variable.right)]
+    sides = (variable.left,) if variable.shared else (variable.left, variable.right)
+    lines = [((side - middle) / scale)[:, None] for side in sides]
     knots = curve_knots(pooled)
-    found: dict[Form, tuple[Floats, Floats]] = {"line": (line[0], line[1])}
+    found: dict[Form, tuple[Floats, Floats]] = {"line": (lines[0], lines[-1])}
     if knots.size > 2:
-        found["curve"] = (hats(variable.left, knots), hats(variable.right, knots))
+        curves = [hats(side, knots) for side in sides]
+        found["curve"] = (curves[0], curves[-1])
     return found
 
 

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.fitting.knobs import (
     HEADING_AT_START,
+    MULTIPLIERS,
     START_YAW,
     YAW_DRIFT,
     Knob,
@@ -87,8 +88,11 @@ def slopes_of(runs: Together, model: Model, knobs: Sequence[Knob]) -> Floats:
             columns.append(np.outer(runs.duration, [0.0, 0.0, 1.0]))
             continue
         ahead, behind = model.moved_by(knob, knob.scale), model.moved_by(knob, -knob.scale)
+        # What effects look at hardly changes with a radius; it is worked out once, as it is now.
+        looked_at = model.robot if knob.name in MULTIPLIERS else None
         width = ahead.value(knob) - behind.value(knob) if not knob.per_run else 2.0 * knob.scale
-        columns.append((legs_shown(ahead, runs) - legs_shown(behind, runs)) / width)
+        poses = [legs_shown(side, runs, looked_at) for side in (ahead, behind)]
+        columns.append((poses[0] - poses[1]) / width)
     return np.stack(columns, axis=-1) if columns else np.zeros((runs.count, 3, 0))
 
 

@@ -77,12 +77,19 @@ def relative_poses(robot: Robot, run: MatchedRun, start_yaw: float | None = None
     return legs_shown(Model(robot, (own,)), together([run]))
 
 
-def legs_shown(model: Model, runs: Together) -> Floats:
-    """Relative pose of every leg as the reference shows it, shape (m, 3) [m, m, rad]."""
+def legs_shown(model: Model, runs: Together, looked_at: Robot | None = None) -> Floats:
+    """Relative pose of every leg as the reference shows it, shape (m, 3) [m, m, rad].
+
+    Parameters
+    ----------
+    looked_at : Robot, optional
+        Whose travel effects look at, where it is as good as the model's own and known already.
+    """
     view = view_of(model.robot.effects)
     runs = runs.delayed(view.delay)
     robot = model.laid_out(runs.run_of_step)
-    return _shown(_path(robot, runs, view, model.start_yaws), runs, view, model.drifts)
+    path = _path(robot, runs, view, model.start_yaws, looked_at)
+    return _shown(path, runs, view, model.drifts)
 
 
 def predict_all(model: Model, runs: Together) -> Prediction:
@@ -93,8 +100,7 @@ def predict_all(model: Model, runs: Together) -> Prediction:
     path = _path(robot, runs, view, model.start_yaws)
     return Prediction(
         _shown(path, runs, view, model.drifts),
-        _noise_of_legs(path, runs, robot.track, view, left=1.0, right=0.0),
-        _noise_of_legs(path, runs, robot.track, view, left=0.0, right=1.0),
+        *_noise_of_legs(path, runs, robot.track, view),
         runs.per_leg(np.abs(path.motion.along)),
         runs.per_leg(path.motion.along),
         path.yaw[runs.end] - path.yaw[runs.begin],
@@ -142,12 +148,16 @@ def headings_of(
 
 
 def _path(
-    robot: Robot, runs: Together, view: View, start_yaws: Sequence[float | None]
+    robot: Robot,
+    runs: Together,
+    view: View,
+    start_yaws: Sequence[float | None],
+    looked_at: Robot | None = None,
 ) -> DrivenPath:
+    raw = runs.raw(robot)
     if not acts(robot):
-        raw = runs.raw(robot)
         return _from_motion(raw, wheels_to_body(raw, robot.track))
-    raw, drive = runs.raw_drive(robot)
+    _, drive = runs.raw_drive(looked_at or robot)
     placed = looks_at_pose(robot)
     if placed:
         path = _from_motion(raw, wheels_to_body(raw, robot.track))
@@ -261,15 +271,18 @@ def _late(path: DrivenPath, runs: Together, nodes: NDArray[np.intp], delay: floa
 
 
 def _noise_of_legs(
-    path: DrivenPath, runs: Together, track: float, view: View, *, left: float, right: float
-) -> Floats:
-    """Sum of the steps' closed forms, each carried to its leg's end, as the reference sees it."""
+    path: DrivenPath, runs: Together, track: float, view: View
+) -> tuple[Floats, Floats]:
+    """Sums of the steps' closed forms, each carried to its leg's end, as the reference sees it.
+
+    For unit noise of the left wheel, and of the right one; (m, 3, 3) each.
+    """
     steps = runs.inside
     leg = np.repeat(np.arange(runs.count), runs.end - runs.begin)
     motion = BodyMotion(*(part[steps] for part in path.motion))
-    noise = noise_of_wheel_variances(
-        left * np.abs(path.travel.left[steps]), right * np.abs(path.travel.right[steps]), track
-    )
+    left, right = (np.abs(side[steps]) for side in path.travel)
+    none = np.zeros_like(left)
+    noise = noise_of_wheel_variances(np.stack([left, none]), np.stack([none, right]), track)
     facing = path.yaw[runs.begin][leg] + view.yaw
     own = piece_covariance(motion, noise, path.yaw[steps] - facing)
     marker = path.position[runs.end] + complex(view.ahead, view.left) * np.exp(
@@ -278,6 +291,6 @@ def _noise_of_legs(
     lever = np.exp(-1j * facing) * (marker[leg] - path.position[steps + 1])
     moved = carried(own, lever.real, lever.imag)
     starts = np.concatenate([[0], np.cumsum(runs.end - runs.begin)])
-    return PoseCovariance(
-        *(np.diff(np.concatenate([[0.0], np.cumsum(entry)])[starts]) for entry in moved)
-    ).matrix()
+    sums = (np.cumsum(np.pad(entry, ((0, 0), (1, 0))), axis=-1) for entry in moved)
+    found = PoseCovariance(*(np.diff(entry[:, starts], axis=-1) for entry in sums)).matrix()
+    return found[0], found[1]

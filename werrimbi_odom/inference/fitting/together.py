@@ -47,6 +47,8 @@ class Together:
     """Reference intervals in each leg, shape (m,)."""
     duration: Floats
     """Of each leg, shape (m,) [s]."""
+    inside: NDArray[np.intp]
+    """Steps that belong to a leg."""
     _features: dict[tuple[float, ...], tuple[WheelTravel[Floats], Drive[Floats]]] = field(
         default_factory=dict
     )
@@ -61,14 +63,6 @@ class Together:
     def data(self) -> int:
         """Number of measured coordinates at the legs' ends."""
         return int(np.isfinite(self.finish).sum())
-
-    @property
-    def inside(self) -> NDArray[np.intp]:
-        """Steps that belong to a leg."""
-        marks = np.zeros(int(self.steps[-1]) + 1)
-        np.add.at(marks, self.begin, 1.0)
-        np.add.at(marks, self.end, -1.0)
-        return np.flatnonzero(np.cumsum(marks)[:-1] > 0.5)
 
     def per_leg(self, values: Floats) -> Floats:
         """Sums over the steps of each leg of values for all steps."""
@@ -122,6 +116,12 @@ def together(runs: Sequence[MatchedRun]) -> Together:
         np.concatenate([pose[1:] for pose in poses]),
         np.concatenate([run.intervals for run in runs]),
         np.concatenate([np.diff(run.time[run.ends]) for run in runs]),
+        np.concatenate(
+            [
+                np.arange(run.ends[0], run.ends[-1]) + first
+                for run, first in zip(runs, steps, strict=False)
+            ]
+        ),
     )
 
 
