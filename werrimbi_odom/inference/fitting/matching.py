@@ -270,9 +270,9 @@ def _leg_ends(
     turned = np.abs(right - left) / robot.track / turn
     progress = np.interp(at, counters.time, _summed(path + turned))
     progress -= progress[0]
-    whole = np.arange(1.0, np.floor(progress[-1] * (1.0 + 1e-12)) + 1.0)
-    chosen = np.minimum(np.searchsorted(progress, whole - 1e-12), at.size - 1)  # or rounding
-    ends = np.unique(np.concatenate([[0], chosen]))
+    rounding = 1e-12 * max(float(progress[-1]), 1.0)
+    done = np.floor(progress + rounding)  # whole legs so far: no list of them, were they a billion
+    ends = np.concatenate([[0], np.flatnonzero(np.diff(done) > 0.0) + 1])
     if ends.size == 1:  # a run shorter than a leg is one leg
         ends = np.array([0, at.size - 1])
     return ends
