@@ -12,14 +12,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Literal
 
-from werrimbi_odom.effects.collection import find
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Score
+from werrimbi_odom.inference.diagnosis.candidates import Score
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.diagnosis.holdout import Judge, Sides, judge_of
+from werrimbi_odom.inference.diagnosis.holdout import judge_of
 from werrimbi_odom.inference.diagnosis.ownership import Grasp, grasp_of
 from werrimbi_odom.inference.diagnosis.search import (
     Instead,
@@ -29,17 +27,18 @@ from werrimbi_odom.inference.diagnosis.search import (
     jumps_anew,
     search_round,
 )
-from werrimbi_odom.inference.diagnosis.selection import RIVAL, Fitted
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, MULTIPLIERS, Model, changed
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, chance, told
+from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, match
 from werrimbi_odom.inference.fitting.together import Together, together
-from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding, look_for_mistakes
+from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, look_for_mistakes
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
-Verdict = Literal["none", "named", "ambiguous", "unknown"]
+__all__ = ["Diagnosis", "Ranked", "Verdict", "chance", "diagnose"]
 
 SURE = 1e-3
 """An effect is believed when chance would show as much in fewer cases than this, all counted."""
@@ -53,62 +52,11 @@ FAR_MORE = 1.3
 FAR_MORE_OF_ITS_OWN = 2.0
 """The same where the effect looks at that variable and acts there: its law may be a bit off."""
 
-SIMPLER = 3.0
-"""By how much an effect must cost less than the calibration that it would replace."""
-
 ROUNDS = 4
 """Effects that are looked for, one after the other."""
 
 PARTS_OF_A_LEG = 4
 """Fits use legs this much shorter than those that are judged: they tell noise from drift."""
-
-
-@dataclass(frozen=True, slots=True)
-class Ranked:
-    """An effect and what it is worth."""
-
-    effect: str
-    p_value: float
-    """Of as much by chance, corrected for the number of effects tried."""
-    train: Sides | None
-    """Position error before and after adding it [m]; None where it was not worth a fit."""
-    holdout: Sides | None
-
-
-@dataclass(frozen=True)
-class Diagnosis:
-    """What is missing, and what is known of it."""
-
-    verdict: Verdict
-    effect: str | None
-    found: tuple[str, ...]
-    """All effects that were found, one after the other; the most important first."""
-    ranking: tuple[Ranked, ...]
-    rivals: tuple[str, ...]
-    """Effects that these runs cannot tell apart; the named one is among them."""
-    set_up: SetUp
-    depends_on: tuple[Dependence, ...]
-    """What the errors of the robot as given (its set-up put right) depend on."""
-    remaining: tuple[Dependence, ...]
-    """What they depend on once all that was found is put in."""
-    given: Robot
-    rounds: tuple[Round, ...]
-    final: Fitted
-    """The model with everything found."""
-    runs: Together
-    kind: ReferenceKind
-    train: Sides
-    """Position error with the robot as given, and with everything found [m]."""
-    holdout: Sides
-    medians: Sides
-    """Median position error on the held-out runs, outliers and all [m]."""
-    headings: Sides
-    """Heading error on the held-out runs [rad]: a reference of headings alone is judged by it."""
-
-    @property
-    def robot(self) -> Robot:
-        """With everything that was found put in."""
-        return self.final.point.model.robot
 
 
 def diagnose(
@@ -140,10 +88,13 @@ def diagnose(
     Raises
     ------
     InputError
-        When a run has no usable reference or no ticks.
+        When a run has no usable reference or no ticks, or its headings are in degrees.
     """
     show(0.0, "set-up")
     set_up = look_for_mistakes([*runs, *holdout], robot, kind, limits)
+    for finding in set_up.findings:
+        if finding.effect == IN_DEGREES:
+            raise InputError(f"{runs[0].path}: {finding.words}")
     judge = judge_of(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
     fine = leg / PARTS_OF_A_LEG
     laid = together(
@@ -177,21 +128,12 @@ def diagnose(
     instead: tuple[Instead, ...] = ()
     if not fit.names and fit.calibrated and beyond is None:
         instead = instead_of_calibration(laid, fit, kind, effects, set_up.robot, sigma)
-    return _told(set_up, robot, tuple(rounds), fit, beyond, remaining, judge, laid, kind, instead)
+    return told(set_up, robot, tuple(rounds), fit, beyond, remaining, judge, laid, kind, instead)
 
 
 def _stated(runs: Together, name: str) -> float | None:
     stated = [getattr(run, name) for run in runs.runs]
     return None if any(value is None for value in stated) else float(max(stated))
-
-
-def chance(fit: Fitted, before: Fitted, tried: int) -> float:
-    """How often chance would lower the cost as much, all that was tried counted."""
-    from scipy.stats import chi2
-
-    gain = (before.cost + before.needless - fit.cost - fit.needless) / fit.scatter
-    numbers = round((fit.price - before.price) / fit.price_of_one)
-    return float(min(1.0, chi2.sf(max(gain, 0.0), max(numbers, 1)) * max(tried, 1)))
 
 
 def _best(this: Round) -> Fitted | None:
@@ -241,143 +183,3 @@ def _fall(gain: float, data: int) -> float:
 def _grasp(score: Score, runs: Together, model: Model) -> Grasp:
     _, drive = runs.raw_drive(model.robot)
     return grasp_of(score.candidate, drive)
-
-
-def _told(
-    set_up: SetUp,
-    given: Robot,
-    rounds: tuple[Round, ...],
-    final: Fitted,
-    beyond: Dependence | None,
-    remaining: tuple[Dependence, ...],
-    judge: Judge,
-    laid: Together,
-    kind: ReferenceKind,
-    instead: tuple[Instead, ...],
-) -> Diagnosis:
-    """Everything put together."""
-    mistakes = [finding.effect for finding in set_up.findings]
-    sizes = [name for name in final.calibrated if final.importance[name] > 2.0 * final.price_of_one]
-    effects = sorted([*final.names, *sizes], key=lambda name: -final.importance[name])
-    found = tuple(dict.fromkeys([*mistakes, *effects]))
-    rivals: tuple[str, ...] = ()
-    if mistakes:
-        twins = _possible_twins(set_up.findings[0])
-        rivals = (mistakes[0], *twins) if twins else ()
-    elif found:
-        rivals = _rivals(found[0], rounds, final, instead)
-    verdict: Verdict
-    if not found:
-        verdict = "none" if beyond is None else "unknown"
-    elif beyond is not None and not mistakes and len(rounds) == 1:
-        verdict, found, rivals = "unknown", (), ()
-    else:
-        verdict = "ambiguous" if len(rivals) > 1 else "named"
-    start = judge.of(Model(given, judge.nothing_of_own), learn=True)
-    last = judge.of(_plain(final, set_up.robot), learn=True)
-    return Diagnosis(
-        verdict,
-        found[0] if found else None,
-        found,
-        tuple(_ranking(found, set_up, rounds, final, judge)),
-        rivals,
-        set_up,
-        rounds[0].dependences,
-        remaining,
-        given,
-        rounds,
-        final,
-        laid,
-        kind,
-        Sides(start.train, last.train),
-        Sides(start.holdout, last.holdout),
-        Sides(start.holdout_median, last.holdout_median),
-        Sides(start.holdout_yaw, last.holdout_yaw),
-    )
-
-
-def _possible_twins(finding: SetUpFinding) -> tuple[str, ...]:
-    """What else it could be, as far as physics allows: no axle is askew by a quarter turn."""
-    angle = abs(finding.values.get("angle", 0.0))
-    possible = find("sideways_drift").parameters["angle"].bounds[1]
-    return tuple(name for name in finding.twins if name != "sideways_drift" or angle <= possible)
-
-
-def _plain(fit: Fitted, given: Robot) -> Model:
-    """A fitted model; multipliers that it does not need stay as they were given."""
-    if fit.calibrated or fit.names:
-        return fit.point.model
-    model = fit.point.model
-    back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
-    return Model(changed(model.robot, back), model.own)
-
-
-def _rivals(
-    first: str, rounds: tuple[Round, ...], final: Fitted, instead: tuple[Instead, ...]
-) -> tuple[str, ...]:
-    """What the runs cannot tell from the first effect, that one leading; alone: none."""
-    if first in CALIBRATED:
-        others = {name for subset in final.alternatives for name in subset if first not in subset}
-        named = [first, *(name for name in CALIBRATED if name in others)]
-        # Calibration is what every robot needs; an effect is its rival where it needs less.
-        limit = final.total - SIMPLER * final.scatter
-        named += [item.effect for item in instead if item.total < limit]
-        return tuple(named) if len(named) > 1 else ()
-    for this in rounds:
-        fits = [fit for fit in this.tried if not fit.at_bound]
-        best = next((fit for fit in fits if fit.names[-1] == first), None)
-        if best is None:
-            continue
-        near = [fit.names[-1] for fit in fits if fit.total - best.total < RIVAL * best.scatter]
-        named = list(dict.fromkeys([first, *near]))
-        return tuple(named) if len(named) > 1 else ()
-    return ()
-
-
-def _ranking(
-    found: tuple[str, ...], set_up: SetUp, rounds: tuple[Round, ...], final: Fitted, judge: Judge
-) -> list[Ranked]:
-    """All effects, what was found first."""
-    from scipy.stats import chi2
-
-    ranked: dict[str, Ranked] = {}
-    for finding in set_up.findings:
-        before = judge.of(Model(judge.given, judge.nothing_of_own), learn=True)
-        after = judge.of(Model(set_up.robot, judge.nothing_of_own), learn=True)
-        ranked[finding.effect] = Ranked(
-            finding.effect,
-            0.0,
-            Sides(before.train, after.train),
-            Sides(before.holdout, after.holdout),
-        )
-    base = judge.of(Model(set_up.robot, judge.nothing_of_own), learn=True)
-    for number, this in enumerate(rounds):
-        before = base if number == 0 else judge.of(this.before.point.model, learn=True)
-        for fit in this.tried:
-            name = fit.names[-1]
-            after = judge.of(fit.point.model, learn=True)
-            entry = Ranked(
-                name,
-                chance(fit, this.before, this.number),
-                Sides(before.train, after.train),
-                Sides(before.holdout, after.holdout),
-            )
-            if name not in ranked or (name in found and name not in rounds[0].before.names):
-                ranked.setdefault(name, entry)
-    calibrated = judge.of(rounds[0].before.point.model, learn=True)
-    for name in CALIBRATED:
-        importance = final.importance.get(name, 0.0)
-        ranked.setdefault(
-            name,
-            Ranked(
-                name,
-                float(min(1.0, chi2.sf(importance, 1) * rounds[0].number)),
-                Sides(base.train, calibrated.train) if importance else None,
-                Sides(base.holdout, calibrated.holdout) if importance else None,
-            ),
-        )
-    for score in rounds[0].scores:
-        p_value = float(min(1.0, chi2.sf(score.gain, score.degrees) * rounds[0].number))
-        ranked.setdefault(score.candidate.name, Ranked(score.candidate.name, p_value, None, None))
-    first = [ranked.pop(name) for name in found if name in ranked]
-    return [*first, *sorted(ranked.values(), key=lambda item: item.p_value)]
