@@ -144,3 +144,17 @@ def test_mistakes_are_told_in_one_line(tmp_path: Path, capsys: pytest.CaptureFix
     told = complaint(capsys, *robot, RECORDING, "--json", RECORDING / "ticks.csv")
     assert "would overwrite" in told
     assert "required: --robot" in complaint(capsys, RECORDING)
+
+
+def test_headings_in_degrees_are_told_with_the_mend(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "ticks.csv").write_text((RECORDING / "ticks.csv").read_text())
+    header, *rows = (RECORDING / "reference.csv").read_text().splitlines()
+    turned = [row.rsplit(",", 1) for row in rows]
+    lines = [f"{rest},{float(yaw) * 180.0 / 3.141592653589793:.4f}" for rest, yaw in turned]
+    (tmp_path / "reference.csv").write_text("\n".join([header, *lines]) + "\n")
+    told = complaint(capsys, "--robot", ROBOT, tmp_path)
+    assert str(tmp_path) in told
+    assert "degrees" in told
+    assert "pi/180" in told

@@ -1,0 +1,182 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the diagnosis stands on: predictions laid end to end, pushes of errors, weighed models."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.diagnosis.candidates import candidates, scores
+from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS, Amount, legs_pushed, pushes_of
+from werrimbi_odom.inference.diagnosis.holdout import set_aside
+from werrimbi_odom.inference.diagnosis.ownership import grasp_of
+from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.fitting.fit import start_point
+from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.matching import match
+from werrimbi_odom.inference.fitting.prediction import legs_shown, path_of, predict, predict_all
+from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+TRUE = WhiteNoiseRobot()
+ROBOT = Robot(
+    TRUE.separation,
+    0.05,
+    2000.0,
+    2000.0,
+    left_wheel_radius_multiplier=TRUE.left_radius / 0.05,
+    right_wheel_radius_multiplier=TRUE.right_radius / 0.05,
+    left_wheel_noise=TRUE.left_noise,
+    right_wheel_noise=TRUE.right_noise,
+)
+
+
+@pytest.fixture(scope="module")
+def runs() -> list[Any]:
+    random = np.random.default_rng(7)
+    return [drive(TRUE, wandering(random, 60.0), random) for _ in range(3)]
+
+
+@pytest.fixture(scope="module")
+def laid(runs: list[Any]) -> Together:
+    return together([match(run, ROBOT, 0.25, turn=0.4) for run in runs])
+
+
+def test_runs_laid_end_to_end_are_predicted_as_one_by_one(laid: Together) -> None:
+    slipping = replace(
+        ROBOT,
+        effects=(
+            find("lateral_slip").using(creep=0.01),
+            find("floor_slope").using(x=0.01),
+            find("left_backlash").using(travel=0.003),
+        ),
+    )
+    model = Model(slipping, tuple({} for _ in laid.runs))
+    every = predict_all(model, laid)
+    for index, run in enumerate(laid.runs):
+        own = slice(laid.legs[index], laid.legs[index + 1])
+        alone = predict(slipping, run)
+        np.testing.assert_allclose(every.relative[own], alone.relative, atol=1e-12)
+        np.testing.assert_allclose(every.per_left[own], alone.per_left, rtol=1e-6, atol=1e-12)
+        np.testing.assert_allclose(every.along[own], alone.along, atol=1e-12)
+
+
+def slope(laid: Together, ahead: Robot, behind: Robot, step: float) -> Floats:
+    poses = [
+        legs_shown(Model(side, tuple({} for _ in laid.runs)), laid) for side in (ahead, behind)
+    ]
+    return np.asarray((poses[0] - poses[1]) / (2.0 * step))
+
+
+def pushed(laid: Together, amount: Amount) -> Floats:
+    point = start_point(laid, ROBOT)
+    left, right = pushes_of(laid, path_of(point.model, laid), amount, point)
+    ones = np.ones((left.shape[0], 1))
+    return np.asarray((legs_pushed(laid, ones, left) + legs_pushed(laid, ones, right))[..., 0])
+
+
+def test_an_error_pushes_the_legs_as_the_law_that_makes_it(laid: Together) -> None:
+    """The evidence map's linear patterns against finite differences of laws that say the same."""
+
+    def with_effect(name: str, **values: float) -> Robot:
+        return replace(ROBOT, effects=(find(name).using(**values),))
+
+    step = 1e-4
+    crab = slope(
+        laid,
+        with_effect("sideways_drift", angle=step),
+        with_effect("sideways_drift", angle=-step),
+        step,
+    )
+    np.testing.assert_allclose(pushed(laid, Amount("sideways", "travel")), crab, atol=2e-5)
+    left = ROBOT.left_wheel_radius_multiplier
+    wheel = slope(
+        laid,
+        replace(ROBOT, left_wheel_radius_multiplier=left * (1.0 + step)),
+        replace(ROBOT, left_wheel_radius_multiplier=left * (1.0 - step)),
+        step,
+    )
+    np.testing.assert_allclose(pushed(laid, Amount("left", "travel")), wheel, atol=2e-5)
+    both = slope(
+        laid,
+        with_effect("wheel_radius_scale", multiplier=1.0 + step),
+        with_effect("wheel_radius_scale", multiplier=1.0 - step),
+        step,
+    )
+    np.testing.assert_allclose(pushed(laid, Amount("along", "travel")), both, atol=2e-5)
+
+
+def test_every_amount_has_a_channel_of_the_contract() -> None:
+    channels = {"left", "right", "along", "sideways", "heading"}
+    assert {amount.channel for amount in AMOUNTS} == channels
+
+
+def test_a_right_robot_needs_no_calibration_and_no_effect_scores(laid: Together) -> None:
+    fit = first_fit(laid, ROBOT, "absolute")
+    assert fit.calibrated == ()
+    tried = candidates(LIBRARY, (), (), len(laid.runs))
+    best = max(
+        scores(laid, fit.point, "absolute", CALIBRATION, tried), key=lambda score: score.excess
+    )
+    assert best.gain < best.degrees + 25.0
+
+
+@pytest.mark.parametrize(
+    ("wrong", "named"),
+    [
+        ({"wheel_separation": TRUE.separation * 0.99}, "track_width"),
+        ({"wheel_radius": 0.0503}, "wheel_radius_scale"),
+        (
+            {
+                "left_wheel_radius_multiplier": ROBOT.left_wheel_radius_multiplier * 0.998,
+                "right_wheel_radius_multiplier": ROBOT.right_wheel_radius_multiplier * 1.002,
+            },
+            "unequal_wheel_radii",
+        ),
+    ],
+)
+def test_of_the_multipliers_those_are_kept_that_are_wrong(
+    runs: list[Any], wrong: dict[str, float], named: str
+) -> None:
+    robot = replace(ROBOT, **wrong)  # type: ignore[arg-type]
+    wronged = together([match(run, robot, 0.25, turn=0.4) for run in runs])
+    fit = first_fit(wronged, robot, "absolute")
+    assert named in fit.calibrated
+    assert max(fit.importance, key=lambda name: fit.importance[name]) == named
+
+
+def test_what_an_effect_looks_at_and_acts_on_is_found_by_trying_it(laid: Together) -> None:
+    _, steps = laid.raw_drive(ROBOT)
+    by_name = {each.name: each for each in candidates(LIBRARY, (), (), len(laid.runs))}
+    castor = grasp_of(by_name["castor_kick"], steps)
+    assert "since_reversal" in castor.fields
+    assert castor.channels <= {"heading"}
+    slip = grasp_of(by_name["lateral_slip"], steps)
+    assert (slip.fields, slip.channels) == ({"speed"}, {"sideways"})
+    missed = grasp_of(by_name["left_missed_ticks"], steps)
+    assert missed.channels <= {"left"}
+    assert "left_speed" in missed.fields
+
+
+def test_runs_set_aside_are_not_fitted_on() -> None:
+    time = np.linspace(0.0, 60.0, 601)
+    ticks = Ticks(time, np.arange(601), np.arange(601))
+    seen = Reference(time, time, time, time)
+    runs = [Run(f"run_{number}", Path(f"run_{number}"), ticks, seen) for number in range(3)]
+    fitted, kept = set_aside(runs)
+    assert len(fitted) + len(kept) == len(runs)
+    assert not {run.name for run in fitted} & {run.name for run in kept}
+    (first,), (last,) = set_aside(runs[:1])
+    assert first.ticks.time[-1] < last.ticks.time[0]
+    assert last.ticks.rows == pytest.approx(150, abs=2)
+    assert last.reference is not None
+    assert last.reference.time[0] >= 45.0
