@@ -75,7 +75,7 @@ def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Varian
             continue
         gained, moved = cost - ahead[0], np.max(np.abs(tried - logs), initial=0.0)
         logs, (cost, gradient, curvature), damping = tried, ahead, 0.1 * damping
-        if gained < 1e-2 or moved < 1e-4:
+        if gained < 1e-3 or moved < 1e-4:
             break
     return _variances(start, held, logs[None, :])
 
