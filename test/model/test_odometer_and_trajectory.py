@@ -169,6 +169,7 @@ def test_live_and_recorded_agree_at_any_tolerance_and_resolution(
     assert_one_odometry(Odometer(robot, rule), ticks, trajectory(robot, *ticks, tolerance=rule))
 
 
+@pytest.mark.evidence
 def test_live_and_recorded_agree_on_a_million_ticks() -> None:
     """Squares and wild driving by turns, and every ten thousand messages something goes wrong."""
     lap, wander = square(), random_drive(7, duration=60.0)
