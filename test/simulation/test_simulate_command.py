@@ -14,7 +14,8 @@ from ruamel.yaml import YAML
 import werrimbi_odom.simulation
 from werrimbi_odom.cli import simulate
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.simulation import drives, moves
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.simulation import Nominal, TrueRobot, drives, moves, write_robot_file
 
 
 def call(*words: str) -> int:
@@ -154,3 +155,16 @@ def test_a_day_has_seven_drives_to_learn_from_and_four_to_test() -> None:
     assert sum(name.startswith("holdout/") for name in names) == 4
     minutes = sum(drive.duration for drive in drives(1).values()) / 60
     assert 9.0 < minutes < 13.0
+
+
+def test_a_robot_of_crooked_sizes_is_written_so_that_it_can_be_read(tmp_path: Path) -> None:
+    """Numbers of many digits must not swallow the space before their comment."""
+    robot = TrueRobot(
+        nominal=Nominal(wheel_separation=1.0 / 3.0, wheel_radius=0.1 / 3.0),
+        left_ticks_per_revolution=6178.123456,
+        left_wheel_noise=0.001 / 3.0,
+        right_wheel_noise=0.002 / 3.0,
+    )
+    read = read_robot_file(write_robot_file(robot, tmp_path / "robot.yaml")).robot
+    assert read.wheel_separation == 1.0 / 3.0
+    assert read.left_wheel_noise == 0.001 / 3.0

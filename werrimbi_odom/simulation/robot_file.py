@@ -14,16 +14,16 @@ _TEMPLATE = """\
 #   werrimbi odom --robot robot.yaml RUN --out odom.csv
 odom_node:
   ros__parameters:
-    wheel_separation: {wheel_separation:<18}# m, between the wheels' contact points
-    wheel_radius: {wheel_radius:<22}# m
+    wheel_separation: {wheel_separation:<17} # m, between the wheels' contact points
+    wheel_radius: {wheel_radius:<21} # m
     wheel_separation_multiplier: 1.0    # calibration of the base; 1: as measured with the ruler
     left_wheel_radius_multiplier: 1.0   # calibration of the left wheel
     right_wheel_radius_multiplier: 1.0  # calibration of the right wheel
-    left_ticks_per_revolution: {left_ticks_per_revolution:<9}# counts in one turn of the wheel
+    left_ticks_per_revolution: {left_ticks_per_revolution:<8} # counts in one turn of the wheel
     right_ticks_per_revolution: {right_ticks_per_revolution}
     encoder_bits: 0                     # the counters do not wrap
-    left_wheel_noise: {left_wheel_noise:<18}# k_L, m^0.5: a wheel errs by k * sqrt(path)
-    right_wheel_noise: {right_wheel_noise:<17}# k_R
+    left_wheel_noise: {left_wheel_noise:<17} # k_L, m^0.5: a wheel errs by k * sqrt(path)
+    right_wheel_noise: {right_wheel_noise:<16} # k_R
     odom_frame_id: odom
     base_frame_id: base_link
     enable_odom_tf: false               # true where no filter (EKF) publishes odom -> base_link
