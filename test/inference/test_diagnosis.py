@@ -115,6 +115,22 @@ def test_an_error_pushes_the_legs_as_the_law_that_makes_it(laid: Together) -> No
     np.testing.assert_allclose(pushed(laid, Amount("along", "travel")), both, atol=2e-5)
 
 
+def test_two_poses_a_drive_may_lie_just_outside_the_ticks(runs: list[Any]) -> None:
+    """A robot is measured where it is put down and where it is found; it stands meanwhile."""
+    run = runs[0]
+    seen = run.reference
+    first, last = run.ticks.time[0] - 0.2, run.ticks.time[-1] + 0.003
+    ends = Reference(
+        np.array([first, last]), *(part[[0, -1]] for part in (seen.x, seen.y, seen.yaw))
+    )
+    whole = Run("two", Path("two"), Ticks(run.ticks.time, run.ticks.left, run.ticks.right), ends)
+    matched = match(whole, ROBOT, 1.0)
+    assert matched.legs == 1
+    counted = run.ticks.left[-1] - run.ticks.left[0]
+    assert matched.left.sum() == pytest.approx(counted, abs=1e-6)
+    assert np.isfinite(predict(ROBOT, matched).relative).all()
+
+
 def test_every_amount_has_a_channel_of_the_contract() -> None:
     channels = {"left", "right", "along", "sideways", "heading"}
     assert {amount.channel for amount in AMOUNTS} == channels

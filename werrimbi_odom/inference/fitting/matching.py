@@ -24,6 +24,12 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
 
+FEW = 10
+"""Reference poses: of fewer, those count too that lie just outside the ticks' time."""
+
+MOMENT = 1.0
+"""How far outside [s]."""
+
 QUARTER_TURN = 0.5 * np.pi
 """Turning [rad] that is worth a leg of path, whatever the leg's length."""
 
@@ -250,7 +256,12 @@ def _summed(steps: Floats) -> Floats:
 def _usable(reference: Reference, first: float, last: float) -> NDArray[np.intp]:
     """Rows with something measured, in the ticks' time, each later than the one before."""
     known = (np.isfinite(reference.x) & np.isfinite(reference.y)) | np.isfinite(reference.yaw)
-    rows = np.flatnonzero(known & (reference.time >= first) & (reference.time <= last))
+    within = known & (reference.time >= first) & (reference.time <= last)
+    if within.sum() < FEW:
+        # Where a robot was put down and where it was found, by tape: it stood a moment before the
+        # first tick and after the last.
+        within = known & (reference.time >= first - MOMENT) & (reference.time <= last + MOMENT)
+    rows = np.flatnonzero(within)
     if rows.size == 0:
         return rows
     latest = np.maximum.accumulate(reference.time[rows])
