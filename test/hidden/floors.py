@@ -25,7 +25,7 @@ from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
-from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, match
+from werrimbi_odom.inference.fitting.matching import match_finely
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -33,9 +33,6 @@ from werrimbi_odom.model.robot import Robot
 
 LEG = 1.0
 """Of the legs that are judged [m]."""
-
-PARTS = 4
-"""Legs of the fit are shorter by this."""
 
 SHAPES = 3
 """Shapes of one effect (thresholds, phases of each run or of all) that are fitted in full."""
@@ -65,27 +62,25 @@ class Floor:
         self.limits = limits
         self.kind: ReferenceKind = kind
         self.judge: Judge = judge_of(runs, holdout, robot, kind, LEG, limits, None, None)
-        self.laid: Together = together(
-            [match(run, robot, LEG / PARTS, limits, QUARTER_TURN / PARTS) for run in runs]
-        )
+        self.laid: Together = together(match_finely(runs, robot, LEG, limits))
 
     def as_given(self) -> float:
         """Held-out error of the robot file [m]."""
         nothing = self.judge.nothing_of_own
-        return self.judge.of(Model(self.given, nothing), learn=True).holdout
+        return self.judge.of(Model(self.given, nothing)).holdout
 
     def of(self, names: Sequence[str]) -> float:
         """Held-out error of the model with these effects, calibration and all fitted [m]."""
         mistakes = tuple(find(name).using() for name in names if _is_mistake(name))
         robot = replace(self.given, effects=(*self.given.effects, *mistakes))
         if len(mistakes) == len(names):
-            return self.judge.of(Model(robot, self.judge.nothing_of_own), learn=True).holdout
+            return self.judge.of(Model(robot, self.judge.nothing_of_own)).holdout
         fit = first_fit(self.laid, robot, self.kind)
         for name in names:
             if name not in CALIBRATED and not _is_mistake(name):
                 laws = RIGHT_LAWS.get(name) or (find(name),)
                 fit = min((self._with(fit, law, robot) for law in laws), key=lambda one: one.cost)
-        return self.judge.of(fit.point.model, learn=True).holdout
+        return self.judge.of(fit.point.model).holdout
 
     def _with(self, fit: Fitted, effect: Effect, robot: Robot) -> Fitted:
         """One effect more, whatever it is worth."""

@@ -171,7 +171,7 @@ def test_of_the_multipliers_those_are_kept_that_are_wrong(
 
 
 def test_what_an_effect_looks_at_and_acts_on_is_found_by_trying_it(laid: Together) -> None:
-    _, steps = laid.raw_drive(ROBOT)
+    steps = laid.drive(ROBOT)
     by_name = {each.name: each for each in candidates(LIBRARY, (), (), len(laid.runs))}
     castor = grasp_of(by_name["castor_kick"], steps)
     assert "since_reversal" in castor.fields

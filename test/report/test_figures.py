@@ -62,7 +62,7 @@ def test_an_eccentric_wheel_shows_its_sine_over_its_turn_and_then_a_flat_line(
 def test_parts_in_which_nothing_was_driven_are_left_out(diagnosis: Diagnosis) -> None:
     """A heading error in proportion to the turn: next to no turn says nothing of it."""
     runs, fit = diagnosis.runs, diagnosis.final
-    _, drive = runs.raw_drive(diagnosis.robot)
+    drive = runs.drive(diagnosis.robot)
     rate = drive.yaw_rate.end
     edges = parts_of(rate, rate, turns=False)
     found = response(

@@ -10,17 +10,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.cli.calibration_files import write_all
-from werrimbi_odom.cli.recordings import Recordings, add_recording_arguments, read_recordings
+from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
     from werrimbi_odom.files.robot_file import RobotFile
-    from werrimbi_odom.files.run import Run
     from werrimbi_odom.inference.calibration.any_driving import Calibration
     from werrimbi_odom.inference.fitting.matching import MatchedRun
-
-PARTS_OF_A_LEG = 4  # the fit uses shorter legs than are judged: they tell noise from drift
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -40,21 +37,22 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Calibrate; 0 on success."""
     from werrimbi_odom.inference.calibration.any_driving import calibrate
+    from werrimbi_odom.inference.fitting.matching import match, match_finely, stated
 
     given = read_recordings(arguments)
     source = given.source
-    runs = _matched(given.runs, given, PARTS_OF_A_LEG)
+    runs = match_finely(given.runs, source.robot, given.leg, source.limits)
     result = calibrate(
         runs,
         source.robot,
         given.kind,
-        sigma_xy=given.sigma_xy or _stated(runs, "sigma_xy"),
-        sigma_yaw=given.sigma_yaw or _stated(runs, "sigma_yaw"),
+        sigma_xy=given.sigma_xy or stated(runs, "sigma_xy"),
+        sigma_yaw=given.sigma_yaw or stated(runs, "sigma_yaw"),
     )
     _say(result)
     figures = _json(result)
     if given.holdout:
-        held_out = _matched(given.holdout, given, 1)
+        held_out = [match(run, source.robot, given.leg, source.limits) for run in given.holdout]
         figures["holdout"] = _judged(held_out, source, result)
     changes = {name: item.value for name, item in result.multipliers.items() if item.determined}
     for name in ("left_wheel_noise", "right_wheel_noise"):
@@ -104,19 +102,6 @@ def _verdict(result: Calibration) -> str:
         for cell in result.misfit[:5]
     ]
     return "\n".join([*lines, "Next: `werrimbi diagnose` says which physical effect explains it."])
-
-
-def _matched(runs: Sequence[Run], given: Recordings, parts: int) -> list[MatchedRun]:
-    from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, match
-
-    robot, limits = given.source.robot, given.source.limits
-    return [match(run, robot, given.leg / parts, limits, QUARTER_TURN / parts) for run in runs]
-
-
-def _stated(runs: Sequence[MatchedRun], name: str) -> float | None:
-    """The reference's noise as the records state it, if all of them do."""
-    stated = [getattr(run, name) for run in runs]
-    return None if any(value is None for value in stated) else max(stated)
 
 
 def _say(result: Calibration) -> None:

@@ -104,7 +104,7 @@ def _own_cell(diagnosis: Diagnosis, effect: str | None) -> Dependence | None:
         for score in this.scores:
             if score.candidate.name != effect:
                 continue
-            _, drive = diagnosis.runs.raw_drive(this.before.point.model.robot)
+            drive = diagnosis.runs.drive(this.before.point.model.robot)
             grasp = grasp_of(score.candidate, drive)
             own = [
                 cell

@@ -49,7 +49,7 @@ def wheel_errors(comparison: Comparison, index: int, side: int) -> tuple[Floats,
     own = group.index.index(index)
     every, path = group.every, comparison.paths[index]
     robot = comparison.model.of_run(index)
-    travel, drive = every.raw_drive(robot)
+    travel, drive = every.raw(robot), every.drive(robot)
     legs = slice(every.legs[own], every.legs[own + 1])
     begin, end = every.begin[legs], every.end[legs]
     angle = drive.left_angle if side < 0 else drive.right_angle

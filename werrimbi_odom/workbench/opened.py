@@ -11,10 +11,10 @@ from pathlib import Path
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison, judged
 from werrimbi_odom.inference.comparison.judged_legs import Prepared
-from werrimbi_odom.inference.diagnosis.holdout import PARTS, Judge, at_home, judge_of
+from werrimbi_odom.inference.diagnosis.holdout import at_home, judge_of
 from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model
 from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
-from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, match
+from werrimbi_odom.inference.fitting.matching import match_finely
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
@@ -129,12 +129,7 @@ def opened(given: Given) -> Opened:
     )
     return Opened(
         given,
-        Drives(judge.train, _fine(judge, robot, told)),
+        Drives(judge.train, together(match_finely(judge.fitted_on, robot, told.leg, told.limits))),
         Drives(judge.holdout, judge.fine),
         tuple(run.name for run in judge.kept_back),
     )
-
-
-def _fine(judge: Judge, robot: Robot, told: Told) -> Together:
-    leg, turn = told.leg / PARTS, QUARTER_TURN / PARTS
-    return together([match(run, robot, leg, told.limits, turn) for run in judge.fitted_on])

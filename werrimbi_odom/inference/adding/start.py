@@ -29,7 +29,7 @@ from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, knobs_of
 from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
-from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, match
+from werrimbi_odom.inference.fitting.matching import match_finely
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUp
 from werrimbi_odom.model.effect import AppliedEffect, Effect
@@ -38,9 +38,6 @@ from werrimbi_odom.model.robot import Robot
 
 SHAPES = 3
 """Shapes of an effect that are fitted in full."""
-
-PARTS = 4
-"""Fits use legs this much shorter than those that are judged: they tell noise from drift."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,8 +80,7 @@ def drives_of(
     sigma: tuple[float | None, float | None],
 ) -> Drives:
     """Cut the drives of a fit by the travel of `robot`."""
-    leg = prepared.leg / PARTS
-    runs = [match(run, robot, leg, limits, QUARTER_TURN / PARTS) for run in prepared.runs]
+    runs = match_finely(prepared.runs, robot, prepared.leg, limits)
     jumped = [np.zeros(run.legs, dtype=np.bool_) for run in runs]
     for group in prepared.groups:
         for index, every, jumps in zip(group.index, group.every.runs, group.jumps, strict=True):

@@ -31,7 +31,7 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, chance, told
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
-from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, match
+from werrimbi_odom.inference.fitting.matching import match_finely, stated
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, look_for_mistakes
 from werrimbi_odom.model.effect import Effect
@@ -54,9 +54,6 @@ FAR_MORE_OF_ITS_OWN = 2.0
 
 ROUNDS = 4
 """Effects that are looked for, one after the other."""
-
-PARTS_OF_A_LEG = 4
-"""Fits use legs this much shorter than those that are judged: they tell noise from drift."""
 
 
 def diagnose(
@@ -96,14 +93,11 @@ def diagnose(
         if finding.effect == IN_DEGREES:
             raise InputError(f"{runs[0].path}: {finding.words}")
     judge = judge_of(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
-    fine = leg / PARTS_OF_A_LEG
-    laid = together(
-        [
-            match(run, set_up.robot, fine, limits, QUARTER_TURN / PARTS_OF_A_LEG)
-            for run in judge.fitted_on
-        ]
+    laid = together(match_finely(judge.fitted_on, set_up.robot, leg, limits))
+    sigma = (
+        sigma_xy or stated(laid.runs, "sigma_xy"),
+        sigma_yaw or stated(laid.runs, "sigma_yaw"),
     )
-    sigma = (sigma_xy or _stated(laid, "sigma_xy"), sigma_yaw or _stated(laid, "sigma_yaw"))
     show(0.1, "calibration")
     fit = first_fit(laid, set_up.robot, kind, sigma)
     rounds: list[Round] = []
@@ -129,11 +123,6 @@ def diagnose(
     if not fit.names and fit.calibrated and beyond is None:
         instead = instead_of_calibration(laid, fit, kind, effects, set_up.robot, sigma)
     return told(set_up, robot, tuple(rounds), fit, beyond, remaining, judge, laid, kind, instead)
-
-
-def _stated(runs: Together, name: str) -> float | None:
-    stated = [getattr(run, name) for run in runs.runs]
-    return None if any(value is None for value in stated) else float(max(stated))
 
 
 def _best(this: Round) -> Fitted | None:
@@ -181,5 +170,4 @@ def _fall(gain: float, data: int) -> float:
 
 
 def _grasp(score: Score, runs: Together, model: Model) -> Grasp:
-    _, drive = runs.raw_drive(model.robot)
-    return grasp_of(score.candidate, drive)
+    return grasp_of(score.candidate, runs.drive(model.robot))

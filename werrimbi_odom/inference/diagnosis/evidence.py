@@ -251,7 +251,7 @@ def pushes_of(
         "travel": motion.along,
         "path": np.abs(motion.along),
         "turn": motion.turn,
-        "duration": runs.raw_drive(robot)[1].duration,
+        "duration": runs.drive(robot).duration,
     }[amount.per]
     if amount.channel == "along":
         moved = _seen(runs, path, view, base, none, none)

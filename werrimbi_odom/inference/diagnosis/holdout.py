@@ -15,24 +15,15 @@ from werrimbi_odom.inference.comparison.legs import statistics
 from werrimbi_odom.inference.diagnosis.search import with_own_values
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import Costs, fit_model, start_point
-from werrimbi_odom.inference.fitting.knobs import (
-    DRIFT_OF_YAW,
-    NUISANCES,
-    YAW_DRIFT,
-    Knob,
-    Model,
-    knobs_of,
-)
+from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model, knobs_of
 from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
-from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, match
+from werrimbi_odom.inference.fitting.matching import match_finely
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
 SHARE = 0.25
 """Of the runs, or of a single one, that is put aside where no held-out runs were given."""
-
-PARTS = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,11 +64,11 @@ class Judge:
         """For a model that has no values of the runs' own."""
         return tuple({} for _ in self.fitted_on)
 
-    def of(self, model: Model, *, learn: bool = False) -> Errors:
+    def of(self, model: Model) -> Errors:
         """Errors of a model; what each held-out run has of its own is fitted to that run alone."""
         there = self.at_home(model)
-        train = _figures(self.train, _without_nuisances(model))
-        holdout = _figures(self.holdout, _without_nuisances(there.model))
+        train = _figures(self.train, model.without_nuisances())
+        holdout = _figures(self.holdout, there.model.without_nuisances())
         return Errors(train[0], holdout[0], train[1], holdout[1], holdout[2])
 
     def at_home(self, model: Model) -> Point:
@@ -111,7 +102,7 @@ def at_home(model: Model, runs: Together, kind: ReferenceKind) -> Point:
     )
     point = start_point(runs, replace(model.robot, effects=effects))
     point, _ = with_own_values(runs, point, kind)
-    knobs: list[Knob] = [DRIFT_OF_YAW] if any(YAW_DRIFT in own for own in point.model.own) else []
+    knobs = point.model.nuisance_knobs
     for applied in effects:
         knobs += [
             knob
@@ -137,9 +128,7 @@ def judge_of(
         prepare(some, robot, kind, leg=leg, limits=limits, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
         for some in (fitted_on, kept_back)
     )
-    fine = together(
-        [match(run, robot, leg / PARTS, limits, QUARTER_TURN / PARTS) for run in kept_back]
-    )
+    fine = together(match_finely(kept_back, robot, leg, limits))
     return Judge(robot, kind, fitted_on, kept_back, train, held, fine)
 
 
@@ -183,14 +172,6 @@ def _part(run: Run, begin: float, end: float) -> Run:
             None if reference.sigma_yaw is None else reference.sigma_yaw[there],
         ),
     )
-
-
-def _without_nuisances(model: Model) -> Model:
-    """What belongs to the reference's gaps is the judge's own business."""
-    own = tuple(
-        {name: value for name, value in mine.items() if name not in NUISANCES} for mine in model.own
-    )
-    return Model(model.robot, own)
 
 
 def _figures(prepared: Prepared, model: Model) -> tuple[float, float, float]:

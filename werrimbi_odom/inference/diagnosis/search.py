@@ -25,9 +25,7 @@ from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
-    DRIFT_OF_YAW,
     MULTIPLIERS,
-    YAW_DRIFT,
     Knob,
     Model,
     changed,
@@ -137,7 +135,7 @@ def instead_of_calibration(
     back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
     model = calibrated.point.model
     point = replace(calibrated.point, model=Model(changed(model.robot, back), model.own))
-    nuisances = [DRIFT_OF_YAW] if any(YAW_DRIFT in own for own in model.own) else []
+    nuisances = model.nuisance_knobs
     held = {applied.name for applied in model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     looked_at = candidates(effects, held, channels, len(runs.runs))

@@ -22,11 +22,11 @@ from werrimbi_odom.inference.fitting.design import Design, Point, stacked
 from werrimbi_odom.inference.fitting.fit import FEW, fit_model
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
-    DRIFT_OF_YAW,
     MULTIPLIERS,
     NUISANCES,
-    YAW_DRIFT,
     Knob,
+    own_of,
+    shared_of,
 )
 from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.together import Together
@@ -99,7 +99,7 @@ def fitted(
     sigma: tuple[float | None, float | None] = (None, None),
 ) -> Fitted:
     """Fit a model, calibration and all, and say which multipliers it needs."""
-    every = (*CALIBRATION, *knobs, *_nuisances(point))
+    every = (*CALIBRATION, *knobs, *point.model.nuisance_knobs)
     result = fit_model(
         runs,
         point,
@@ -110,7 +110,7 @@ def fitted(
         sigma_xy=sigma[0],
         sigma_yaw=sigma[1],
     )
-    design = stacked(runs, result.point, kind, [*CALIBRATION, *_own(every), *_shared(knobs)])
+    design = stacked(runs, result.point, kind, [*CALIBRATION, *own_of(every), *shared_of(knobs)])
     price, scatter = price_of_one(runs), scatter_of(runs, design)
     weighed = sorted(
         (
@@ -177,18 +177,6 @@ def calibration_rises(
         costs[tuple(CALIBRATED[index] for index in chosen)] = -gained
     least = min(costs.values())
     return [(kept, cost - least) for kept, cost in costs.items()]
-
-
-def _nuisances(point: Point) -> list[Knob]:
-    return [DRIFT_OF_YAW] if any(YAW_DRIFT in own for own in point.model.own) else []
-
-
-def _shared(knobs: Sequence[Knob]) -> list[Knob]:
-    return [knob for knob in knobs if not knob.per_run]
-
-
-def _own(knobs: Sequence[Knob]) -> list[Knob]:
-    return [knob for knob in knobs if knob.per_run]
 
 
 def covariance_of(design: Design) -> Floats:

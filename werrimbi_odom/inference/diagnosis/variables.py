@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.prediction import headings_of, path_of, right_handed
+from werrimbi_odom.inference.fitting.prediction import anchors, headings_of, path_of, right_handed
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import view_of
@@ -59,7 +59,7 @@ class Variable:
 def variables_of(runs: Together, model: Model) -> tuple[Variable, ...]:
     """All that was measured, the extra channels of the records among it."""
     robot = model.laid_out(runs.run_of_step)
-    _, drive = runs.raw_drive(robot)
+    drive = runs.drive(robot)
     path = path_of(model, runs)
     view = view_of(robot.effects)
     heading = headings_of(path, runs, view, model.start_yaws)
@@ -154,13 +154,7 @@ def _places(
     known = np.isfinite(start[:, 0]) & np.isfinite(start[:, 1])
     if not known.any() or not known[runs.legs[:-1]].all():
         return None
-    steps = np.arange(heading.size)
-    anchors = np.searchsorted(runs.begin, steps, side="right") - 1
-    anchors = np.clip(anchors, runs.legs[:-1][runs.run_of_step], None)
-    usable = np.maximum.accumulate(
-        np.where(known, np.arange(runs.count), runs.legs[:-1][runs.run_of_leg])
-    )
-    anchor = usable[anchors]
+    anchor = anchors(runs, known)
     first = runs.begin[anchor]
     moved = np.exp(1j * (heading - yaw[:-1])) * (position[:-1] - position[first])
     return start[anchor, 0] + moved.real, start[anchor, 1] + moved.imag

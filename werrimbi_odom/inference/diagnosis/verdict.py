@@ -10,7 +10,7 @@ from typing import Literal
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.holdout import Judge, Sides
+from werrimbi_odom.inference.diagnosis.holdout import Errors, Judge, Sides
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import RIVAL, Fitted
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
@@ -112,13 +112,13 @@ def told(
         verdict, found, rivals = "unknown", (), ()
     else:
         verdict = "ambiguous" if len(rivals) > 1 else "named"
-    start = judge.of(Model(given, judge.nothing_of_own), learn=True)
-    last = judge.of(_plain(final, set_up.robot), learn=True)
+    start = judge.of(Model(given, judge.nothing_of_own))
+    last = judge.of(_plain(final, set_up.robot))
     return Diagnosis(
         verdict,
         found[0] if found else None,
         found,
-        tuple(_ranking(found, set_up, rounds, final, judge)),
+        tuple(_ranking(found, set_up, rounds, final, judge, start)),
         rivals,
         set_up,
         rounds[0].dependences,
@@ -174,49 +174,47 @@ def _rivals(
 
 
 def _ranking(
-    found: tuple[str, ...], set_up: SetUp, rounds: tuple[Round, ...], final: Fitted, judge: Judge
+    found: tuple[str, ...],
+    set_up: SetUp,
+    rounds: tuple[Round, ...],
+    final: Fitted,
+    judge: Judge,
+    start: Errors,
 ) -> list[Ranked]:
-    """All effects, what was found first."""
+    """All effects, what was found first; an effect's figures are those of its first trial."""
     from scipy.stats import chi2
 
     ranked: dict[str, Ranked] = {}
+    mended = judge.of(Model(set_up.robot, judge.nothing_of_own)) if set_up.findings else start
     for finding in set_up.findings:
-        before = judge.of(Model(judge.given, judge.nothing_of_own), learn=True)
-        after = judge.of(Model(set_up.robot, judge.nothing_of_own), learn=True)
-        ranked[finding.effect] = Ranked(
-            finding.effect,
-            0.0,
-            Sides(before.train, after.train),
-            Sides(before.holdout, after.holdout),
-        )
-    base = judge.of(Model(set_up.robot, judge.nothing_of_own), learn=True)
+        ranked[finding.effect] = _worth(finding.effect, 0.0, start, mended)
+    before = mended
     for number, this in enumerate(rounds):
-        before = base if number == 0 else judge.of(this.before.point.model, learn=True)
+        if number > 0:
+            before = judge.of(this.before.point.model)
         for fit in this.tried:
             name = fit.names[-1]
-            after = judge.of(fit.point.model, learn=True)
-            entry = Ranked(
-                name,
-                chance(fit, this.before, this.number),
-                Sides(before.train, after.train),
-                Sides(before.holdout, after.holdout),
-            )
-            if name not in ranked or (name in found and name not in rounds[0].before.names):
-                ranked.setdefault(name, entry)
-    calibrated = judge.of(rounds[0].before.point.model, learn=True)
+            if name not in ranked:
+                p_value = chance(fit, this.before, this.number)
+                ranked[name] = _worth(name, p_value, before, judge.of(fit.point.model))
+    calibrated = judge.of(rounds[0].before.point.model)
     for name in CALIBRATED:
         importance = final.importance.get(name, 0.0)
-        ranked.setdefault(
-            name,
-            Ranked(
-                name,
-                float(min(1.0, chi2.sf(importance, 1) * rounds[0].number)),
-                Sides(base.train, calibrated.train) if importance else None,
-                Sides(base.holdout, calibrated.holdout) if importance else None,
-            ),
-        )
+        p_value = float(min(1.0, chi2.sf(importance, 1) * rounds[0].number))
+        untried = Ranked(name, p_value, None, None)
+        worth = _worth(name, p_value, mended, calibrated) if importance else untried
+        ranked.setdefault(name, worth)
     for score in rounds[0].scores:
         p_value = float(min(1.0, chi2.sf(score.gain, score.degrees) * rounds[0].number))
         ranked.setdefault(score.candidate.name, Ranked(score.candidate.name, p_value, None, None))
     first = [ranked.pop(name) for name in found if name in ranked]
     return [*first, *sorted(ranked.values(), key=lambda item: item.p_value)]
+
+
+def _worth(effect: str, p_value: float, before: Errors, after: Errors) -> Ranked:
+    return Ranked(
+        effect,
+        p_value,
+        Sides(before.train, after.train),
+        Sides(before.holdout, after.holdout),
+    )

@@ -22,6 +22,8 @@ from werrimbi_odom.inference.fitting.knobs import (
     YAW_DRIFT,
     Knob,
     Model,
+    own_of,
+    shared_of,
 )
 from werrimbi_odom.inference.fitting.likelihood import (
     Innovations,
@@ -118,15 +120,15 @@ def fit_model(
         point = _robustly(laid, point, kind, knobs)
     point = replace(point, variances=held_variances(point.variances, sigma_xy, sigma_yaw))
     held = (sigma_xy is not None, sigma_yaw is not None)
-    free, covariance = _shared(knobs), np.zeros((0, 0))
+    free, covariance = shared_of(knobs), np.zeros((0, 0))
     for _ in range(rounds):
         if laid.data >= FEW:
             variances = likeliest(Costs(laid, point, kind), point.variances, held)
             point = replace(point, variances=variances)
         free, covariance = _determined(stacked(laid, point, kind, knobs))
-        mute = {knob.name: given.value(knob) for knob in _shared(knobs) if knob not in free}
+        mute = {knob.name: given.value(knob) for knob in shared_of(knobs) if knob not in free}
         point = replace(point, model=point.model.turned(mute, [{}] * len(laid.runs)))
-        point, moved = _gauss_newton(laid, point, kind, [*free, *_own(knobs)])
+        point, moved = _gauss_newton(laid, point, kind, [*free, *own_of(knobs)])
         if not moved:
             break
     costs = Costs(laid, point, kind)
@@ -134,7 +136,7 @@ def fit_model(
         point,
         tuple(free),
         covariance,
-        tuple(knob for knob in _shared(knobs) if knob not in free),
+        tuple(knob for knob in shared_of(knobs) if knob not in free),
         tuple(knob for knob in free if _at_bound(point.model.value(knob), knob)),
         float(costs(point.variances)[0]),
     )
@@ -142,15 +144,6 @@ def fit_model(
 
 def _laid(runs: Sequence[MatchedRun] | Together) -> Together:
     return runs if isinstance(runs, Together) else together(runs)
-
-
-def _shared(knobs: Sequence[Knob]) -> list[Knob]:
-    return [knob for knob in knobs if not knob.per_run]
-
-
-def _own(knobs: Sequence[Knob]) -> list[Knob]:
-    """Knobs of the runs' own; their nuisances are always among them."""
-    return [knob for knob in knobs if knob.per_run]
 
 
 def _at_bound(value: float, knob: Knob) -> bool:

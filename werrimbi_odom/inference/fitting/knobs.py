@@ -90,6 +90,16 @@ def knobs_of(effect: Effect, shared: Sequence[str] = ()) -> tuple[Knob, ...]:
     )
 
 
+def shared_of(knobs: Sequence[Knob]) -> list[Knob]:
+    """Knobs that all runs have in common."""
+    return [knob for knob in knobs if not knob.per_run]
+
+
+def own_of(knobs: Sequence[Knob]) -> list[Knob]:
+    """Knobs of which each run has its own."""
+    return [knob for knob in knobs if knob.per_run]
+
+
 @dataclass(frozen=True, slots=True)
 class Model:
     """A robot, and what each run has of its own (`NUISANCES`, phases ...)."""
@@ -115,6 +125,19 @@ class Model:
     def drifts(self) -> Floats:
         """Drift of the reference's heading in each run [rad/s]."""
         return np.array([own.get(YAW_DRIFT, 0.0) for own in self.own])
+
+    @property
+    def nuisance_knobs(self) -> list[Knob]:
+        """What is turned because of the references; start headings `design.stacked` adds itself."""
+        return [DRIFT_OF_YAW] if any(YAW_DRIFT in own for own in self.own) else []
+
+    def without_nuisances(self) -> Model:
+        """The model without what belongs to the references alone."""
+        own = tuple(
+            {name: value for name, value in mine.items() if name not in NUISANCES}
+            for mine in self.own
+        )
+        return Model(self.robot, own)
 
     def laid_out(self, run_of_step: NDArray[np.intp]) -> Robot:
         """The robot with the runs' own values as arrays over the steps of all runs, (n,)."""

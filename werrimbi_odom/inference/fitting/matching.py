@@ -10,7 +10,7 @@ done once for a run, and again only where the reference's clock is shifted.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -29,6 +29,9 @@ FEW = 10
 
 MOMENT = 1.0
 """How far outside [s]."""
+
+PARTS_OF_A_LEG = 4
+"""Fits use legs this much shorter than those that are judged: they tell noise from drift."""
 
 QUARTER_TURN = 0.5 * np.pi
 """Turning [rad] that is worth a leg of path, whatever the leg's length."""
@@ -108,25 +111,21 @@ def match(
     """
     counters, usable, reference = _common(run, robot, limits)
     chosen = _leg_ends(robot, counters, reference.time[usable], leg, turn)
-    rows = usable[chosen]
-    measured = Reference(
-        reference.time[rows], reference.x[rows], reference.y[rows], reference.yaw[rows]
-    )
-    time, left, right, ends, channels = _nodes(counters, measured.time)
-    return MatchedRun(
-        run.name,
-        counters,
-        measured,
-        np.diff(chosen).astype(np.float64),
-        _typical(reference.sigma_xy),
-        _typical(reference.sigma_yaw),
-        0.0,
-        time,
-        left,
-        right,
-        ends,
-        channels,
-    )
+    return _matched(run, counters, reference, usable[chosen], np.diff(chosen))
+
+
+def match_finely(
+    runs: Sequence[Run], robot: Robot, leg: float, limits: EncoderLimits | None = None
+) -> list[MatchedRun]:
+    """Runs in the short legs of a fit, `leg` [m] being the length that is judged by."""
+    turn = QUARTER_TURN / PARTS_OF_A_LEG
+    return [match(run, robot, leg / PARTS_OF_A_LEG, limits, turn) for run in runs]
+
+
+def stated(runs: Sequence[MatchedRun], name: str) -> float | None:
+    """The reference's noise (`sigma_xy` or `sigma_yaw`) as the records state it, if all do."""
+    values = [getattr(run, name) for run in runs]
+    return None if any(value is None for value in values) else float(max(values))
 
 
 def every_pose(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> MatchedRun:
@@ -138,24 +137,7 @@ def every_pose(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> M
         As `match`.
     """
     counters, usable, reference = _common(run, robot, limits)
-    measured = Reference(
-        reference.time[usable], reference.x[usable], reference.y[usable], reference.yaw[usable]
-    )
-    time, left, right, ends, channels = _nodes(counters, measured.time)
-    return MatchedRun(
-        run.name,
-        counters,
-        measured,
-        np.ones(usable.size - 1),
-        _typical(reference.sigma_xy),
-        _typical(reference.sigma_yaw),
-        0.0,
-        time,
-        left,
-        right,
-        ends,
-        channels,
-    )
+    return _matched(run, counters, reference, usable, np.ones(usable.size - 1))
 
 
 def cut(
@@ -188,6 +170,34 @@ def delayed(run: MatchedRun, delay: float) -> MatchedRun:
     time, left, right, ends, channels = _nodes(counters, np.maximum.accumulate(seen))
     return replace(
         run, delay=delay, time=time, left=left, right=right, ends=ends, channels=channels
+    )
+
+
+def _matched(
+    run: Run,
+    counters: Counters,
+    reference: Reference,
+    rows: NDArray[np.intp],
+    intervals: NDArray[np.generic],
+) -> MatchedRun:
+    """The run with a leg from each of the reference's chosen rows to the next."""
+    measured = Reference(
+        reference.time[rows], reference.x[rows], reference.y[rows], reference.yaw[rows]
+    )
+    time, left, right, ends, channels = _nodes(counters, measured.time)
+    return MatchedRun(
+        run.name,
+        counters,
+        measured,
+        intervals.astype(np.float64),
+        _typical(reference.sigma_xy),
+        _typical(reference.sigma_yaw),
+        0.0,
+        time,
+        left,
+        right,
+        ends,
+        channels,
     )
 
 

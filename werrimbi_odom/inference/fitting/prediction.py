@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from types import ModuleType
 from typing import Any
 
@@ -107,14 +107,6 @@ def predict_all(model: Model, runs: Together) -> Prediction:
     )
 
 
-def seen(run: MatchedRun, view: View) -> MatchedRun:
-    """The run with the reference's frame made right-handed."""
-    if not view.mirrored:
-        return run
-    measured = run.measured
-    return replace(run, measured=replace(measured, y=-measured.y, yaw=-measured.yaw))
-
-
 def right_handed(poses: Floats, view: View) -> Floats:
     """Measured poses (m, 3) with the reference's frame made right-handed."""
     return poses * np.array([1.0, -1.0, -1.0]) if view.mirrored else poses
@@ -138,13 +130,22 @@ def headings_of(
     for index, given in enumerate(start_yaws):
         if given is not None:
             measured[runs.legs[index]] = given - view.yaw
-    anchors = np.searchsorted(runs.begin, np.arange(path.yaw.size - 1), side="right") - 1
-    anchors = np.clip(anchors, runs.legs[:-1][runs.run_of_step], None)
-    known = np.where(np.isfinite(measured), np.arange(runs.count), runs.legs[:-1][runs.run_of_leg])
-    anchor = np.maximum.accumulate(known)[anchors]
+    anchor = anchors(runs, np.isfinite(measured))
     return np.asarray(
         np.nan_to_num(measured[anchor]) + path.yaw[:-1] - path.yaw[runs.begin[anchor]]
     )
+
+
+def anchors(runs: Together, known: NDArray[np.bool_]) -> NDArray[np.intp]:
+    """The leg that each step's pose is followed from, shape (n,).
+
+    That is the latest leg of the run at whose start something is `known` (m,); with none, its
+    first leg.
+    """
+    first = runs.legs[:-1]
+    leg = np.searchsorted(runs.begin, np.arange(runs.run_of_step.size), side="right") - 1
+    latest = np.where(known, np.arange(runs.count), first[runs.run_of_leg])
+    return np.maximum.accumulate(latest)[np.clip(leg, first[runs.run_of_step], None)]
 
 
 def _path(
@@ -157,7 +158,7 @@ def _path(
     raw = runs.raw(robot)
     if not acts(robot):
         return _from_motion(raw, wheels_to_body(raw, robot.track))
-    _, drive = runs.raw_drive(looked_at or robot)
+    drive = runs.drive(looked_at or robot)
     placed = looks_at_pose(robot)
     if placed:
         path = _from_motion(raw, wheels_to_body(raw, robot.track))
@@ -205,11 +206,7 @@ def places_of(
     """
     start = right_handed(runs.start, view)
     known = np.isfinite(start[:, 0]) & np.isfinite(start[:, 1])
-    first = runs.legs[:-1]
-    anchors = np.searchsorted(runs.begin, np.arange(heading.size), side="right") - 1
-    anchors = np.clip(anchors, first[runs.run_of_step], None)
-    latest = np.where(known, np.arange(runs.count), first[runs.run_of_leg])
-    anchor = np.maximum.accumulate(latest)[anchors]
+    anchor = anchors(runs, known)
     begin = np.minimum(runs.begin[anchor], heading.size - 1)
     frame = heading - path.yaw[:-1]
     moved = np.exp(1j * frame) * (path.position[:-1] - path.position[begin])

@@ -49,9 +49,7 @@ class Together:
     """Of each leg, shape (m,) [s]."""
     inside: NDArray[np.intp]
     """Steps that belong to a leg."""
-    _features: dict[tuple[float, ...], tuple[WheelTravel[Floats], Drive[Floats]]] = field(
-        default_factory=dict
-    )
+    _features: dict[tuple[float, ...], Drive[Floats]] = field(default_factory=dict)
     _delayed: dict[float, Together] = field(default_factory=dict)
 
     @property
@@ -87,14 +85,13 @@ class Together:
         left, right = wiring_of(robot.effects).wheels(left, right)
         return WheelTravel(left * robot.left_tick, right * robot.right_tick)
 
-    def raw_drive(self, robot: Robot) -> tuple[WheelTravel[Floats], Drive[Floats]]:
-        """Travel of all steps before any effect, and what effects may look at."""
+    def drive(self, robot: Robot) -> Drive[Floats]:
+        """What effects may look at, over the steps of all runs."""
         wiring = wiring_of(robot.effects)
         key = (*wiring, robot.left_tick, robot.right_tick, robot.track)
         known = self._features.get(key)
         if known is None:
-            parts = [raw_drive(robot, run, wiring) for run in self.runs]
-            known = _joined([travel for travel, _ in parts]), _joined([drive for _, drive in parts])
+            known = _joined([_drive_of(run, robot, wiring) for run in self.runs])
             _remember(self._features, key, known)
         return known
 
@@ -125,14 +122,11 @@ def together(runs: Sequence[MatchedRun]) -> Together:
     )
 
 
-def raw_drive(
-    robot: Robot, run: MatchedRun, wiring: Wiring
-) -> tuple[WheelTravel[Floats], Drive[Floats]]:
-    """Travel of one run's wheels before any effect, and what effects may look at."""
+def _drive_of(run: MatchedRun, robot: Robot, wiring: Wiring) -> Drive[Floats]:
     left, right = wiring.wheels(run.left, run.right)
     first_counts = wiring.wheels(run.counters.first_left, run.counters.first_right)
     raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
-    return raw, features(robot, np.diff(run.time), raw, first_counts, run.channels)
+    return features(robot, np.diff(run.time), raw, first_counts, run.channels)
 
 
 def _starts(sizes: Sequence[int]) -> NDArray[np.intp]:

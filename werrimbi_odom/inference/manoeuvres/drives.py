@@ -129,7 +129,7 @@ MANOEUVRES: tuple[Ideal, ...] = (
 
 def pace_of(runs: Together, robot: Robot) -> Pace:
     """What the robot did, so what it can do."""
-    travel, drive = runs.raw_drive(robot)
+    travel, drive = runs.raw(robot), runs.drive(robot)
     duration = np.maximum(drive.duration, 1e-6)
     rims = np.concatenate([np.abs(travel.left), np.abs(travel.right)]) / np.tile(duration, 2)
     speed = float(np.quantile(rims[rims > 0.0], 0.95)) if (rims > 0.0).any() else 0.3

@@ -17,7 +17,7 @@ import numpy as np
 
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate, orthonormal
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
-from werrimbi_odom.inference.fitting.knobs import DRIFT_OF_YAW, YAW_DRIFT, Knob, Model
+from werrimbi_odom.inference.fitting.knobs import Knob, Model
 from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
 from werrimbi_odom.inference.fitting.together import Together
@@ -42,8 +42,8 @@ class Drives:
 
     def nuisances(self, knobs: Sequence[Knob]) -> Floats:
         """Columns of what each run has of its own, and of other knobs; (3 m, q)."""
-        own = [DRIFT_OF_YAW] if any(YAW_DRIFT in mine for mine in self.point.model.own) else []
-        return stacked(self.runs, self.point, self.kind, [*knobs, *own]).flat()[1]
+        every = [*knobs, *self.point.model.nuisance_knobs]
+        return stacked(self.runs, self.point, self.kind, every).flat()[1]
 
     def marks(self, candidate: Candidate) -> Floats:
         """Derivatives of the legs along a candidate's coordinates, (m, 3, k)."""
