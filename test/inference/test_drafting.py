@@ -37,22 +37,21 @@ TIME = Seen(
 )
 
 
-SHIFTS = [
-    amount
-    for amount in AMOUNTS
-    if amount.channel == "sideways" or amount == Amount("along", "turn")
-]
-"""What a step, which is one arc, cannot hold unevenly: these go with steady variables alone."""
+PAYLOAD = Seen(
+    "payload_kg",
+    "",
+    lambda side: 'drive.channels["payload_kg"]',
+    middle=3.0,
+    low=1.5,
+    high=4.5,
+    knots=(1.5, 3.0, 4.5),
+    channel="payload_kg",
+)
 
 
 @pytest.mark.parametrize(
     ("seen", "amount"),
-    [
-        (seen, amount)
-        for seen in (SPEED, HEADING, TIME)
-        for amount in AMOUNTS
-        if seen is SPEED or amount not in SHIFTS
-    ],
+    [(seen, amount) for seen in (SPEED, HEADING, TIME, PAYLOAD) for amount in AMOUNTS],
     ids=lambda item: item.name if isinstance(item, Seen) else f"{item.channel}-{item.per}",
 )
 def test_every_form_keeps_the_laws(seen: Seen, amount: Amount) -> None:

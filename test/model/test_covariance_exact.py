@@ -9,6 +9,9 @@ from itertools import product
 
 import numpy as np
 import pytest
+
+pytest.importorskip("mpmath")
+
 from mpmath import mp, mpf
 
 from test.model.exact_covariance import by_model_page, by_quadrature, turned, worst_error

@@ -119,8 +119,9 @@ def _apart_when_split(
 ) -> list[Floats]:
     """Distances between each step and its parts driven one after the other, shape (n,).
 
-    A step is one arc. Where the effect bends it unevenly, the arc cannot follow; what that may
-    cost, at most the bend times the way, is forgiven.
+    A step is one arc, driven evenly. Where the effect bends or shifts it unevenly, the arc cannot
+    follow; what that may cost is forgiven: the bend times the way, and the uneven part of the
+    shift times the turn.
     """
     assert isinstance(whole, BodyMotion)
     heading, x, y = (np.zeros_like(whole.turn) for _ in range(3))
@@ -130,7 +131,10 @@ def _apart_when_split(
         x, y, heading = x + dx, y + dy, heading + turn[:, i]
     dx, dy = displacement(whole, np.zeros_like(whole.turn))
     bent = abs(whole.turn - rehearsal.motion.turn)
-    forgiven = bent * (abs(whole.along) + abs(whole.sideways))
+    uneven = sum(
+        np.abs(part - part.sum(1, keepdims=True) * _PARTS).sum(1) for part in (along, sideways)
+    )
+    forgiven = bent * (abs(whole.along) + abs(whole.sideways)) + uneven * abs(whole.turn)
     return [np.maximum(np.hypot(x - dx, y - dy) - forgiven, 0.0), abs(heading - whole.turn)]
 
 
