@@ -11,7 +11,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from werrimbi_odom.model.drive import ROLLBACK, Drive, DriveMemory, RawStep, Span, drive_of_run
+from werrimbi_odom.model.drive import ROLLBACK, Drive, RawStep, Span
+from werrimbi_odom.model.drive_memory import DriveMemory
+from werrimbi_odom.model.drive_of_run import drive_of_run
 from werrimbi_odom.model.pose import Floats
 
 TRACK, RADIUS = 0.35, 0.05

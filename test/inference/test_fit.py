@@ -19,7 +19,8 @@ from werrimbi_odom.inference.comparison.legs import (
     statistics,
 )
 from werrimbi_odom.inference.diagnosis.evidence import dependences
-from werrimbi_odom.inference.fitting.fit import Costs, ModelFit, fit_model, start_point
+from werrimbi_odom.inference.fitting.costs import Costs
+from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
 from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.matching import match

@@ -11,7 +11,7 @@ import pytest
 from conftest import AMPLITUDE, PLAIN, eccentric_run
 
 from werrimbi_odom.effects.library import LIBRARY
-from werrimbi_odom.inference.adding.adding import Added
+from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Amount

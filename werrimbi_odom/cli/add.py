@@ -10,11 +10,12 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.recordings import Recordings, add_recording_arguments, read_recordings
+from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.inference.adding.adding import Added
+    from werrimbi_odom.fleet.asked import Recordings
+    from werrimbi_odom.inference.adding.added import Added
 
 HELP = "add a physical effect to the model: fit it, judge it on held-out drives, write it"
 

@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.model.effect import Parameter, View, reference_effect
+from werrimbi_odom.model.effect import Parameter, reference_effect
+from werrimbi_odom.model.view import View
 
 
 @reference_effect(

@@ -4,7 +4,8 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.model.effect import Wiring, wiring_mistake
+from werrimbi_odom.model.effect import wiring_mistake
+from werrimbi_odom.model.wiring import Wiring
 
 
 @wiring_mistake(twins=("reference_mirrored",))

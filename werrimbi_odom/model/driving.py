@@ -12,7 +12,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.model.drive import Drive, DriveMemory, RawStep, Span, drive_of_run
+from werrimbi_odom.model.drive import Drive, RawStep, Span
+from werrimbi_odom.model.drive_memory import DriveMemory
+from werrimbi_odom.model.drive_of_run import drive_of_run
 from werrimbi_odom.model.effect import after_body_effects, after_wheel_effects
 from werrimbi_odom.model.motion import (
     BodyMotion,

@@ -19,10 +19,12 @@ import inspect
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
+from werrimbi_odom.model.view import View
+from werrimbi_odom.model.wiring import Wiring
 
 Stage = Literal["wiring", "wheels", "body", "reference"]
 
@@ -62,44 +64,6 @@ class Parameter:
     def scale(self) -> float:
         """Distance from null that real robots show; of a shape, its typical size."""
         return abs(self.typical) if self.tries else abs(self.typical - self.null)
-
-
-class View(NamedTuple):
-    """How the reference looks at the robot."""
-
-    ahead: float = 0.0
-    """The measured point lies this far ahead of the axle's midpoint [m]."""
-    left: float = 0.0
-    """... and this far to its left [m]."""
-    yaw: float = 0.0
-    """The reference's forward axis is turned by this against the robot's [rad]."""
-    delay: float = 0.0
-    """What the reference stamps t, it saw at t - delay [s]."""
-    heading_delay: float = 0.0
-    """Its heading is later than its position by this [s]."""
-    mirrored: bool = False
-    """Its frame is left-handed."""
-
-
-class Wiring(NamedTuple):
-    """Which counter belongs to which wheel, and which way it counts."""
-
-    swapped: bool = False
-    """What is recorded as left is the right wheel."""
-    left_sign: float = 1.0
-    """With which the left wheel's counter is read, after the exchange."""
-    right_sign: float = 1.0
-    """The same for the right wheel."""
-
-    def wheels(self, left: Any, right: Any) -> tuple[Any, Any]:
-        """Counts of the true left and right wheel from what is recorded as left and right."""
-        if self.swapped:
-            left, right = right, left
-        # No product with 1.0: it would round counters beyond 2^53.
-        return (
-            left if self.left_sign > 0.0 else -left,
-            right if self.right_sign > 0.0 else -right,
-        )
 
 
 Apply = Callable[..., Any]

@@ -8,7 +8,7 @@ import math
 import textwrap
 from typing import Any
 
-from werrimbi_odom.inference.adding.adding import Added, Side
+from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.values import FittedParameter
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS

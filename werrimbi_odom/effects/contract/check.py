@@ -12,7 +12,9 @@ from werrimbi_odom.effects.contract.demands import corners, demand, told
 from werrimbi_odom.effects.contract.laws import LAWS
 from werrimbi_odom.effects.contract.rehearsal import Rehearsal
 from werrimbi_odom.effects.page import SECTIONS, page_of
-from werrimbi_odom.model.effect import Effect, View, Wiring
+from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.view import View
+from werrimbi_odom.model.wiring import Wiring
 
 _NEEDED = ("Formula", "Signature", "Ruler")
 _UNIT = re.compile(r"(1|[a-zA-Z%]+(\^-?\d+(\.\d+)?)?)([*/][a-zA-Z]+(\^-?\d+(\.\d+)?)?)*")

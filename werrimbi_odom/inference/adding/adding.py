@@ -10,17 +10,18 @@ the user's own will puts it in.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.adding.added import Added, Side
+from werrimbi_odom.inference.adding.objection import objection
 from werrimbi_odom.inference.adding.start import (
     Drives,
     Start,
     drives_of,
-    is_of_set_up,
     knobs_held,
     mistake_put_in,
     start_of_held,
@@ -28,7 +29,6 @@ from werrimbi_odom.inference.adding.start import (
     with_set_up,
 )
 from werrimbi_odom.inference.adding.values import (
-    FittedParameter,
     parameters_of,
     to_write,
     weakest,
@@ -36,13 +36,12 @@ from werrimbi_odom.inference.adding.values import (
 )
 from werrimbi_odom.inference.calibration.any_driving import MISFIT_P, STRANGE_NOISE
 from werrimbi_odom.inference.comparison.judged_legs import Legs, Prepared, judged_legs
-from werrimbi_odom.inference.comparison.legs import LegStatistics, statistics
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.diagnosis import chance
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.diagnosis.holdout import Judge, Sides, at_home, judge_of
+from werrimbi_odom.inference.diagnosis.holdout import Judge, at_home, judge_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.fitting.fit import Costs
+from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     MULTIPLIERS,
@@ -53,77 +52,10 @@ from werrimbi_odom.inference.fitting.knobs import (
 from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
 from werrimbi_odom.inference.fitting.together import together
-from werrimbi_odom.inference.set_up.mistakes import SetUp, look_for_mistakes
+from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
-
-BY_CHANCE = 0.01
-"""In as many cases an effect that does nothing would pass, but for the held-out drives."""
-
-ROUNDING = 1e-4
-"""Share by which the held-out error must fall to have fallen."""
-
-
-@dataclass(frozen=True)
-class Side:
-    """One set of drives, judged with three models."""
-
-    before: Legs
-    """With the robot as given."""
-    calibrated: Legs
-    """With everything fitted but the effect."""
-    after: Legs
-
-    def figures(self, which: str) -> LegStatistics:
-        """Over legs on which the reference did not jump."""
-        legs: Legs = getattr(self, which)
-        return statistics(legs.errors.chosen(~legs.outlier))
-
-    @property
-    def sides(self) -> Sides:
-        """Position error before and after [m]."""
-        before, after = self.figures("before"), self.figures("after")
-        return Sides(before.rmse_position_m, after.rmse_position_m)
-
-    @property
-    def floor(self) -> float:
-        """Position error that the noise of the final model promises [m]."""
-        errors = self.after.errors.chosen(~self.after.outlier)
-        measured = np.isfinite(errors.error[:, 0])
-        promised = errors.covariance[measured, 0, 0] + errors.covariance[measured, 1, 1]
-        return float(np.sqrt(np.mean(promised))) if promised.size else float("nan")
-
-
-@dataclass(frozen=True)
-class Added:
-    """A model with one more effect, and what speaks for it."""
-
-    effect: Effect
-    parameters: dict[str, FittedParameter]
-    also: tuple[str, ...]
-    """Set-up mistakes that were put right with it."""
-    given: Robot
-    robot: Robot
-    """To be written."""
-    multiplier_stds: dict[str, float]
-    train: Side
-    holdout: Side
-    set_aside: tuple[str, ...]
-    """Names of the runs that were put aside for judging; empty where some were given for it."""
-    written_from_all: bool
-    """Whether the written values were fitted on all runs, those put aside too."""
-    noises: dict[str, NoiseEstimate]
-    noise_written: bool
-    remaining: tuple[Dependence, ...]
-    """What the errors still depend on beyond chance."""
-    set_up: SetUp
-    per_run: tuple[str, ...]
-    """Parameters that each run has anew; the file leaves them out."""
-    p_value: float
-    """Of as much of a better fit by chance, against calibration alone."""
-    objection: str | None
-    """Why it should not be added; None: nothing speaks against it."""
 
 
 def add_effect(
@@ -177,12 +109,7 @@ def add_effect(
     model = fit.point.model
     per_run = tuple(sorted(set(model.own[0]) - set(NUISANCES))) if model.own else ()
     p_value = 0.0 if effect.name in CALIBRATED or also else chance(fit, base, 1)
-    objection = _objection(effect, parameters, kept, held, set_up, also)
-    if objection is None and p_value > BY_CHANCE and not held:
-        objection = (
-            f"the drives do not show {effect.name}: chance alone would make the fit as much better "
-            f"in {100.0 * p_value:.2g} % of cases"
-        )
+    against = objection(effect, parameters, kept, p_value, held, set_up, also)
     written = fit
     if not holdout:
         show(0.9, "all runs")
@@ -210,7 +137,7 @@ def add_effect(
         set_up,
         per_run,
         p_value,
-        objection,
+        against,
     )
 
 
@@ -322,10 +249,7 @@ def _noisy(fit: Fitted) -> Model:
 
 
 def _legs(prepared: Prepared, model: Model) -> Legs:
-    own = tuple(
-        {name: value for name, value in mine.items() if name not in NUISANCES} for mine in model.own
-    )
-    return judged_legs(prepared, Model(model.robot, own), prepared.leg)
+    return judged_legs(prepared, model.without_nuisances(), prepared.leg)
 
 
 def _noise(
@@ -370,50 +294,3 @@ def _on_all(
     own = (*fit.point.model.own, *home.model.own)
     point = replace(fit.point, model=Model(fit.point.model.robot, own), excluded=jumped)
     return every.fit(point, fit.names, fit.knobs, given)
-
-
-def _objection(
-    effect: Effect,
-    parameters: dict[str, FittedParameter],
-    kept: Side,
-    held: bool,
-    set_up: SetUp,
-    also: tuple[str, ...],
-) -> str | None:
-    """Why the effect should not be added, in a line."""
-    name = effect.name
-    before, after = kept.sides.before, kept.sides.after
-    figures = f"{1e3 * before:.3g} mm before, {1e3 * after:.3g} mm after"
-    hint = ""
-    if set_up.findings and not is_of_set_up(effect, set_up):
-        hint = f"; look at {set_up.findings[0].effect} first ({set_up.findings[0].words})"
-    for key, item in parameters.items():
-        if item.remark == "bound":
-            return (
-                f"{name} would need {key} = {item.value:g}{_in(item)}, the limit of what is "
-                f"physically possible; so it is not that effect{hint}"
-            )
-    if not np.isfinite(after):
-        return f"{name} cannot be judged: the held-out drives have no leg with measured positions"
-    if not after < before * (1.0 - ROUNDING):
-        return f"{name} does not lower the error of the held-out drives ({figures}){hint}"
-    if name in CALIBRATED or not parameters:
-        shown = [item for item in parameters.values() if item.std is not None]
-        if shown and not shown[0].significant:
-            value = f"{shown[0].value:.5g} ± {shown[0].std:.1g}"
-            return (
-                f"{name} is as the robot file says ({value}): what lowers the error of the "
-                f"held-out drives ({figures}) is the rest of the calibration{hint}"
-            )
-        return None
-    alone = kept.figures("calibrated").rmse_position_m
-    if not held and not also and not after < alone * (1.0 - ROUNDING):
-        return (
-            f"{name} does not lower the error of the held-out drives: calibration alone leaves "
-            f"{1e3 * alone:.3g} mm, with the effect it is {1e3 * after:.3g} mm{hint}"
-        )
-    return None
-
-
-def _in(item: FittedParameter) -> str:
-    return f" {item.declared.unit}" if item.declared.unit else ""

@@ -29,8 +29,9 @@ from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.prediction import DrivenPath, path_of, predict_all
 from werrimbi_odom.inference.fitting.together import Together
-from werrimbi_odom.model.effect import View, view_of
+from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.view import View
 
 BATCH = 2_000_000
 """Numbers of legs times columns that go through the filter at once."""

@@ -13,8 +13,9 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.judged_legs import Prepared, judged_legs, prepare
 from werrimbi_odom.inference.comparison.legs import statistics
 from werrimbi_odom.inference.diagnosis.search import with_own_values
+from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.design import Point
-from werrimbi_odom.inference.fitting.fit import Costs, fit_model, start_point
+from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model, knobs_of
 from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.matching import match_finely

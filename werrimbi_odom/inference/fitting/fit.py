@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
@@ -26,15 +27,13 @@ from werrimbi_odom.inference.fitting.knobs import (
     shared_of,
 )
 from werrimbi_odom.inference.fitting.likelihood import (
-    Innovations,
     ReferenceKind,
     Variances,
-    innovations,
 )
 from werrimbi_odom.inference.fitting.matching import MatchedRun
 from werrimbi_odom.inference.fitting.noise import held_variances, likeliest
-from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict, predict_all
-from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.fitting.prediction import legs_shown, predict, predict_all
+from werrimbi_odom.inference.fitting.together import Together, laid_out
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -76,7 +75,7 @@ def start_point(
     sigma_yaw: float | None = None,
 ) -> Point:
     """Where a fit begins: the robot as given, no leg excluded, headings from the first legs."""
-    laid = _laid(runs)
+    laid = laid_out(runs)
     guess = (
         max(robot.left_wheel_noise, 1e-5),
         max(robot.right_wheel_noise, 1e-5),
@@ -114,7 +113,7 @@ def fit_model(
         Find the legs on which the reference jumped. Once for a set of runs: what is compared with
         this fit later must leave the same legs out.
     """
-    laid = _laid(runs)
+    laid = laid_out(runs)
     given = point.model
     if find_jumps:
         point = _robustly(laid, point, kind, knobs)
@@ -140,10 +139,6 @@ def fit_model(
         tuple(knob for knob in free if _at_bound(point.model.value(knob), knob)),
         float(costs(point.variances)[0]),
     )
-
-
-def _laid(runs: Sequence[MatchedRun] | Together) -> Together:
-    return runs if isinstance(runs, Together) else together(runs)
 
 
 def _at_bound(value: float, knob: Knob) -> bool:
@@ -215,37 +210,6 @@ def _gauss_newton(
 def _small(design: Design, step: Floats) -> bool:
     scales = np.array([knob.scale for knob, _ in design.columns])
     return bool(np.all(np.abs(step) < 1e-4 * scales))
-
-
-@dataclass(frozen=True, slots=True)
-class Costs:
-    """Minus two log-likelihood of sets of variances, the model being given."""
-
-    runs: Sequence[MatchedRun] | Together
-    point: Point
-    kind: ReferenceKind
-
-    def prediction(self) -> Prediction:
-        """Of all runs."""
-        return predict_all(self.point.model, _laid(self.runs))
-
-    def innovations(self, sets: Variances, prediction: Prediction) -> Innovations:
-        """For each set."""
-        model = self.point.model
-        return innovations(
-            model.robot,
-            _laid(self.runs),
-            prediction,
-            sets,
-            self.kind,
-            excluded=self.point.skip,
-            start_yaws=model.start_yaws,
-        )
-
-    def __call__(self, sets: Variances, prediction: Prediction | None = None) -> Floats:
-        """Cost of each set."""
-        found = self.innovations(sets, prediction or self.prediction())
-        return found.minus_two_log_likelihood()
 
 
 def solved(design: Design, weight: Floats) -> Floats:

@@ -6,17 +6,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.prediction import Prediction
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-
-if TYPE_CHECKING:
-    from werrimbi_odom.inference.fitting.fit import Costs
 
 NOISES = ("left_wheel_noise", "right_wheel_noise", "reference_sigma_xy", "reference_sigma_yaw")
 

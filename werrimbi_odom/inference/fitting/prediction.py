@@ -22,10 +22,11 @@ from werrimbi_odom.model.covariance import (
     piece_covariance,
 )
 from werrimbi_odom.model.driving import acts, after_effects, looks_at_pose
-from werrimbi_odom.model.effect import View, view_of
+from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.view import View
 
 
 @dataclass(frozen=True, slots=True)

@@ -18,10 +18,11 @@ from numpy.typing import NDArray
 from werrimbi_odom.inference.fitting.matching import MatchedRun, delayed
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.driving import features
-from werrimbi_odom.model.effect import Wiring, wiring_of
+from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.wiring import Wiring
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -120,6 +121,11 @@ def together(runs: Sequence[MatchedRun]) -> Together:
             ]
         ),
     )
+
+
+def laid_out(runs: Sequence[MatchedRun] | Together) -> Together:
+    """Runs laid end to end, if they are not yet."""
+    return runs if isinstance(runs, Together) else together(runs)
 
 
 def _drive_of(run: MatchedRun, robot: Robot, wiring: Wiring) -> Drive[Floats]:

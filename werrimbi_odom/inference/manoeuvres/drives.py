@@ -17,10 +17,11 @@ import numpy as np
 
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.fitting.together import Together
-from werrimbi_odom.model.effect import Wiring, view_of, wiring_of
+from werrimbi_odom.model.effect import view_of, wiring_of
 from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.wiring import Wiring
 
 REST = 0.6
 """Standstill before and after [s]."""

@@ -1,0 +1,77 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Why an effect should not be added."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from werrimbi_odom.inference.adding.added import Side
+from werrimbi_odom.inference.adding.start import is_of_set_up
+from werrimbi_odom.inference.adding.values import FittedParameter
+from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
+from werrimbi_odom.inference.set_up.mistakes import SetUp
+from werrimbi_odom.model.effect import Effect
+
+BY_CHANCE = 0.01
+"""In as many cases an effect that does nothing would pass, but for the held-out drives."""
+
+ROUNDING = 1e-4
+"""Share by which the held-out error must fall to have fallen."""
+
+
+def objection(
+    effect: Effect,
+    parameters: dict[str, FittedParameter],
+    kept: Side,
+    p_value: float,
+    held: bool,
+    set_up: SetUp,
+    also: tuple[str, ...],
+) -> str | None:
+    """Why the effect should not be added, in a line; None where nothing speaks against it."""
+    name = effect.name
+    before, after = kept.sides.before, kept.sides.after
+    figures = f"{1e3 * before:.3g} mm before, {1e3 * after:.3g} mm after"
+    hint = ""
+    if set_up.findings and not is_of_set_up(effect, set_up):
+        hint = f"; look at {set_up.findings[0].effect} first ({set_up.findings[0].words})"
+    for key, item in parameters.items():
+        if item.remark == "bound":
+            return (
+                f"{name} would need {key} = {item.value:g}{_in(item)}, the limit of what is "
+                f"physically possible; so it is not that effect{hint}"
+            )
+    if not np.isfinite(after):
+        return f"{name} cannot be judged: the held-out drives have no leg with measured positions"
+    if not after < before * (1.0 - ROUNDING):
+        return f"{name} does not lower the error of the held-out drives ({figures}){hint}"
+    if name in CALIBRATED or not parameters:
+        shown = [item for item in parameters.values() if item.std is not None]
+        if shown and not shown[0].significant:
+            value = f"{shown[0].value:.5g} ± {shown[0].std:.1g}"
+            return (
+                f"{name} is as the robot file says ({value}): what lowers the error of the "
+                f"held-out drives ({figures}) is the rest of the calibration{hint}"
+            )
+        return _by_chance(name, p_value, held)
+    alone = kept.figures("calibrated").rmse_position_m
+    if not held and not also and not after < alone * (1.0 - ROUNDING):
+        return (
+            f"{name} does not lower the error of the held-out drives: calibration alone leaves "
+            f"{1e3 * alone:.3g} mm, with the effect it is {1e3 * after:.3g} mm{hint}"
+        )
+    return _by_chance(name, p_value, held)
+
+
+def _by_chance(name: str, p_value: float, held: bool) -> str | None:
+    if held or p_value <= BY_CHANCE:
+        return None
+    return (
+        f"the drives do not show {name}: chance alone would make the fit as much better "
+        f"in {100.0 * p_value:.2g} % of cases"
+    )
+
+
+def _in(item: FittedParameter) -> str:
+    return f" {item.declared.unit}" if item.declared.unit else ""

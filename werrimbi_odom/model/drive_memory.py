@@ -1,0 +1,131 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The memory behind `Drive` while the robot drives: constant in size, a step at a time."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from werrimbi_odom.model.drive import ROLLBACK, Drive, RawStep, Span
+
+
+class _Means(NamedTuple):
+    """Speeds over a step [m/s, rad/s, m/s, m/s]."""
+
+    speed: float
+    yaw_rate: float
+    left: float
+    right: float
+
+
+@dataclass(slots=True)
+class _Shuttle:
+    """Travel since the last reversal of something that goes to and fro."""
+
+    flicker: float
+    direction: float = 0.0
+    reversals: int = 0
+    _position: float = 0.0
+    _turned_at: float = 0.0
+    _farthest: float = 0.0
+
+    @property
+    def since(self) -> float:
+        """Travel since the last reversal [m]."""
+        return abs(self._farthest - self._turned_at)
+
+    def step(self, travel: float) -> Span[float]:
+        """Take one step; travel since reversal at its start and end."""
+        self._position += travel
+        start = self.since
+        ahead = (self._position - self._farthest) * (self.direction or 1.0)
+        if self.direction == 0.0:
+            if abs(self._position) > self.flicker:
+                self.direction = 1.0 if self._position > 0.0 else -1.0
+                self._farthest = self._position
+        elif ahead > 0.0:
+            self._farthest = self._position
+        elif -ahead > self.flicker:
+            self._turned_at, self._farthest = self._farthest, self._position
+            self.direction = -self.direction
+            self.reversals += 1
+            start = 0.0
+        return Span(start, self.since)
+
+
+@dataclass(slots=True)
+class DriveMemory:
+    """The causal memory behind `Drive`: constant in size, a step at a time.
+
+    Parameters
+    ----------
+    flicker : float
+        A wheel that goes back by less (or by less than `ROLLBACK`) has not reversed [m].
+    left_angle, right_angle : float
+        Of the wheels at the first message, from the counters' zeros [rad].
+    """
+
+    flicker: float
+    left_angle: float = 0.0
+    right_angle: float = 0.0
+    _time: float = 0.0
+    _distance: float = 0.0
+    _means: _Means | None = None
+    _left: _Shuttle = field(init=False)
+    _right: _Shuttle = field(init=False)
+    _middle: _Shuttle = field(init=False)
+
+    def __post_init__(self) -> None:
+        least = max(self.flicker, ROLLBACK)
+        self._left, self._right, self._middle = _Shuttle(least), _Shuttle(least), _Shuttle(least)
+
+    def step(
+        self,
+        raw: RawStep,
+        heading: float,
+        channels: Mapping[str, Span[float]] | None = None,
+    ) -> Drive[float]:
+        """Take one step and tell an effect all that it may know of it."""
+        time = Span(self._time, self._time + raw.duration)
+        distance = Span(self._distance, self._distance + abs(raw.along))
+        means = _Means(
+            raw.along / raw.duration,
+            raw.turn / raw.duration,
+            raw.left / raw.duration,
+            raw.right / raw.duration,
+        )
+        speed, yaw_rate, left_speed, right_speed = map(Span, self._means or means, means)
+        left_angle = Span(self.left_angle, self.left_angle + raw.left_angle)
+        right_angle = Span(self.right_angle, self.right_angle + raw.right_angle)
+        left, right = self._left.step(raw.left), self._right.step(raw.right)
+        middle = self._middle.step(raw.along)
+        self._time, self._distance = time.end, distance.end
+        self._means = means
+        self.left_angle, self.right_angle = left_angle.end, right_angle.end
+        return Drive(
+            raw.duration,
+            time,
+            speed,
+            yaw_rate,
+            left_speed,
+            right_speed,
+            left_angle,
+            right_angle,
+            distance,
+            left,
+            right,
+            middle,
+            self._left.direction,
+            self._right.direction,
+            self._middle.direction,
+            float(self._middle.reversals),
+            float(self._left.reversals),
+            float(self._right.reversals),
+            Span(heading, heading + raw.turn),
+            Span(math.nan, math.nan),
+            Span(math.nan, math.nan),
+            channels or {},
+        )

@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What effects may look at in all steps of a recorded run at once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import NamedTuple
+
+import numpy as np
+
+from werrimbi_odom.model.drive import ROLLBACK, Drive, Span
+from werrimbi_odom.model.pose import Floats
+
+
+def drive_of_run(
+    duration: Floats,
+    left: Floats,
+    right: Floats,
+    along: Floats,
+    turn: Floats,
+    left_angle: Floats,
+    right_angle: Floats,
+    *,
+    flicker: float,
+    first_angles: tuple[float, float] = (0.0, 0.0),
+    channels: Mapping[str, Span[Floats]] | None = None,
+) -> Drive[Floats]:
+    """All steps of a run at once; the same as feeding them to a `drive_memory.DriveMemory`.
+
+    Arrays have shape (n,), as in `RawStep`; the heading starts at zero (`Drive.with_heading`).
+    """
+    least = max(flicker, ROLLBACK)
+    middle = _shuttled(along, least)
+    left_side, right_side = _shuttled(left, least), _shuttled(right, least)
+    return Drive(
+        duration,
+        _grown(0.0, duration),
+        _lagged(along / duration),
+        _lagged(turn / duration),
+        _lagged(left / duration),
+        _lagged(right / duration),
+        _grown(first_angles[0], left_angle),
+        _grown(first_angles[1], right_angle),
+        _grown(0.0, np.abs(along)),
+        left_side.since,
+        right_side.since,
+        middle.since,
+        left_side.direction,
+        right_side.direction,
+        middle.direction,
+        middle.reversals,
+        left_side.reversals,
+        right_side.reversals,
+        _grown(0.0, turn),
+        _nowhere(turn),
+        _nowhere(turn),
+        channels or {},
+    )
+
+
+class _Shuttled(NamedTuple):
+    since: Span[Floats]
+    direction: Floats
+    reversals: Floats
+
+
+def _grown(first: float, steps: Floats) -> Span[Floats]:
+    """Running sum before and after each step."""
+    sums = np.cumsum(np.concatenate([[first], steps]))
+    return Span(sums[:-1], sums[1:])
+
+
+def _nowhere(steps: Floats) -> Span[Floats]:
+    """A place that nobody has told yet."""
+    return Span(np.full_like(steps, np.nan), np.full_like(steps, np.nan))
+
+
+def _lagged(means: Floats) -> Span[Floats]:
+    """Mean of the step before, and of the step; the first step has none before it."""
+    return Span(np.concatenate([means[:1], means[:-1]]), means)
+
+
+def _shuttled(travel: Floats, flicker: float) -> _Shuttled:
+    """Travel since reversal over a whole run, as `drive_memory` has it step by step.
+
+    Only steps that set a new extreme or turn back matter; between reversals the farthest point is
+    a running extreme, so the loop is over reversals, not over steps.
+    """
+    position = np.cumsum(travel)
+    count = position.size
+    since_start, since_end = np.zeros(count), np.zeros(count)
+    direction, reversals = np.zeros(count), np.zeros(count)
+    moved = np.flatnonzero(np.abs(position) > flicker)
+    if moved.size == 0:
+        return _Shuttled(Span(since_start, since_end), direction, reversals)
+    begin, turned_at = int(moved[0]), 0.0
+    sign, number = (1.0 if position[begin] > 0.0 else -1.0), 0
+    while begin < count:
+        end, farthest = _until_reversal(position, begin, sign, flicker)
+        leg = slice(begin, end)
+        since_end[leg] = np.abs(farthest - turned_at)
+        since_start[leg] = np.concatenate([[0.0], since_end[begin : end - 1]])
+        direction[leg], reversals[leg] = sign, number
+        if end < count:
+            turned_at, sign, number = float(farthest[-1]), -sign, number + 1
+        begin = end
+    return _Shuttled(Span(since_start, since_end), direction, reversals)
+
+
+def _until_reversal(
+    position: Floats, begin: int, sign: float, flicker: float
+) -> tuple[int, Floats]:
+    """First step after `begin` that has turned back, and the farthest point until then."""
+    window = 256
+    while True:
+        end = min(begin + window, position.size)
+        ahead = sign * position[begin:end]
+        farthest = np.maximum.accumulate(ahead)
+        back = farthest - ahead > flicker
+        first = int(back.argmax())
+        if back[first]:
+            return begin + first, sign * farthest[:first]
+        if end == position.size:
+            return end, sign * farthest
+        window *= 4
