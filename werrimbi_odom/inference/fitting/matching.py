@@ -248,8 +248,7 @@ def _nodes(
 ) -> tuple[Floats, Floats, Floats, NDArray[np.intp], Mapping[str, Span[Floats]]]:
     """Nodes at every message and at the times `at`, and the counts between them."""
     time = np.union1d(counters.time, at)
-    left = np.diff(np.interp(time, counters.time, counters.left))
-    right = np.diff(np.interp(time, counters.time, counters.right))
+    left, right = np.diff(_counts_at(counters, time), axis=0).T
     channels = {}
     for name, values in counters.channels.items():
         known = np.isfinite(values)
@@ -257,6 +256,21 @@ def _nodes(
             there = np.interp(time, counters.time[known], values[known])
             channels[name] = Span(there[:-1], there[1:])
     return time, left, right, np.searchsorted(time, at), channels
+
+
+def _counts_at(counters: Counters, time: Floats) -> Floats:
+    """Counts at any times, (n, 2): left and right.
+
+    Between two messages the wheels follow a monotone cubic: a straight line would cut the corners
+    of every start and stop, by a millimetre where a robot that brakes at 1 m/s² is read at 10 Hz,
+    while a smoother curve would swing beyond what was counted. Before the first message and after
+    the last the robot stands.
+    """
+    from scipy.interpolate import PchipInterpolator
+
+    counts = np.stack([counters.left, counters.right], axis=-1)
+    within = np.clip(time, counters.time[0], counters.time[-1])
+    return np.asarray(PchipInterpolator(counters.time, counts)(within))
 
 
 def _summed(steps: Floats) -> Floats:
