@@ -137,9 +137,9 @@ def rivals() -> list[HiddenSet]:
         HiddenSet("rivals", ("reference_delay=0.08",), 6001, lines),
         HiddenSet("rivals", ("longitudinal_slip=0.03",), 6002, lines),
         # A point at x is at x ahead, one that is late by d at v d behind, where only positions are
-        # measured.
+        # measured; a late one is also aside, by half the curvature times (v d)^2, so d is small.
         HiddenSet("rivals", ("reference_lever_arm=0.06",), 6003, curves, "positions_alone"),
-        HiddenSet("rivals", ("reference_delay=0.1",), 6004, curves, "positions_alone"),
+        HiddenSet("rivals", ("reference_delay=0.03",), 6006, curves, "positions_alone"),
         # A point at x moves sideways by x times the turn; a tyre by creep times speed times turn.
         HiddenSet("rivals", ("lateral_slip=0.02",), 6005, curves),
     ]
