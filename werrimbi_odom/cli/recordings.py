@@ -6,10 +6,8 @@ from __future__ import annotations
 
 import argparse
 import math
-import os
 import sys
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,34 +15,14 @@ from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
-    from werrimbi_odom.files.robot_file import RobotFile
-    from werrimbi_odom.files.run import Run
-    from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
-
-_NAMED = 8  # runs of a folder that are named before "..."
-
-
-@dataclass(frozen=True)
-class Recordings:
-    """Everything that was given on the command line, read."""
-
-    source: RobotFile
-    collection: Collection
-    """Effects that a robot file may name, those of --effects among them."""
-    runs: tuple[Run, ...]
-    holdout: tuple[Run, ...]
-    """Runs to judge on alone; empty where none were given."""
-    kind: ReferenceKind
-    leg: float
-    """Length of a leg [m]."""
-    sigma_xy: float | None
-    """Noise of the reference's position, if it was given as an option [m]."""
-    sigma_yaw: float | None
-    """The same of its heading [rad]."""
+    from werrimbi_odom.fleet.asked import How, Recordings
 
 
 def add_recording_arguments(
-    parser: argparse.ArgumentParser, holdout: bool = False, report: bool = True
+    parser: argparse.ArgumentParser,
+    holdout: bool = False,
+    report: bool = True,
+    required: bool = True,
 ) -> None:
     """RUN..., --robot and how to read and judge them, --json and --report.
 
@@ -54,9 +32,15 @@ def add_recording_arguments(
         Offer --holdout too.
     report : bool
         Offer --report.
+    required : bool
+        Whether RUN and --robot must be given; where not, the verb asks for them itself.
     """
     parser.add_argument(
-        "runs", metavar="RUN", nargs="+", type=Path, help="recorded drives: run folders or bags"
+        "runs",
+        metavar="RUN",
+        nargs="+" if required else "*",
+        type=Path,
+        help="recorded drives: run folders or bags",
     )
     if holdout:
         parser.add_argument(
@@ -67,7 +51,7 @@ def add_recording_arguments(
             type=Path,
             help="drives to judge on, that take no part in the fit",
         )
-    parser.add_argument("--robot", metavar="R", type=Path, required=True, help="robot file")
+    parser.add_argument("--robot", metavar="R", type=Path, required=required, help="robot file")
     parser.add_argument(
         "--leg",
         metavar="M",
@@ -118,94 +102,79 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
         When something cannot be used, a run is given twice, or an output would overwrite an input.
     """
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.effects.collection import all_effects
-    from werrimbi_odom.files.robot_file import read_robot_file
+    from werrimbi_odom.fleet.asked import Asked, read, refuse_twice
 
-    holdout: Sequence[Path] = getattr(arguments, "holdout", None) or []
-    paths = [*arguments.runs, *holdout]
-    _refuse_twice(paths)
-    _refuse_own_inputs(arguments, paths)
-    collection = all_effects(arguments.effects)
-    for warning in collection.warnings:
-        print(f"warning: {warning}", file=sys.stderr)
-    source = read_robot_file(arguments.robot, effects=collection)
+    holdout = tuple(getattr(arguments, "holdout", None) or ())
+    asked = Asked(arguments.robot, tuple(arguments.runs), holdout, how_of(arguments))
+    paths = [*asked.runs, *asked.holdout]
+    refuse_twice(paths)
+    refuse_own_inputs(arguments, [arguments.robot, *paths, *arguments.effects])
+    collection = read_effects(arguments)
     with share_done("reading") as show:
-        read = []
-        for number, path in enumerate(paths):
-            show(number / len(paths), f"reading {path.name}")
-            read.append(_run(path, source, arguments))
-    count = len(arguments.runs)
-    return Recordings(
-        source,
-        collection,
-        tuple(read[:count]),
-        tuple(read[count:]),
+        return read(asked, collection, show)
+
+
+def how_of(arguments: argparse.Namespace) -> How:
+    """The options that say how drives are read and judged."""
+    from werrimbi_odom.fleet.asked import How
+
+    return How(
         arguments.reference_kind,
         arguments.leg,
         arguments.reference_sigma_xy,
         arguments.reference_sigma_yaw,
+        arguments.ticks_topic,
+        arguments.reference_topic,
+        tuple(arguments.effects),
     )
 
 
-def _run(path: Path, source: RobotFile, arguments: argparse.Namespace) -> Run:
-    from werrimbi_odom.files.reading import read_run
-    from werrimbi_odom.files.run_folder import TICKS
+def read_effects(arguments: argparse.Namespace) -> Collection:
+    """All effects, those of --effects among them; warnings go to stderr.
 
-    if path.is_dir() and not any((path / name).exists() for name in (TICKS, "metadata.yaml")):
-        within = sorted(
-            {
-                found.parent.name
-                for name in (TICKS, "metadata.yaml")
-                for found in path.glob(f"*/{name}")
-            }
-        )
-        if within:
-            more = " ..." if len(within) > _NAMED else ""
-            raise InputError(
-                f"{path} is no run but a folder of {len(within)} "
-                f"({', '.join(within[:_NAMED])}{more}); give each of them: {path}/*"
-            )
-    return read_run(
-        path,
-        source,
-        ticks_topic=arguments.ticks_topic,
-        reference_topic=arguments.reference_topic,
-    )
+    Raises
+    ------
+    InputError
+        When a file of --effects cannot be used.
+    """
+    from werrimbi_odom.effects.collection import all_effects
+
+    collection = all_effects(arguments.effects)
+    for warning in collection.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    return collection
 
 
-def _refuse_twice(paths: Iterable[Path]) -> None:
-    """A drive that counts twice makes every figure surer than it is."""
-    seen: set[str] = set()
-    for path in paths:
-        place = _place(path)
-        if place in seen:
-            raise InputError(f"{path} is given twice; a drive counts once, in RUN or in --holdout")
-        seen.add(place)
+def refuse_own_inputs(arguments: argparse.Namespace, inputs: Iterable[Path]) -> None:
+    """What is written must not be what is read.
 
+    Parameters
+    ----------
+    inputs
+        Files that are read, and folders of which all files may be.
 
-def _refuse_own_inputs(arguments: argparse.Namespace, runs: Sequence[Path]) -> None:
-    """What is written must not be what is read."""
-    read = [arguments.robot, *runs, *arguments.effects]
-    for run in runs:
-        if run.is_dir():
-            read += run.iterdir()
-    taken = {_place(path) for path in read}
-    for name in ("json", "report"):
-        path: Path | None = getattr(arguments, name, None)
-        if path is None:
-            continue
+    Raises
+    ------
+    InputError
+        When --json or --report is a folder, or one of the inputs, or both are the same.
+    """
+    from werrimbi_odom.fleet.asked import place_of
+
+    read: list[Path] = []
+    for path in inputs:
+        read.append(path)
         if path.is_dir():
-            raise InputError(f"--{name} {path} is a folder; give a file name in it")
-        if _place(path) in taken:
-            raise InputError(f"--{name} {path} would overwrite what is read, or written, already")
-        taken.add(_place(path))
-
-
-def _place(path: Path) -> str:
-    try:
-        return os.path.realpath(path)
-    except ValueError:  # a NUL byte in the name; whoever opens the file says so
-        return str(path)
+            read += path.iterdir()
+    taken = {place_of(path) for path in read}
+    for name in ("json", "report"):
+        out: Path | None = getattr(arguments, name, None)
+        if out is None:
+            continue
+        if out.is_dir():
+            raise InputError(f"--{name} {out} is a folder; give a file name in it")
+        if place_of(out) in taken:
+            raise InputError(f"--{name} {out} would overwrite what is read, or written, already")
+        taken.add(place_of(out))
 
 
 def _positive(text: str) -> float:

@@ -1,0 +1,148 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Processes that die, bugs of ours, and Ctrl-C: what is known is told all the same."""
+
+from __future__ import annotations
+
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from test.fleet.conftest import broken
+from werrimbi_odom.cli.main import INTERRUPTED
+from werrimbi_odom.fleet import one, spread
+from werrimbi_odom.fleet.asked import Asked, How
+from werrimbi_odom.fleet.one import Task, row_of
+
+ROOT = Path(__file__).parents[2]
+KILLS = "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n"
+SLOW = """
+import os, time
+from pathlib import Path
+from werrimbi_odom.effects.library import LIBRARY
+from dataclasses import replace
+
+mine = replace(LIBRARY[0], name="mine")
+place = Path(__file__).parent
+times = len(list(place.glob("read_*")))
+(place / f"read_{times}").write_text(str(os.getpid()))
+if times == 2:  # the command itself has read it, and the first robot
+    time.sleep(600.0)
+"""
+
+
+def nowhere(name: str, how: How | None = None) -> Task:
+    """A robot of which nothing is there."""
+    return Task(name, Asked(Path(name) / "robot.yaml", (Path(name) / "run",), (), how or How()))
+
+
+def test_who_kills_its_process_is_a_row_and_the_others_are_done(tmp_path: Path) -> None:
+    (tmp_path / "kills.py").write_text(KILLS)
+    tasks = [nowhere(f"robot_{number}") for number in range(3)]
+    tasks.insert(1, nowhere("killer", How(effects=(tmp_path / "kills.py",))))
+    rows = {row.robot: row.error for row in spread.here(tasks, 2)}
+    assert rows.keys() == {"robot_0", "robot_1", "robot_2", "killer"}
+    assert rows.pop("killer") == spread.DIED
+    assert all("robot.yaml" in error and "died" not in error for error in rows.values())
+
+
+def test_a_bug_of_ours_is_a_row_that_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+    def falls(*anything: object) -> None:
+        raise KeyError("left\nwheel")
+
+    monkeypatch.setattr(one, "read", falls)
+    row = row_of(nowhere("robot_1"))
+    assert row.error.startswith("this is a bug of werrimbi_odom, not of your files")
+    assert "KeyError: 'left\\nwheel' (test_spread.py, line " in row.error
+    assert row.verdict == "error"
+
+
+def test_memory_that_is_too_small_is_no_bug(monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*anything: object) -> None:
+        raise MemoryError
+
+    monkeypatch.setattr(one, "read", full)
+    assert "more memory than there is" in row_of(nowhere("robot_1")).error
+
+
+def test_sums_are_made_by_one_thread(tmp_path: Path) -> None:
+    """Also in a process that has not loaded scipy yet, which brings a library of its own."""
+    looks = (
+        "from threadpoolctl import threadpool_info\n"
+        "from test.fleet.test_spread import nowhere\n"
+        "from werrimbi_odom.fleet import one\n"
+        "def read(*anything):\n"
+        "    print([pool['num_threads'] for pool in threadpool_info()])\n"
+        "one.read = read\n"
+        "one.row_of(nowhere('robot_1'))\n"
+    )
+    run = subprocess.run(
+        [sys.executable, "-c", looks],
+        env={**os.environ, "PYTHONPATH": str(ROOT), "OPENBLAS_NUM_THREADS": "2"},
+        capture_output=True,
+        text=True,
+        check=True,
+    )
+    pools = json.loads(run.stdout)
+    assert pools
+    assert set(pools) == {1}
+
+
+def begun(tmp_path: Path) -> subprocess.Popen[str]:
+    """A fleet of two whose second robot takes ten minutes; waits until that is under way."""
+    for name in ("robot_1", "robot_2"):
+        broken(tmp_path / "fleet" / name)
+    (tmp_path / "slow.py").write_text(SLOW)
+    words = ["--fleet", "fleet", "--jobs", "1", "--effects", "slow.py", "--json", "figures.json"]
+    process = subprocess.Popen(
+        [sys.executable, "-m", "werrimbi_odom.cli.main", "diagnose", *words],
+        cwd=tmp_path,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    patience = time.monotonic() + 120.0
+    while not (tmp_path / "read_2").exists() or not (tmp_path / "read_2").read_text():
+        assert process.poll() is None, process.communicate()
+        assert time.monotonic() < patience
+        time.sleep(0.05)
+    return process
+
+
+def gone(pid: int) -> bool:
+    """Whether a process ends within some seconds."""
+    for _ in range(200):
+        try:
+            os.kill(pid, 0)
+        except ProcessLookupError:
+            return True
+        time.sleep(0.05)
+    return False
+
+
+def test_after_ctrl_c_it_is_told_what_was_done_and_what_is_left(tmp_path: Path) -> None:
+    process = begun(tmp_path)
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to all of its processes
+    out, err = process.communicate(timeout=60.0)
+    assert (process.returncode, err) == (INTERRUPTED, "")
+    assert out.startswith("1 robot: 1 could not be diagnosed.")
+    assert "Not done: 1 of 2 are left, robot_2." in out
+    figures = json.loads((tmp_path / "figures.json").read_text())
+    assert [row["robot"] for row in figures["robots"]] == ["robot_1"]
+    assert figures["left"] == ["robot_2"]
+    assert gone(int((tmp_path / "read_2").read_text()))
+
+
+def test_no_process_outlives_the_command_that_began_it(tmp_path: Path) -> None:
+    process = begun(tmp_path)
+    process.kill()
+    process.communicate(timeout=60.0)
+    assert gone(int((tmp_path / "read_2").read_text()))

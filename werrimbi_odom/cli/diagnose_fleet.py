@@ -1,0 +1,223 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi diagnose --fleet`: many robots in one table, on this machine or on a Dask cluster."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shutil
+import sys
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from contextlib import closing
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from werrimbi_odom.cli.recordings import how_of, read_effects, refuse_own_inputs
+from werrimbi_odom.errors import InputError
+
+if TYPE_CHECKING:
+    from collections.abc import Generator
+
+    from werrimbi_odom.fleet.members import Member
+    from werrimbi_odom.fleet.one import Task
+    from werrimbi_odom.report.fleet_rows import Fleet, Row
+
+_NARROW, _WIDE = 80, 140
+"""Columns that the table may have; 100 where there is no terminal."""
+_REPORTS = (".html", ".htm", ".pdf", ".png")
+
+
+def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
+    """--fleet, --jobs and --scheduler."""
+    fleet = parser.add_argument_group("many robots at once (docs/fleet.md)")
+    fleet.add_argument(
+        "--fleet",
+        metavar="FOLDER",
+        type=Path,
+        help="in place of --robot and RUN: a folder with a sub-folder for each robot, in it "
+        "robot.yaml and its runs (in train/ and holdout/, or beside it)",
+    )
+    fleet.add_argument(
+        "--jobs",
+        metavar="N",
+        type=_count,
+        help="robots at a time, each in a process; as many as there are processors if not given",
+    )
+    fleet.add_argument(
+        "--scheduler",
+        metavar="tcp://HOST:PORT",
+        help="in place of --jobs: do it on the Dask cluster of this scheduler",
+    )
+
+
+def refuse_mixing(arguments: argparse.Namespace) -> None:
+    """One robot or a fleet, processes or a cluster.
+
+    Raises
+    ------
+    InputError
+        When options are given together that say different things.
+    """
+    if arguments.fleet is None:
+        for name in ("jobs", "scheduler"):
+            if getattr(arguments, name) is not None:
+                raise InputError(f"--{name} is for many robots; give --fleet FOLDER with it")
+        return
+    for name, word in (("robot", "--robot"), ("runs", "RUN"), ("holdout", "--holdout")):
+        if getattr(arguments, name):
+            raise InputError(
+                f"--fleet brings robot files and runs of its own; leave out {word}, or --fleet"
+            )
+    if arguments.jobs is not None and arguments.scheduler is not None:
+        raise InputError("--jobs is for this machine, --scheduler for a cluster; leave out one")
+
+
+def run_fleet(arguments: argparse.Namespace) -> int:
+    """Diagnose all robots, tell; 0 on success.
+
+    Raises
+    ------
+    InputError
+        When the folder or the cluster cannot be used; what is done by then is told and written.
+    KeyboardInterrupt
+        On Ctrl-C; what is done by then is told and written.
+    """
+    from werrimbi_odom.cli.progress import share_done
+    from werrimbi_odom.fleet.asked import Asked
+    from werrimbi_odom.fleet.members import members_of
+    from werrimbi_odom.fleet.one import Task, failed
+
+    members = members_of(arguments.fleet)
+    _refuse_outputs(arguments, members)
+    read_effects(arguments)  # a mistake in them is no robot's
+    how = how_of(arguments)
+    tasks = [Task(each.name, Asked(each.robot, each.runs, each.holdout, how)) for each in members]
+    rows, ready = [], []
+    for member, task in zip(members, tasks, strict=True):
+        if member.problem:
+            rows.append(failed(task, member.problem))
+        else:
+            ready.append(task)
+    stopped: BaseException | None = None
+    done = len(rows)
+    try:
+        with share_done("diagnosing") as show, closing(_spread(arguments, ready)) as coming:
+            show(done / len(tasks), f"{done} of {len(tasks)} robots")
+            for row in coming:
+                rows.append(row)
+                show(len(rows) / len(tasks), f"{len(rows)} of {len(tasks)} robots")
+    except (InputError, KeyboardInterrupt) as error:
+        if len(rows) == done:
+            raise
+        stopped = error
+    _tell(arguments, _fleet(rows, members))
+    if stopped is not None:
+        raise stopped
+    return 0
+
+
+def _spread(arguments: argparse.Namespace, tasks: Sequence[Task]) -> Generator[Row, None, None]:
+    """Rows as they come."""
+    if find_spec("threadpoolctl") is None:
+        raise InputError(
+            "--fleet needs the Python package threadpoolctl: pip install 'werrimbi_odom[tools]'"
+        )
+    if arguments.scheduler is not None:
+        from werrimbi_odom.fleet.cluster import on_cluster
+
+        yield from on_cluster(tasks, arguments.scheduler, _warn)
+        return
+    from werrimbi_odom.fleet.spread import here, processors
+
+    yield from here(tasks, arguments.jobs or processors())
+
+
+def _warn(words: str) -> None:
+    print(f"warning: {words}", file=sys.stderr)
+
+
+def _fleet(rows: Sequence[Row], members: Sequence[Member]) -> Fleet:
+    from werrimbi_odom.report.fleet_rows import Fleet, ordered
+
+    done = {row.robot for row in rows}
+    names = [member.name for member in members]
+    texts = {member.name: text for member in members if (text := _bytes(member.robot))}
+    times = Counter(texts.values())
+    return Fleet(
+        ordered(rows, names),
+        tuple(name for name in names if name not in done),
+        frozenset(name for name, text in texts.items() if times[text] > 1),
+    )
+
+
+def _bytes(path: Path) -> bytes:
+    """Empty where it cannot be read, which the robot's row says."""
+    try:
+        return path.read_bytes()
+    except OSError:
+        return b""
+
+
+def _tell(arguments: argparse.Namespace, fleet: Fleet) -> None:
+    """Words and table, then the files that were asked for."""
+    from werrimbi_odom.report.fleet_tables import fleet_table
+    from werrimbi_odom.report.fleet_words import words_of
+
+    columns = shutil.get_terminal_size((100, 24)).columns
+    print(words_of(fleet))
+    print()
+    print(fleet_table(fleet, min(max(columns, _NARROW), _WIDE)))
+    written = _write(arguments, fleet)
+    if written:
+        print(f"\nwritten: {', '.join(map(str, written))}")
+
+
+def _write(arguments: argparse.Namespace, fleet: Fleet) -> list[Path]:
+    from werrimbi_odom.cli.calibration_files import plain
+    from werrimbi_odom.files.replacing import replacing
+    from werrimbi_odom.report.fleet_rows import fleet_json
+
+    written = []
+    if arguments.json is not None:
+        with replacing(arguments.json) as file:
+            json.dump(plain(fleet_json(fleet)), file, indent=2, allow_nan=False)
+            file.write("\n")
+        written.append(arguments.json)
+    if arguments.report is not None:
+        from werrimbi_odom.cli.report_made import made_of
+        from werrimbi_odom.report.fleet_page import write_fleet_page
+
+        made = {"fleet": str(arguments.fleet), **made_of(arguments)}
+        written += write_fleet_page(fleet, arguments.report, made)
+    return written
+
+
+def _refuse_outputs(arguments: argparse.Namespace, members: Sequence[Member]) -> None:
+    """What cannot be written at the end of an hour is said at its beginning."""
+    refuse_own_inputs(arguments, _inputs(arguments, members))
+    for name in ("json", "report"):
+        path: Path | None = getattr(arguments, name)
+        if path is not None and not path.parent.is_dir():
+            raise InputError(f"--{name} {path}: there is no folder {path.parent}")
+    report: Path | None = arguments.report
+    if report is not None and report.suffix.lower() not in _REPORTS:
+        raise InputError(f"--report {report}: a report ends in .html, .pdf or .png")
+
+
+def _inputs(arguments: argparse.Namespace, members: Sequence[Member]) -> Iterator[Path]:
+    yield from arguments.effects
+    for member in members:
+        yield from (member.robot, *member.runs, *member.holdout)
+
+
+def _count(text: str) -> int:
+    try:
+        value = int(text)
+    except ValueError:
+        value = 0
+    if value < 1:
+        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number greater than zero")
+    return value

@@ -1,0 +1,144 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""One robot's files as they were asked for, and the reading of them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from werrimbi_odom.effects.collection import Collection
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run_folder import TICKS
+from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+
+BAG = "metadata.yaml"
+_NAMED = 8  # runs of a folder that are named before "..."
+
+
+@dataclass(frozen=True)
+class How:
+    """How drives are read and judged."""
+
+    kind: ReferenceKind = "absolute"
+    leg: float = 1.0
+    """Length of a leg [m]."""
+    sigma_xy: float | None = None
+    """Noise of the reference's position, if it is known [m]."""
+    sigma_yaw: float | None = None
+    """The same of its heading [rad]."""
+    ticks_topic: str | None = None
+    reference_topic: str | None = None
+    effects: tuple[Path, ...] = ()
+    """Files with effects of the user's own."""
+
+
+@dataclass(frozen=True)
+class Asked:
+    """One robot's files."""
+
+    robot: Path
+    runs: tuple[Path, ...]
+    holdout: tuple[Path, ...] = ()
+    how: How = How()
+
+
+@dataclass(frozen=True)
+class Recordings:
+    """Everything that was asked for, read."""
+
+    source: RobotFile
+    collection: Collection
+    """Effects that a robot file may name, those of --effects among them."""
+    runs: tuple[Run, ...]
+    holdout: tuple[Run, ...]
+    """Runs to judge on alone; empty where none were given."""
+    kind: ReferenceKind
+    leg: float
+    """Length of a leg [m]."""
+    sigma_xy: float | None
+    """Noise of the reference's position, if it was given as an option [m]."""
+    sigma_yaw: float | None
+    """The same of its heading [rad]."""
+
+
+def read(
+    asked: Asked,
+    collection: Collection,
+    show: Callable[[float, str], None] = lambda share, words: None,
+) -> Recordings:
+    """Read robot file and runs.
+
+    Parameters
+    ----------
+    collection
+        What the robot file may name.
+    show
+        Told the share done, and what is being done.
+
+    Raises
+    ------
+    InputError
+        When something cannot be used.
+    """
+    how = asked.how
+    source = read_robot_file(asked.robot, effects=collection)
+    paths = [*asked.runs, *asked.holdout]
+    found = []
+    for number, path in enumerate(paths):
+        show(number / len(paths), f"reading {path.name}")
+        found.append(_run(path, source, how))
+    count = len(asked.runs)
+    return Recordings(
+        source,
+        collection,
+        tuple(found[:count]),
+        tuple(found[count:]),
+        how.kind,
+        how.leg,
+        how.sigma_xy,
+        how.sigma_yaw,
+    )
+
+
+def _run(path: Path, source: RobotFile, how: How) -> Run:
+    if path.is_dir() and not any((path / name).exists() for name in (TICKS, BAG)):
+        within = sorted(
+            {found.parent.name for name in (TICKS, BAG) for found in path.glob(f"*/{name}")}
+        )
+        if within:
+            more = " ..." if len(within) > _NAMED else ""
+            raise InputError(
+                f"{path} is no run but a folder of {len(within)} "
+                f"({', '.join(within[:_NAMED])}{more}); give each of them: {path}/*"
+            )
+    return read_run(path, source, ticks_topic=how.ticks_topic, reference_topic=how.reference_topic)
+
+
+def refuse_twice(paths: Iterable[Path]) -> None:
+    """A drive that counts twice makes every figure surer than it is.
+
+    Raises
+    ------
+    InputError
+        When two paths lead to the same drive.
+    """
+    seen: set[str] = set()
+    for path in paths:
+        place = place_of(path)
+        if place in seen:
+            raise InputError(f"{path} is given twice; a drive counts once, in RUN or in --holdout")
+        seen.add(place)
+
+
+def place_of(path: Path) -> str:
+    """Where a path leads to in the end."""
+    try:
+        return os.path.realpath(path)
+    except ValueError:  # a NUL byte in the name; whoever opens the file says so
+        return str(path)

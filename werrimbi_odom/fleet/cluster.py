@@ -1,0 +1,241 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A fleet on a Dask cluster: the files go with the task, so no disk needs to be shared."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.fleet.code import PACKAGE, code_here, doubts, refusal
+from werrimbi_odom.fleet.one import Task, bug, failed
+from werrimbi_odom.fleet.parcel import packed
+from werrimbi_odom.report.fleet_rows import Row
+
+if TYPE_CHECKING:
+    from distributed import Client, Future
+
+DIED = (
+    "every worker that diagnosed it died: killed, out of memory, or a crash of a library; the "
+    "workers' own logs say more"
+)
+PATIENCE = 30.0
+"""Seconds for a scheduler to answer, and for a worker to be there."""
+
+AHEAD = 2
+"""Robots at a worker, one under way among them: no worker waits, and no memory fills."""
+
+_LOOK = 2.0
+"""Seconds after which it is looked whether the cluster is still there."""
+
+
+def on_cluster(
+    tasks: Sequence[Task],
+    address: str,
+    warn: Callable[[str], None] = lambda words: None,
+    patience: float = PATIENCE,
+) -> Iterator[Row]:
+    """Rows as they come.
+
+    Parameters
+    ----------
+    address
+        Of the scheduler, tcp://HOST:PORT or tls://HOST:PORT.
+    warn
+        Told what may change the last digits of the results.
+    patience : float
+        For a scheduler to answer, and for a worker to be there [s].
+
+    Raises
+    ------
+    InputError
+        When there is no scheduler or no worker, they are lost on the way, or a worker runs other
+        code than this machine.
+    """
+    with _connected(address, patience) as client:
+        _check_code(client, address, warn, patience)
+        yield from _rows(client, tasks, address, patience)
+
+
+def _rows(client: Client, tasks: Sequence[Task], address: str, patience: float) -> Iterator[Row]:
+    work = _work()
+    wanted = dict(code_here())
+    left = deque(tasks)
+    under_way: dict[Future, Task] = {}
+    seen = time.monotonic()
+    try:
+        while left or under_way:
+            workers = _workers(client, address)
+            seen = time.monotonic() if workers else seen
+            if time.monotonic() - seen > patience:
+                raise InputError(f"--scheduler {address}: all of its workers are gone")
+            while left and len(under_way) < AHEAD * max(workers, 1):
+                task = left.popleft()
+                try:
+                    data = packed(task)
+                except InputError as error:
+                    yield failed(task, str(error))
+                    continue
+                under_way[_submitted(client, work, data, wanted)] = task
+            for future in _done(client, under_way, address):
+                task = under_way.pop(future)
+                yield _row(future, task, address)
+    finally:
+        client.cancel(list(under_way), force=True)
+
+
+def _done(client: Client, under_way: Mapping[Future, Task], address: str) -> list[Future]:
+    """Futures that have ended, after a short wait for one."""
+    from distributed import CancelledError, wait
+    from distributed import TimeoutError as LateError  # until Python 3.10 one of its own
+
+    if not under_way:
+        return []
+    try:
+        with client.as_current():
+            wait(list(under_way), timeout=_LOOK, return_when="FIRST_COMPLETED")
+    except LateError:
+        pass
+    except CancelledError:
+        raise _lost(address) from None
+    return [future for future in under_way if future.done()]
+
+
+def _row(future: Future, task: Task, address: str) -> Row:
+    from distributed import CancelledError, KilledWorker
+
+    try:
+        row, words = future.result()
+    except KilledWorker:
+        return failed(task, DIED)
+    except CancelledError:
+        raise _lost(address) from None
+    except Exception as error:  # what comes back cannot be read
+        return failed(task, bug(error))
+    finally:
+        future.release()
+    if row is None:
+        raise InputError(f"--scheduler {address}: a worker {words}")
+    found: Row = row
+    return found
+
+
+def _work() -> Callable[[bytes, dict[str, str]], tuple[Any, str]]:
+    """What a worker does; a closure, because those are sent as code, not by a name of ours.
+
+    So a worker without this package, which may also join later, can say what it lacks.
+    """
+
+    def work(data: bytes, wanted: dict[str, str]) -> tuple[Any, str]:
+        try:
+            from werrimbi_odom.fleet.code import code_here, refusal
+            from werrimbi_odom.fleet.parcel import row_of_parcel
+        except ImportError as error:
+            return None, f"cannot import werrimbi_odom ({error})"
+        why = refusal(wanted, code_here())
+        return (None, f"runs other code: {why}") if why else (row_of_parcel(data), "")
+
+    return work
+
+
+def _probe() -> Callable[[], dict[str, str]]:
+    """What tells a worker's code; sent as code, too."""
+
+    def probe() -> dict[str, str]:
+        try:
+            from werrimbi_odom.fleet.code import code_here
+
+            return dict(code_here())
+        except ImportError as error:
+            return {"": str(error)}
+
+    return probe
+
+
+def _check_code(client: Client, address: str, warn: Callable[[str], None], patience: float) -> None:
+    """Every worker must run what runs here."""
+    from distributed import TimeoutError as LateError
+
+    try:
+        client.wait_for_workers(1, timeout=patience)
+    except LateError:
+        raise InputError(
+            f"--scheduler {address}: it has no worker; start some: dask worker {address} "
+            "--nthreads 1"
+        ) from None
+    here = code_here()
+    unsure: set[str] = set()
+    for worker, there in client.run(_probe(), on_error="return").items():
+        if isinstance(there, BaseException):
+            raise InputError(f"--scheduler {address}: its worker {worker} says: {there!r}")
+        if "" in there:
+            raise InputError(
+                f"--scheduler {address}: its worker {worker} cannot import {PACKAGE} "
+                f"({there['']}); install it there: pip install '{PACKAGE}[cluster]'"
+            )
+        why = refusal(here, there)
+        if why:
+            raise InputError(
+                f"--scheduler {address}: its worker {worker} runs other code: {why}; install the "
+                "same everywhere and start the workers again"
+            )
+        unsure.add(doubts(here, there))
+    for words in sorted(unsure - {""}):
+        warn(f"workers with {words}: last digits may differ")
+
+
+@contextmanager
+def _connected(address: str, patience: float) -> Iterator[Client]:
+    if not re.fullmatch(r"(tcp|tls)://.+:\d+/?", address):
+        raise InputError(
+            f"--scheduler {address}: write tcp://HOST:PORT (or tls://HOST:PORT), as `dask "
+            "scheduler` says it when it starts"
+        )
+    try:
+        import dask
+        from distributed import Client
+        from distributed import TimeoutError as LateError
+    except ModuleNotFoundError as missing:
+        raise InputError(
+            f"--scheduler needs the Python package {missing.name}: "
+            f"pip install '{PACKAGE}[cluster]', here and on the workers"
+        ) from missing
+    # A robot's drives are what is sent, once: there is nothing better to advise.
+    with dask.config.set({"distributed.admin.large-graph-warning-threshold": "16 GiB"}):
+        try:
+            client = Client(address, timeout=patience, set_as_default=False)
+        except (OSError, ValueError, TypeError, RuntimeError, LateError) as error:
+            said = " ".join(str(error).split())
+            raise InputError(
+                f"--scheduler {address}: no Dask scheduler answers there ({said}); start one with "
+                "`dask scheduler` and give the address that it prints"
+            ) from error
+        try:
+            yield client
+        finally:
+            client.close(timeout=5.0)
+
+
+def _submitted(
+    client: Client, work: Callable[..., object], data: bytes, wanted: dict[str, str]
+) -> Future:
+    return client.submit(work, data, wanted, pure=False)
+
+
+def _workers(client: Client, address: str) -> int:
+    """How many there are now."""
+    from distributed import TimeoutError as LateError
+
+    try:
+        return len(client.nthreads())
+    except (OSError, LateError, ValueError, RuntimeError):
+        raise _lost(address) from None
+
+
+def _lost(address: str) -> InputError:
+    return InputError(f"--scheduler {address}: the connection to it is lost")

@@ -1,0 +1,105 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The diagnosis of one robot, and the same as a task for another process: it always has an end."""
+
+from __future__ import annotations
+
+import json
+import traceback
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from threading import Lock
+
+from werrimbi_odom.effects.collection import all_effects
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.fleet.asked import Asked, Recordings, read
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
+from werrimbi_odom.inference.manoeuvres.sight import sight_of
+from werrimbi_odom.report.diagnosis_json import json_of
+from werrimbi_odom.report.diagnosis_words import Told
+from werrimbi_odom.report.fleet_rows import Row
+
+_ONE_AT_A_TIME = Lock()
+"""Effects of a file become modules of the whole process, and so is the limit on threads its."""
+
+
+@dataclass(frozen=True)
+class Task:
+    """A robot to diagnose; it can be sent to another process."""
+
+    name: str
+    asked: Asked
+
+
+def diagnosed(
+    given: Recordings, show: Callable[[float, str], None] = lambda share, words: None
+) -> Told:
+    """The diagnosis of one robot, what to do next, and what these drives could have shown.
+
+    Raises
+    ------
+    InputError
+        When the drives do not allow it; the message says why.
+    """
+    effects = given.collection.effects
+    diagnosis = diagnose(
+        given.runs,
+        given.source.robot,
+        effects,
+        given.kind,
+        holdout=given.holdout,
+        leg=given.leg,
+        limits=given.source.limits,
+        sigma_xy=given.sigma_xy,
+        sigma_yaw=given.sigma_yaw,
+        show=show,
+    )
+    show(0.97, "the next step")
+    manoeuvre = next_manoeuvre(diagnosis)
+    sights = sight_of(diagnosis, effects)
+    return Told(diagnosis, manoeuvre, sights, given.leg, bool(given.holdout))
+
+
+def row_of(task: Task) -> Row:
+    """The diagnosis of a robot; what goes wrong becomes its row, never an exception.
+
+    Sums are made by one thread: how a library shares them out would change their last digits.
+    """
+    try:
+        import scipy.linalg  # noqa: F401  its BLAS must be there to be limited
+        from threadpoolctl import threadpool_limits
+
+        with _ONE_AT_A_TIME, threadpool_limits(1):
+            asked = task.asked
+            told = diagnosed(read(asked, all_effects(asked.how.effects)))
+            figures = json_of(told.diagnosis, told.manoeuvre, told.sights)
+        figures = json.loads(json.dumps(figures))  # lists and floats alone, whoever works it out
+        return Row(task.name, _drives(task), figures)
+    except MemoryError:
+        return failed(task, "this needs more memory than there is; cut the runs into several")
+    except (InputError, OSError) as error:
+        return failed(task, str(error))
+    except Exception as error:  # one robot must not end the fleet
+        return failed(task, bug(error))
+
+
+def failed(task: Task, why: str) -> Row:
+    """The row of a robot that could not be diagnosed."""
+    return Row(task.name, _drives(task), None, " ".join(why.split()))
+
+
+def bug(error: BaseException) -> str:
+    """An exception that no user can mend, said to be ours."""
+    message = " ".join(str(error).split())
+    steps = traceback.extract_tb(error.__traceback__)
+    where = f" ({Path(steps[-1].filename).name}, line {steps[-1].lineno})" if steps else ""
+    return (
+        "this is a bug of werrimbi_odom, not of your files; please report it: "
+        f"{type(error).__name__}: {message}{where}"
+    )
+
+
+def _drives(task: Task) -> int:
+    return len(task.asked.runs) + len(task.asked.holdout)

@@ -1,0 +1,142 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A robot's files as bytes, for a worker that shares no disk with us, and paths put back after."""
+
+from __future__ import annotations
+
+import json
+import os
+import pickle
+import tempfile
+import zlib
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.bag import SUFFIXES
+from werrimbi_odom.files.run_folder import REFERENCE, TICKS
+from werrimbi_odom.fleet.asked import BAG, Asked
+from werrimbi_odom.fleet.one import Task, row_of
+from werrimbi_odom.report.fleet_rows import Row
+
+MOST = 2**30
+"""Bytes of a robot that are sent; a bag of camera pictures is better diagnosed where it lies."""
+
+
+@dataclass(frozen=True)
+class Item:
+    """A file, or a folder with the files that its reader looks at."""
+
+    path: str
+    """As the user wrote it."""
+    name: str
+    files: Mapping[str, bytes] | bytes | None
+    """None where there is nothing: the worker says so in the words of this machine."""
+
+
+@dataclass(frozen=True)
+class Parcel:
+    """A task with all it needs."""
+
+    name: str
+    asked: Asked
+    items: tuple[Item, ...]
+    """Robot file, files with effects, runs, held-out runs."""
+
+
+def packed(task: Task) -> bytes:
+    """A task and its files.
+
+    Raises
+    ------
+    InputError
+        When a file cannot be read, or they are too large.
+    """
+    asked = task.asked
+    paths = [asked.robot, *asked.how.effects, *asked.runs, *asked.holdout]
+    room = MOST
+    items = []
+    for path in paths:
+        try:
+            size = sum(file.stat().st_size for file in _files(path))
+            room -= size
+            if room < 0:
+                raise InputError(
+                    f"{path}: the files of {task.name} are larger than {MOST >> 20} MiB, too large "
+                    "to be sent; cut bags to their ticks and reference, or leave out --scheduler"
+                )
+            items.append(_item(path))
+        except (OSError, ValueError) as error:
+            if isinstance(error, InputError):
+                raise
+            raise InputError(f"{path} cannot be read: {error}") from error
+    return zlib.compress(pickle.dumps(Parcel(task.name, asked, tuple(items))), 1)
+
+
+def row_of_parcel(data: bytes) -> Row:
+    """Unpack, diagnose, and tell it with the paths that the user knows."""
+    parcel: Parcel = pickle.loads(zlib.decompress(data))
+    with tempfile.TemporaryDirectory(prefix="werrimbi-") as made:
+        folder = Path(os.path.realpath(made))
+        places = [_unpacked(item, folder / str(n)) for n, item in enumerate(parcel.items)]
+        row = row_of(_moved(parcel, places))
+    given = {str(place): item.path for place, item in zip(places, parcel.items, strict=True)}
+    return _with_paths(row, given)
+
+
+def _files(path: Path) -> Iterator[Path]:
+    """What is read of a path."""
+    if path.is_file():
+        yield path
+    elif path.is_dir():
+        wanted = {TICKS, REFERENCE} if (path / TICKS).exists() else {BAG}
+        for each in sorted(path.iterdir()):
+            bag = TICKS not in wanted and any(suffix in each.name for suffix in SUFFIXES)
+            if each.name in wanted or bag:
+                yield each
+
+
+def _item(path: Path) -> Item:
+    name = path.resolve().name  # a run is called so, also where a link leads to it
+    if path.is_dir():
+        return Item(str(path), name, {file.name: file.read_bytes() for file in _files(path)})
+    if not name.endswith(path.suffix):  # readers go by the ending that was given
+        name = path.name
+    return Item(str(path), name, path.read_bytes() if path.is_file() else None)
+
+
+def _unpacked(item: Item, folder: Path) -> Path:
+    folder.mkdir()
+    place = folder / item.name
+    if isinstance(item.files, bytes):
+        place.write_bytes(item.files)
+    elif item.files is not None:
+        place.mkdir()
+        for name, content in item.files.items():
+            (place / name).write_bytes(content)
+    return place
+
+
+def _moved(parcel: Parcel, places: list[Path]) -> Task:
+    """The task with the places where its files are now."""
+    asked = parcel.asked
+    rest = iter(places)
+
+    def as_many_as(paths: tuple[Path, ...]) -> tuple[Path, ...]:
+        return tuple(next(rest) for _ in paths)
+
+    robot = next(rest)
+    how = replace(asked.how, effects=as_many_as(asked.how.effects))
+    runs, holdout = as_many_as(asked.runs), as_many_as(asked.holdout)
+    return Task(parcel.name, Asked(robot, runs, holdout, how))
+
+
+def _with_paths(row: Row, given: Mapping[str, str]) -> Row:
+    """A row whose texts name the user's own paths."""
+    error, figures = row.error, row.figures
+    text = json.dumps(figures)
+    for place, path in given.items():
+        error = error.replace(place, path)
+        text = text.replace(json.dumps(place)[1:-1], json.dumps(path)[1:-1])
+    return replace(row, error=error, figures=json.loads(text))

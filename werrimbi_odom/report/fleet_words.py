@@ -1,0 +1,183 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A fleet in words: how many miss what, and whether that is a matter of one robot or of all."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from werrimbi_odom.report.diagnosis_numbers import listed, with_std
+from werrimbi_odom.report.fleet_rows import ERROR, Fleet, Row, believed
+
+WIDTH = 80
+_GROUPS = 6
+"""Different things missing that are counted in the first sentence."""
+_NAMED = 8
+"""Robots that a sentence names."""
+_TOLD = 10
+"""Robots whose error is told; the others' are in the JSON."""
+
+
+def words_of(fleet: Fleet) -> str:
+    """All sentences, filled to 80 columns."""
+    lines = [headline(fleet), *_shared(fleet), *_alone(fleet), *_errors(fleet), *_left(fleet)]
+    return "\n".join(
+        textwrap.fill(
+            line,
+            WIDTH,
+            subsequent_indent="  " if line.startswith("- ") else "",
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+        for line in lines
+    )
+
+
+def headline(fleet: Fleet) -> str:
+    """How many robots miss nothing, what, who knows what, and could not be read."""
+    parts = []
+    verdicts = [row.verdict for row in fleet.rows]
+    if count := verdicts.count("none"):
+        parts.append(f"{count} {_miss(count)} nothing")
+    groups: dict[tuple[str, ...], int] = {}
+    for row in fleet.rows:
+        if row.verdict == "named":
+            groups[row.missing] = groups.get(row.missing, 0) + 1
+    largest = sorted(groups.items(), key=lambda item: (-item[1], item[0]))
+    for missing, count in largest[:_GROUPS]:
+        parts.append(f"{count} {_miss(count)} {listed(missing)}")
+    if count := sum(count for _, count in largest[_GROUPS:]):
+        parts.append(f"{count} {_miss(count)} something else")
+    for verdict in ("ambiguous", "unknown"):
+        if count := verdicts.count(verdict):
+            parts.append(f"{count} {verdict}")
+    if count := verdicts.count(ERROR):
+        parts.append(f"{count} could not be diagnosed")
+    robots = len(fleet.rows)
+    return f"{robots} robot{'s' if robots != 1 else ''}: {', '.join(parts)}."
+
+
+def _miss(count: int) -> str:
+    return "misses" if count == 1 else "miss"
+
+
+def _shared(fleet: Fleet) -> list[str]:
+    """What most robots have in common is no matter of one of them."""
+    judged = [row for row in fleet.rows if row.verdict != ERROR]
+    lines = []
+    for effect, rows in fleet.by_effect.items():
+        if len(rows) < 2 or 2 * len(rows) <= len(judged):
+            continue
+        names = {row.robot for row in rows}
+        cause = (
+            "of their design, or of the robot file, which is the same, byte for byte, for all of "
+            "them"
+            if names <= fleet.same_file
+            else "of their design, or of what their robot files have in common"
+        )
+        lines.append(
+            f"{effect} is missing in {len(rows)} of {len(judged)}: what most robots of a fleet "
+            f"have is a matter {cause}, not of one robot.{_agree(rows, effect)}"
+        )
+    return lines
+
+
+def _agree(rows: Sequence[Row], effect: str) -> str:
+    """How far the robots' values of an effect lie apart, by its surest parameter."""
+    sure = believed(rows[0].values(effect))
+    if not sure:
+        return ""
+    parameter = max(sure, key=lambda name: _certainty(sure[name]))
+    values = [row.values(effect)[parameter]["value"] for row in rows]
+    if not all(value is not None and math.isfinite(value) for value in values):
+        return ""  # of some robot it is another one in each drive
+    low, high = f"{min(values):.4g}", f"{max(values):.4g}"
+    unit = sure[parameter]["unit"]
+    size = low if low == high else f"{low} to {high}"
+    return f" Fitted {parameter}: {size} {unit}".rstrip() + "."
+
+
+def _certainty(parameter: Mapping[str, Any]) -> float:
+    """Size in standard deviations; 0 where one of them is not known."""
+    value, std = (parameter[part] or math.nan for part in ("value", "std"))
+    return abs(value / std) if math.isfinite(value) and std > 0.0 else 0.0
+
+
+def _alone(fleet: Fleet) -> list[str]:
+    """What one robot alone has is its own."""
+    judged = sum(row.verdict != ERROR for row in fleet.rows)
+    found = [(effect, rows[0]) for effect, rows in fleet.by_effect.items() if len(rows) == 1]
+    if judged < 3 or not found:
+        return []
+    said = [f"{effect} ({row.robot})" for effect, row in found[:_NAMED]]
+    if len(found) > _NAMED:
+        said.append(f"{len(found) - _NAMED} more")
+    return [f"Missing in one robot alone, and so a matter of that robot: {listed(said)}."]
+
+
+def _errors(fleet: Fleet) -> list[str]:
+    failed = [row for row in fleet.rows if row.verdict == ERROR]
+    lines = [f"- {row.robot} could not be diagnosed: {row.error}" for row in failed[:_TOLD]]
+    if len(failed) > _TOLD:
+        lines.append(f"- and {len(failed) - _TOLD} more; --json has the reason of each.")
+    return lines
+
+
+def _left(fleet: Fleet) -> list[str]:
+    if not fleet.left:
+        return []
+    names = list(fleet.left[:_NAMED])
+    if len(fleet.left) > _NAMED:
+        names.append(f"{len(fleet.left) - _NAMED} more")
+    everyone = len(fleet.rows) + len(fleet.left)
+    return [f"Not done: {len(fleet.left)} of {everyone} are left, {listed(names)}."]
+
+
+def missing_words(row: Row) -> list[str]:
+    """What a robot is missing, an effect each with its fitted values."""
+    if row.verdict == "none":
+        return ["nothing"]
+    said = [f"{row.rivals[0]} or {listed(row.rivals[1:], 'or')}"] if len(row.rivals) > 1 else []
+    said += [_with_values(row, effect) for effect in row.missing]
+    if row.verdict == "unknown" and row.figures is not None:
+        cells = row.figures["depends_on"]
+        said.append(cells[0]["words"] if cells else "no effect of the library")
+    return said
+
+
+def _with_values(row: Row, effect: str) -> str:
+    values = [
+        f"{name} {with_std(item['value'], item['std'])} {item['unit']}".rstrip()
+        for name, item in believed(row.values(effect)).items()
+    ]
+    return "\n  ".join([f"{effect}:", *values]) if values else effect
+
+
+def next_words(row: Row) -> str:
+    """What to do about it, in a few words; `add` and `draft` are verbs of this tool."""
+    if row.verdict == "named":
+        return f"add {row.missing[0]}"
+    if row.verdict == "unknown":
+        return "draft"
+    if row.verdict == "ambiguous" and row.figures is not None:
+        move = row.figures["next_manoeuvre"]
+        if move is None:
+            return "use a ruler"
+        name = str(move["name"]).replace("_", " ")
+        return f"drive {name} ({move['minutes']:.0f} min)" if move["minutes"] else name
+    return ""
+
+
+def error_words(row: Row) -> str:
+    """Held-out error before and after in millimetres; empty where there is none."""
+    before, after = row.errors
+    return "" if math.isnan(before) else f"{_millimetres(before)} → {_millimetres(after)}"
+
+
+def _millimetres(value: float) -> str:
+    if math.isnan(value):
+        return "-"
+    return f"{1e3 * value:.1f}" if value < 0.1 else f"{1e3 * value:.0f}"
