@@ -14,7 +14,6 @@ from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.cli.calibrate_fit import PARTS_OF_A_LEG
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
@@ -22,7 +21,7 @@ from werrimbi_odom.inference.calibration.any_driving import Calibration, calibra
 from werrimbi_odom.inference.calibration.recorded_square import Record, recorded_square, squares_of
 from werrimbi_odom.inference.calibration.umbmark import corrected, umbmark
 from werrimbi_odom.inference.comparison.legs import LegErrors, joined, leg_errors, statistics
-from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, match
+from werrimbi_odom.inference.fitting.matching import PARTS_OF_A_LEG, QUARTER_TURN, match
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 

@@ -133,13 +133,14 @@ def rivals() -> list[HiddenSet]:
     lines, curves = "one_speed_line", "one_speed_curves"
     return [
         # A reference that is late by d is behind by v d; so is a robot that slips by v^2 / 2 at a
-        # start. At one speed nobody knows which.
-        HiddenSet("rivals", ("reference_delay=0.08",), 6001, lines),
-        HiddenSet("rivals", ("longitudinal_slip=0.03",), 6002, lines),
+        # start. At one speed, and not by much, nobody knows which.
+        HiddenSet("rivals", ("reference_delay=0.01",), 6008, lines),
+        HiddenSet("rivals", ("longitudinal_slip=0.06",), 6007, lines),
         # A point at x is at x ahead, one that is late by d at v d behind, where only positions are
         # measured; a late one is also aside, by half the curvature times (v d)^2, so d is small.
-        HiddenSet("rivals", ("reference_lever_arm=0.06",), 6003, curves, "positions_alone"),
-        HiddenSet("rivals", ("reference_delay=0.03",), 6006, curves, "positions_alone"),
+        # Of this seed the arm lies along x.
+        HiddenSet("rivals", ("reference_lever_arm=0.006",), 6016, curves, "positions_alone"),
+        HiddenSet("rivals", ("reference_delay=0.015",), 6006, curves, "positions_alone"),
         # A point at x moves sideways by x times the turn; a tyre by creep times speed times turn.
         HiddenSet("rivals", ("lateral_slip=0.02",), 6005, curves),
     ]

@@ -18,6 +18,9 @@ from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
+UNUSUAL = 25.0
+"""Times the median variance, beyond which a leg's promise says nothing about noise."""
+
 
 @dataclass(frozen=True)
 class Side:
@@ -42,11 +45,17 @@ class Side:
 
     @property
     def floor(self) -> float:
-        """Position error that the noise of the final model promises [m]."""
+        """Position error that the noise of the final model promises [m].
+
+        Without the few legs that begin with a heading that nobody knows yet.
+        """
         errors = self.after.errors.chosen(~self.after.outlier)
         measured = np.isfinite(errors.error[:, 0])
         promised = errors.covariance[measured, 0, 0] + errors.covariance[measured, 1, 1]
-        return float(np.sqrt(np.mean(promised))) if promised.size else float("nan")
+        if promised.size == 0:
+            return float("nan")
+        usual = promised <= UNUSUAL * np.median(promised)
+        return float(np.sqrt(np.mean(promised[usual])))
 
 
 @dataclass(frozen=True)

@@ -118,6 +118,8 @@ def fit_model(
     if find_jumps:
         point = _robustly(laid, point, kind, knobs)
     point = replace(point, variances=held_variances(point.variances, sigma_xy, sigma_yaw))
+    if rounds > 0:
+        point = _turned_to_the_first_legs(laid, point, kind)
     held = (sigma_xy is not None, sigma_yaw is not None)
     free, covariance = shared_of(knobs), np.zeros((0, 0))
     for _ in range(rounds):
@@ -270,6 +272,30 @@ def _nuisances(robot: Robot, run: MatchedRun) -> dict[str, float]:
     if not run.measured.has_position.any():
         own[YAW_DRIFT] = 0.0  # a heading alone is a gyro's, and gyros drift
     return own
+
+
+def _turned_to_the_first_legs(runs: Together, point: Point, kind: ReferenceKind) -> Point:
+    """The point with each start heading that was not measured guessed anew, where that is better.
+
+    A heading that suited a model without some effect may be so far off with it that least squares
+    do not find the way.
+    """
+    model = point.model
+    if all(START_YAW not in mine for mine in model.own):
+        return point
+    own = []
+    for index, (run, mine) in enumerate(zip(runs.runs, model.own, strict=True)):
+        heading = _first_heading(model.of_run(index), run)
+        own.append(dict(mine) if heading is None else {**mine, START_YAW: heading})
+    squares = [
+        np.add.reduceat(
+            np.sum(unexpected(runs, tried, kind).whitened()[0] ** 2, -1), runs.legs[:-1]
+        )
+        for tried in (point, replace(point, model=Model(model.robot, tuple(own))))
+    ]
+    better = squares[1] < squares[0]
+    chosen = [new if took else mine for new, mine, took in zip(own, model.own, better, strict=True)]
+    return replace(point, model=Model(model.robot, tuple(chosen)))
 
 
 def _first_heading(robot: Robot, run: MatchedRun) -> float | None:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -54,16 +55,18 @@ class Promise:
     minutes: float
     """Duration."""
     rise: float
-    """Of the cost of the wrong rival, the least sure pair of rivals and the lesser way round."""
+    """Of the cost of the wrong rival: the first against the others, the least sure of these pairs
+    and the lesser way round."""
+    every: float
+    """The same of all pairs of rivals: with it a single drive leaves one alone."""
     against: str
     """The rival that is the hardest to tell from the first one."""
     apart: Floats
     """By how much the legs differ between the first one and that, (m, 3)."""
 
-    @property
-    def rate(self) -> float:
-        """Rise in a minute."""
-        return self.rise / self.minutes
+    def minutes_for(self, rise: float) -> float:
+        """How long to drive, if `rise` comes with every turn of the manoeuvre."""
+        return max(ENOUGH * self.minutes / rise, 1.0) if rise > 0.0 else np.inf
 
 
 def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
@@ -137,21 +140,30 @@ def promises(diagnosis: Diagnosis) -> list[Promise]:
         drives, minutes = imagined(ideal, diagnosis.runs, point, diagnosis.kind, pace)
         ahead = look_at(drives, looked_at, knobs)
         there = target_at(ahead, first)
-        worst: tuple[float, Candidate] | None = None
-        for rival in rivals[1:]:
-            old, new = (
-                target_along(item, rival.name, sizes[rival.name]) for item in (before, ahead)
+        stands = {rivals[0].name: ((before, target), (ahead, there))} | {
+            name: (
+                (before, target_along(before, name, size)),
+                (ahead, target_along(ahead, name, size)),
             )
-            rise = min(
-                _gained((before, target), (ahead, there), rival),
-                _gained((before, old), (ahead, new), rivals[0]),
+            for name, size in sizes.items()
+        }
+        rises = {
+            (one.name, other.name): min(
+                _gained(*stands[one.name], other), _gained(*stands[other.name], one)
             )
-            if worst is None or rise < worst[0]:
-                worst = rise, rival
-        assert worst is not None
-        apart = difference((before, target), (ahead, there), worst[1])
-        found.append(Promise(ideal, minutes, worst[0], worst[1].name, apart))
-    return sorted(found, key=lambda item: -item.rate)
+            for one, other in combinations(rivals, 2)
+            if other.name not in one.effect.twins
+        }
+        of_first = {pair[1]: rise for pair, rise in rises.items() if pair[0] == rivals[0].name}
+        if not of_first:  # twins by algebra: no drive tells
+            continue
+        against = min(of_first, key=lambda name: of_first[name])
+        rival = next(item for item in rivals if item.name == against)
+        apart = difference(*stands[rivals[0].name], rival)
+        found.append(
+            Promise(ideal, minutes, of_first[against], min(rises.values()), against, apart)
+        )
+    return sorted(found, key=lambda item: -item.rise / item.minutes)
 
 
 def _gained(known: tuple[Look, Target], ahead: tuple[Look, Target], rival: Candidate) -> float:
@@ -160,10 +172,14 @@ def _gained(known: tuple[Look, Target], ahead: tuple[Look, Target], rival: Candi
 
 
 def _best(rivals: Sequence[str], weighed: Sequence[Promise]) -> Manoeuvre | None:
-    best = weighed[0]
-    if best.rate * LONGEST < ENOUGH:
+    """The quickest to leave one rival alone; else to tell the first from all others."""
+    best = min(weighed, key=lambda item: item.minutes_for(item.every))
+    minutes = best.minutes_for(best.every)
+    if minutes > LONGEST:
+        best = weighed[0]
+        minutes = best.minutes_for(best.rise)
+    if minutes > LONGEST:
         return None
-    minutes = max(ENOUGH / best.rate, 1.0)
     why = (
         f"{rivals[0]} and {best.against} look alike on these drives, but {best.ideal.where} "
         f"they differ by {_size(best.apart)}"
