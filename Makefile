@@ -39,6 +39,7 @@ bench: setup  ## how fast, as ratios measured side by side
 	$(BIN)/python benchmark/piece_tolerance.py
 	$(BIN)/python benchmark/node_cost.py
 	$(BIN)/python benchmark/diagnosis_hour.py
+	$(BIN)/python benchmark/page_hour.py
 
 evidence: setup  ## the long tests: hidden effects (tables to docs/evidence.md), many seeds, soaks
 	$(BIN)/python -m test.hidden

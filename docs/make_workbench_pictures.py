@@ -19,6 +19,7 @@ PICTURES = Path(__file__).parent / "pictures"
 TRAIN = ("arcs", "free_brisk", "square_ccw", "eights_and_spins")
 HOLDOUT = ("free_calm", "slalom")
 SIZE = {"width": 1440, "height": 900}
+PHONE = {"width": 390, "height": 1500}
 LONG = 300_000  # for the diagnosis [ms]
 
 
@@ -59,6 +60,7 @@ def look(browser: str, address: str) -> None:
         page = running.new_page(viewport=SIZE, color_scheme="light")
         page.set_default_timeout(LONG)
         page.goto(address)
+        page.wait_for_selector('[data-key="go-compare"]')
         page.wait_for_selector(".plot .main-svg")
         taken(page, "compare")
         page.click('[data-key="motion-arc"]')
@@ -88,6 +90,10 @@ def look(browser: str, address: str) -> None:
         page.click('[data-key="save"]')
         page.wait_for_selector(".saved")
         taken(page, "save")
+        page.set_viewport_size(PHONE)
+        page.click('[data-key="go-compare"]')
+        page.wait_for_selector(".plot .main-svg")
+        taken(page, "phone")
         running.close()
 
 

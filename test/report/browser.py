@@ -36,6 +36,7 @@ def visit(
     dark: bool = False,
     width: int = 1280,
     picture: Path | None = None,
+    tallest: int | None = None,
 ) -> Visit:
     """Open a page, wait until all of it is drawn, run scripts, take a picture of the whole page.
 
@@ -45,9 +46,11 @@ def visit(
         JavaScript expressions; promises are waited for.
     dark
         What the browser's user prefers.
+    tallest
+        Of the picture; what lies below is left out [pixels].
     """
     return asyncio.run(
-        asyncio.wait_for(_visit(path, scripts, browser, dark, width, picture), PATIENCE)
+        asyncio.wait_for(_visit(path, scripts, browser, dark, width, picture, tallest), PATIENCE)
     )
 
 
@@ -58,6 +61,7 @@ async def _visit(
     dark: bool,
     width: int,
     picture: Path | None,
+    tallest: int | None,
 ) -> Visit:
     import choreographer
 
@@ -110,6 +114,7 @@ async def _visit(
             found.answers.append(await _asked(session, script))
         if picture is not None:
             height = await _asked(session, "document.documentElement.scrollHeight")
+            height = min(height, tallest or height)
             shot = await send(
                 "Page.captureScreenshot",
                 {

@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,6 +17,7 @@ from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Amount
+from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.report.adding_figures import error_falling_figure, steps_of
 from werrimbi_odom.report.compare_figures import (
@@ -25,6 +28,7 @@ from werrimbi_odom.report.compare_figures import (
     variables_of,
 )
 from werrimbi_odom.report.compare_path_figure import covariance_along
+from werrimbi_odom.report.decimate import FEWEST, MARKS, MOST, along_path
 from werrimbi_odom.report.diagnosis_figures import (
     before_after,
     before_after_figure,
@@ -33,6 +37,7 @@ from werrimbi_odom.report.diagnosis_figures import (
     manoeuvre_figure,
     ranking_figure,
 )
+from werrimbi_odom.report.fit_figure import leg_figure
 from werrimbi_odom.report.response import parts_of, response
 from werrimbi_odom.report.wheel_angle import once_a_turn, over_a_turn, wheel_errors
 
@@ -135,20 +140,71 @@ def test_an_ellipse_grows_along_the_way_and_begins_with_the_references_noise(
     assert size[-1] > 5.0 * size[0]
 
 
+def points_and_marks(figure: Any) -> tuple[int, int]:
+    """Corners of lines, and marks, each of which is an element of the page."""
+    points = marks = 0
+    for trace in figure.data:
+        if trace.x is None or trace.type != "scatter":
+            continue
+        points += len(trace.x)
+        marks += len(trace.x) if "markers" in trace.mode else 0
+    return points, marks
+
+
 def test_every_leg_is_counted_and_few_are_drawn() -> None:
-    """A quarter of an hour: more legs than a point each is worth, all in the means."""
+    """A quarter of an hour: more legs than a mark each is worth, all in the means."""
     found = compare([eccentric_run("long", 5, 15.0)], PLAIN, leg=0.05)
-    assert found.legs.run.size > 5000
+    assert found.legs.run.size > 5 * MARKS
     for figure in (
         path_figure(found),
         legs_by_motion_figure(found),
         nees_figure(found),
         *(error_against_figure(found, name) for name in variables_of(found)),
     ):
-        points = sum(len(trace.x) for trace in figure.data if trace.x is not None)
-        assert points < 15000
+        points, marks = points_and_marks(figure)
+        assert points < 3 * MOST
+        assert marks < 2 * MARKS
     _, means, *_ = error_against_figure(found, "speed [m/s]").data
     assert sum(means.customdata) == int((~found.legs.outlier).sum())
+
+
+def test_a_calibrations_median_is_of_all_legs_though_few_are_drawn() -> None:
+    errors = np.random.default_rng(3).normal(0.0, 0.01, (20 * MARKS, 2))
+    figure = leg_figure(errors, 0.5 * errors, title="", subtitle="")
+    assert points_and_marks(figure)[1] <= MARKS
+    median = 1e3 * np.median(np.hypot(*errors.T))
+    assert figure.data[0].name == f"before: median {median:.1f} mm"
+    largest = 1e3 * np.abs(errors[:, 0]).max()
+    assert np.abs(figure.data[0].x).max() == pytest.approx(largest), "the worst are never left out"
+
+
+@pytest.mark.parametrize("most", [FEWEST, MOST])
+def test_a_long_path_keeps_its_ends_and_few_points(most: int) -> None:
+    """Standing still for half of the time, too."""
+    way = np.concatenate([np.linspace(0.0, 9.0, 50_000), np.full(50_000, 9.0)])
+    places = np.exp(1j * way)
+    kept = along_path(places, most)
+    assert 0.9 * most <= kept.size <= most + 2
+    assert {0, places.size - 1} <= set(kept.tolist())
+    assert np.abs(np.diff(places[kept])).max() < 2.0 * 9.0 / most
+
+
+@pytest.mark.parametrize("gains", [(40.0, 15.0), (-60.0, -300.0)])
+def test_no_text_of_the_ranking_lies_on_the_effects_names(
+    diagnosis: Diagnosis, gains: tuple[float, float]
+) -> None:
+    """A bar to the left has its text to the right of zero."""
+    ranked = tuple(
+        replace(item, holdout=Sides(1.0, 1.0 - gain / 100.0), train=None)
+        for item, gain in zip(diagnosis.ranking, gains, strict=False)
+    )
+    figure = ranking_figure(replace(diagnosis, ranking=ranked))
+    low, high = figure.layout.xaxis.range
+    assert low <= 0.0 < high
+    beyond = [text for text in figure.data[1].text if text]
+    assert len(beyond) == sum(gain > 0.0 for gain in gains)
+    assert all(note.x == 0.0 and note.xanchor == "left" for note in figure.layout.annotations)
+    assert len(figure.layout.annotations) == sum(gain < 0.0 for gain in gains)
 
 
 def test_all_figures_are_json_without_surprises(comparison: Comparison) -> None:

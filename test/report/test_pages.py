@@ -7,6 +7,7 @@ Skipped where no Chrome or Chromium is installed.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from pathlib import Path
 
@@ -14,7 +15,7 @@ import numpy as np
 import pytest
 from browser import Visit
 
-from werrimbi_odom.inference.adding.adding import Added
+from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.report.adding_page import write_adding_page
@@ -96,6 +97,59 @@ def test_a_name_from_a_record_is_text_and_not_html(compare_page: Path, look: Loo
         name and name.startswith("&lt;b&gt;third&lt;/b&gt; &amp; last:")
         for name in visit.answers[4]
     )
+
+
+def test_no_figure_offers_to_be_uploaded(compare_page: Path, look: Look) -> None:
+    """Plotly 4 does so, if it is not told otherwise."""
+    visit = look(
+        compare_page,
+        UNDRAWN,
+        FIGURES,
+        "[...document.querySelectorAll('.modebar-btn')].map(item => item.dataset.title)",
+        "[...document.querySelectorAll('.figure')].map(item => item._context.plotlyServerURL)",
+    )
+    assert_well_drawn(visit)
+    buttons, addresses = visit.answers[2:]
+    assert "Zoom" in buttons
+    assert not [title for title in buttons if re.search("share|upload|cloud|edit", title, re.I)]
+    assert set(addresses) == {""}
+
+
+def test_what_is_looked_at_is_drawn_first(compare_page: Path, look: Look) -> None:
+    """A link to the last figure does not wait for the others; in the end all are drawn."""
+    visit = look(
+        compare_page,
+        UNDRAWN,
+        FIGURES,
+        "(() => { location.hash = '#against'; const order = []; "
+        "new MutationObserver(all => all.forEach(one => order.push(one.target.dataset.figure)))"
+        ".observe(document.querySelector('main'), {subtree: true, attributeFilter: "
+        "['data-drawn']}); return werrimbi.show(true).then(() => order); })()",
+    )
+    assert_well_drawn(visit)
+    order = list(dict.fromkeys(visit.answers[2]))
+    assert order.index("against") < order.index("path")
+    assert set(order) == {"path", "motion", "nees", "against"}
+
+
+def test_paper_has_every_figure_on_white(compare_page: Path, look: Look) -> None:
+    """Printed the moment it opens, in the dark, before anything else is drawn."""
+    visit = look(
+        compare_page,
+        UNDRAWN,
+        FIGURES,
+        "(() => { werrimbi.show(true); dispatchEvent(new Event('beforeprint')); "
+        "return new Promise(done => setTimeout(() => done("
+        "[...document.querySelectorAll('[data-figure]')].map("
+        "f => [f.dataset.drawn, f._fullLayout.width])), 2000)); })()",
+        "(() => { dispatchEvent(new Event('afterprint')); "
+        "return new Promise(done => setTimeout(() => done("
+        "[...document.querySelectorAll('[data-figure]')].map(f => f.dataset.drawn)), 3000)); })()",
+        dark=True,
+    )
+    assert_well_drawn(visit)
+    assert visit.answers[2] == [["light", 690]] * 4
+    assert set(visit.answers[3]) == {"dark"}
 
 
 def test_keys_move_and_zoom_a_figure(compare_page: Path, look: Look) -> None:

@@ -162,6 +162,15 @@ def test_the_page_follows_the_systems_dark_theme_and_can_be_turned(another: Look
     another.focused("theme")
 
 
+def test_no_figure_offers_to_be_uploaded(looked: Looked) -> None:
+    looked.page.wait_for_selector(".plot .main-svg")
+    buttons = looked.page.locator(".modebar-btn").evaluate_all(
+        "all => all.map(item => item.dataset.title)"
+    )
+    assert "Zoom" in buttons
+    assert not [title for title in buttons if re.search("share|upload|cloud|edit", title, re.I)]
+
+
 def test_another_name_or_another_site_is_refused(served: Served) -> None:
     place = urlsplit(served.address)
     assert place.hostname == "127.0.0.1"

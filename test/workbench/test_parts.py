@@ -11,6 +11,7 @@ from test.workbench.session import written
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
+from werrimbi_odom.workbench import floor
 from werrimbi_odom.workbench.floor import classes_of, floor_figure
 from werrimbi_odom.workbench.parts import (
     CellPart,
@@ -73,6 +74,18 @@ def test_the_floor_draws_every_leg_once_in_its_class(comparison: Comparison) -> 
     kept = ~comparison.legs.outlier
     share = 1.0 - comparison.main.all.figures.coverage_95
     assert outside.sum() / kept.sum() == pytest.approx(share)
+
+
+def test_more_legs_than_can_be_told_apart_are_counted_but_not_all_drawn(
+    comparison: Comparison, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = floor_figure(comparison)
+    monkeypatch.setattr(floor, "_LEGS", 5)
+    thin = floor_figure(comparison)
+    assert [line.name for line in thin.data] == [line.name for line in whole.data]
+    for line in thin.data[:-1]:
+        assert np.isnan(line.x).sum() <= 5
+    assert all(line.mode == "lines" for line in whole.data), "marks are dear"
 
 
 def test_the_worst_legs_come_first(comparison: Comparison) -> None:

@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> int:
         figures,
         figure,
         title="Calibration by maximum likelihood",
-        words=_verdict(result),
+        words=f"{_verdict(result)}\n\n{_found(result)}",
         see="Each mark is a short leg, seen by the robot: the error along, and to its left. After "
         "the calibration the cloud should be smaller and lie about the origin.",
         printed=False,
@@ -104,32 +104,51 @@ def _verdict(result: Calibration) -> str:
     return "\n".join([*lines, "Next: `werrimbi diagnose` says which physical effect explains it."])
 
 
-def _say(result: Calibration) -> None:
-    from rich.console import Console
-    from rich.table import Table
+_HEADS = ("parameter", "before", "after", "± 1σ", "")
 
-    console = Console()
-    table = Table(title="Calibration by maximum likelihood")
-    for heading in ("parameter", "before", "after", "± 1σ", ""):
-        left = heading in ("parameter", "")
-        table.add_column(heading, justify="left" if left else "right", no_wrap=bool(heading))
+
+def _found(result: Calibration) -> str:
+    """For the report, the table that `_say` prints."""
+    from werrimbi_odom.report.compare_tables import table
+
+    return table("What was found", (*_HEADS[:-1], "unit, remark"), _rows(result))
+
+
+def _rows(result: Calibration) -> list[Sequence[str]]:
+    rows: list[Sequence[str]] = []
     for name, item in result.multipliers.items():
         std = "?" if item.std is None else f"{item.std:.6f}"
         remark = "" if item.determined else "not determined; left alone"
-        table.add_row(name, f"{item.before:.6f}", f"{item.value:.6f}", std, remark)
+        rows.append((name, f"{item.before:.6f}", f"{item.value:.6f}", std, remark))
     for name, noise in result.noises.items():
         before = getattr(result.fit.robot, name, None)
         if not noise.determined:
             remark = f"not determined (below {2.0 * noise.std:.0e})"
         else:
             remark = "m^0.5" if name.endswith("noise") else "m" if name.endswith("xy") else "rad"
-        table.add_row(
-            name,
-            "" if before is None else f"{before:.2e}",
-            f"{noise.value:.2e}" if noise.determined else "",
-            f"{noise.std:.1e}" if noise.determined else "",
-            remark,
+        rows.append(
+            (
+                name,
+                "" if before is None else f"{before:.2e}",
+                f"{noise.value:.2e}" if noise.determined else "",
+                f"{noise.std:.1e}" if noise.determined else "",
+                remark,
+            )
         )
+    return rows
+
+
+def _say(result: Calibration) -> None:
+    from rich.console import Console
+    from rich.table import Table
+
+    console = Console()
+    table = Table(title="Calibration by maximum likelihood")
+    for heading in _HEADS:
+        left = heading in ("parameter", "")
+        table.add_column(heading, justify="left" if left else "right", no_wrap=bool(heading))
+    for row in _rows(result):
+        table.add_row(*row)
     console.print(table)
     left_out = sum(int(legs.sum()) for legs in result.excluded)
     if left_out:

@@ -12,10 +12,13 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.recordings import Recordings, add_recording_arguments, read_recordings
+from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
+    from werrimbi_odom.fleet.asked import Recordings
+    from werrimbi_odom.workbench.job import Job
+    from werrimbi_odom.workbench.opening import Opening
     from werrimbi_odom.workbench.tab import Shared
 
 HELP = "a local page: compare, diagnose, add an effect, watch the error fall, save"
@@ -58,33 +61,42 @@ def run(arguments: argparse.Namespace) -> int:
     # It would keep a folder .nicegui where the command is run, and ask the network for a relay.
     os.environ["NICEGUI_STORAGE_PATH"] = str(Path(tempfile.gettempdir()) / ".werrimbi_none")
     os.environ.pop("NICEGUI_REDIS_URL", None)
+    from werrimbi_odom.workbench.job import Job
     from werrimbi_odom.workbench.saving import refuse
     from werrimbi_odom.workbench.server import listening, serve
+    from werrimbi_odom.workbench.tasks import Open
 
     if arguments.out is not None:
         refuse(arguments.out, arguments.force)
     at = listening(arguments.port)
-    shared = _shared(arguments, read_recordings(arguments))
+    job = Job(Open())
+    job.start()
+    try:
+        opening = _opening(job, arguments, read_recordings(arguments))
+    except BaseException:
+        job.cancel()
+        raise
 
     def ready(address: str) -> None:
-        if arguments.json is not None:
-            _tell(arguments.json, address, shared)
         print(f"{address}  (this machine only; Ctrl-C ends it)", flush=True)
         if arguments.open:
             import webbrowser
 
             webbrowser.open(address)
 
-    serve(shared, at, ready)
+    def opened(address: str, shared: Shared) -> None:
+        if arguments.json is not None:
+            _tell(arguments.json, address, shared)
+
+    serve(opening, at, ready, opened)  # server and page come up while the drives are compared
     return 0
 
 
-def _shared(arguments: argparse.Namespace, given: Recordings) -> Shared:
-    """Everything opened and compared once, before anybody looks."""
-    from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.workbench.opened import Given, Told, opened
+def _opening(job: Job, arguments: argparse.Namespace, given: Recordings) -> Opening:
+    """What is to be opened and compared once, for all who look."""
+    from werrimbi_odom.workbench.opened import Given, Told
+    from werrimbi_odom.workbench.opening import Opening
     from werrimbi_odom.workbench.saving import Target, beside
-    from werrimbi_odom.workbench.tab import Shared
 
     told = Told(
         given.kind,
@@ -94,13 +106,15 @@ def _shared(arguments: argparse.Namespace, given: Recordings) -> Shared:
         given.sigma_yaw,
         tuple(arguments.effects),
     )
-    with share_done("comparing") as show:
-        robot = given.source.robot
-        found = opened(Given(robot, given.runs, given.holdout, told))
-        look = found.look(robot, show)
     out = arguments.out or beside(Path(arguments.robot))
-    force = arguments.force and arguments.out is not None
-    return Shared(found, look, given.source, given.collection, Target(out, force))
+    target = Target(out, arguments.force and arguments.out is not None)
+    return Opening(
+        job,
+        Given(given.source.robot, given.runs, given.holdout, told),
+        given.source,
+        given.collection,
+        target,
+    )
 
 
 def _tell(path: Path, address: str, shared: Shared) -> None:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from werrimbi_odom.inference.adding.adding import Added
+from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
-from werrimbi_odom.report.decimate import MOST, small, spread_and_extremes
-from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, escaped, paled, plain
+from werrimbi_odom.report.decimate import MARKS, small, spread_and_extremes
+from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, PAPER, escaped, paled, plain
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -63,13 +63,14 @@ def error_falling_figure(steps: Sequence[Step], floor: float = float("nan")) -> 
     )
     unit, factor = ("m", 1.0) if largest > 0.1 else ("mm", 1e3)
     names = [escaped(step.name) for step in steps]
-    for name, values, look in (
+    for name, values, ink, look in (
         (
             "drives of the fit",
             [factor * step.train for step in steps],
+            INK,
             {"color": paled(GREY, 0.25), "line": {"color": GREY, "width": 1.5}},
         ),
-        ("held-out drives", [factor * step.holdout for step in steps], {"color": BLUE}),
+        ("held-out drives", [factor * step.holdout for step in steps], PAPER, {"color": BLUE}),
     ):
         figure.add_bar(
             x=names,
@@ -77,8 +78,11 @@ def error_falling_figure(steps: Sequence[Step], floor: float = float("nan")) -> 
             name=name,
             marker=look,
             text=[f"{value:.2f}" if np.isfinite(value) else "" for value in values],
-            textposition="outside",
-            cliponaxis=False,
+            # At the foot of the bars: at their heads the floor's line would run through it.
+            textposition="inside",
+            insidetextanchor="start",
+            textangle=0,
+            textfont={"size": 15, "color": ink},
             hovertemplate=f"%{{x}}, {name}<br>%{{y:.3g}} {unit}<extra></extra>",
         )
     if np.isfinite(floor):
@@ -110,7 +114,7 @@ def held_out_legs_figure(added: Added) -> go.Figure:
         if error.size == 0:
             continue
         size = np.hypot(error[:, 0], error[:, 1])
-        drawn = error[spread_and_extremes(size, MOST // 2)]
+        drawn = error[spread_and_extremes(size, MARKS // 2)]
         figure.add_scatter(
             x=small(drawn[:, 0]),
             y=small(drawn[:, 1]),

@@ -13,9 +13,11 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.compare_channels import CHANNELS, NAMES, measured_channels
 from werrimbi_odom.report.compare_path_figure import path_figure
-from werrimbi_odom.report.decimate import MOST, small, spread_and_extremes
-from werrimbi_odom.report.style import BLUE, FAINT, GREEN, GREY, INK, ORANGE, paled, plain
+from werrimbi_odom.report.decimate import MARKS, small, spread_and_extremes
+from werrimbi_odom.report.nees_figure import nees_figure
+from werrimbi_odom.report.style import BLUE, FAINT, GREY, paled, plain
 from werrimbi_odom.report.wheel_angle import WHEEL_ANGLES, wheel_angle_figure
 
 if TYPE_CHECKING:
@@ -30,20 +32,9 @@ __all__ = [
     "variables_of",
 ]
 
-NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
-CHANNELS = (("along", "mm", 1e3), ("sideways", "mm", 1e3), ("heading", "°", float(np.degrees(1.0))))
-"""Name, unit and factor to it of each column of the legs' errors."""
-
 _TWO_SIGMA = 1.959964
 _BINS = 12
 _FEWEST = 5  # legs in a bin whose mean is drawn
-
-
-def measured_channels(comparison: Comparison) -> list[int]:
-    """Columns of the errors that were measured at all."""
-    return [
-        column for column in range(3) if np.isfinite(comparison.legs.errors.error[:, column]).any()
-    ]
 
 
 def _panels(titles: Sequence[str], *, rows: bool = False, **more: object) -> go.Figure:
@@ -141,85 +132,6 @@ def _promise(
     )
 
 
-def nees_figure(comparison: Comparison) -> go.Figure:
-    """NEES by length of leg and type of motion, with the range that an honest one lies in."""
-    import plotly.graph_objects as go
-    from scipy.stats import chi2
-
-    figure = go.Figure()
-    free = len(measured_channels(comparison))
-    lengths = [f"{item.leg:g} m" for item in comparison.lengths]
-    looks = {
-        "all": (INK, "diamond", None),
-        "line": (BLUE, "circle", -0.24),
-        "arc": (ORANGE, "square", 0.0),
-        "spin": (GREEN, "triangle-up", 0.24),
-    }
-    drawn = False
-    for kind, (colour, symbol, aside) in looks.items():
-        if aside is None:
-            continue
-        at, values, low, high, texts = [], [], [], [], []
-        for number, item in enumerate(comparison.lengths):
-            found = item.by_motion[kind].figures
-            if found.count < 2 or not np.isfinite(found.nees):
-                continue
-            degrees = free * found.count
-            bounds = chi2.ppf([0.025, 0.975], degrees) / degrees
-            at.append(number + aside)
-            values.append(found.nees)
-            low.append(float(bounds[0]))
-            high.append(float(bounds[1]))
-            texts.append(
-                f"{NAMES[kind]}, legs of {item.leg:g} m: {found.count}<br>NEES {found.nees:.2f}, "
-                f"honest within {bounds[0]:.2f} to {bounds[1]:.2f}"
-                f"<br>{100.0 * found.coverage_95:.0f} % inside the 95 % ellipsoid"
-            )
-        if not at:
-            continue
-        x, y = _bars(at, low, high)
-        figure.add_scatter(
-            x=x,
-            y=y,
-            mode="lines",
-            line={"color": paled(GREY, 0.45), "width": 16},
-            name="where an honest covariance lies, 19 times in 20",
-            legendgroup="bounds",
-            showlegend=not drawn,
-            hoverinfo="skip",
-        )
-        drawn = True
-        figure.add_scatter(
-            x=at,
-            y=values,
-            mode="markers",
-            name=NAMES[kind],
-            text=texts,
-            hovertemplate="%{text}<extra></extra>",
-            marker={"color": colour, "symbol": symbol, "size": 12},
-        )
-    figure.add_hline(y=1.0, line={"color": GREY, "width": 1.5, "dash": "dash"})
-    figure.update_xaxes(
-        title="length of the legs", tickvals=list(range(len(lengths))), ticktext=lengths
-    )
-    figure.update_yaxes(title="NEES (1 is honest)")
-    plain(figure, height=430)
-    ticks = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 1e4, 1e5]
-    figure.update_yaxes(type="log", tickvals=ticks, ticktext=[f"{tick:g}" for tick in ticks])
-    figure.update_xaxes(zeroline=False)
-    return figure
-
-
-def _bars(at: Sequence[float], low: Sequence[float], high: Sequence[float]) -> tuple[list, list]:  # type: ignore[type-arg]
-    """Vertical strokes as one line with gaps."""
-    x: list[float | None] = []
-    y: list[float | None] = []
-    for where, bottom, top in zip(at, low, high, strict=True):
-        x += [where, where, None]
-        y += [bottom, top, None]
-    return x, y
-
-
 def variables_of(comparison: Comparison) -> list[str]:
     """What errors can be drawn against, those that they go with most surely first."""
     varied = [item.name for item in comparison.variables]
@@ -250,7 +162,7 @@ def error_against_figure(comparison: Comparison, variable: str) -> go.Figure:
         name, unit, factor = CHANNELS[column]
         error = factor * legs.errors.error[:, column]
         rows = np.flatnonzero(known & np.isfinite(error))
-        drawn = rows[spread_and_extremes(error[rows], MOST // len(columns))]
+        drawn = rows[spread_and_extremes(error[rows], MARKS // 2)]
         figure.add_scatter(
             x=small(values[drawn]),
             y=small(error[drawn]),

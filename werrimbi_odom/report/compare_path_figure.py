@@ -14,7 +14,7 @@ from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.trajectory import trajectory
-from werrimbi_odom.report.decimate import MOST, along_path, small, spread_and_extremes
+from werrimbi_odom.report.decimate import FEWEST, MOST, along_path, small, spread_and_extremes
 from werrimbi_odom.report.path_figure import ellipse, spread_along_path
 from werrimbi_odom.report.style import (
     BLUE,
@@ -48,7 +48,7 @@ def path_figure(comparison: Comparison, run: int | None = None) -> go.Figure:
     figure = go.Figure()
     which = range(len(comparison.paths)) if run is None else (run,)
     single = len(which) == 1
-    most = max(200, MOST // max(len(which), 1))
+    most = max(FEWEST, MOST // max(len(which), 1))
     for index in which:
         _paths(
             figure, comparison, index, most, predicted=len(which) <= _FEW, first=index == which[0]
@@ -155,7 +155,7 @@ def _legs(figure: go.Figure, comparison: Comparison, run: int | None) -> None:
         x=small(middle.real),
         y=small(middle.imag),
         mode="markers",
-        name="leg, coloured by its error",
+        showlegend=False,
         text=texts,
         hovertemplate="%{text}<extra></extra>",
         marker={
@@ -164,6 +164,15 @@ def _legs(figure: go.Figure, comparison: Comparison, run: int | None) -> None:
             "size": small(8.0 + 8.0 * np.clip(size[rows] / max(top, 1e-9), 0.0, 1.0)),
             "line": {"width": 1, "color": PAPER},
         },
+    )
+    # A mark for the legend alone: that of many colours is black there, and not seen in the dark.
+    figure.add_scatter(
+        x=[None],
+        y=[None],
+        mode="markers",
+        name="leg, coloured by its error",
+        marker={"color": GREY, "size": 12},
+        hoverinfo="skip",
     )
     figure.update_layout(
         coloraxis={

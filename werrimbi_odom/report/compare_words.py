@@ -24,15 +24,22 @@ _CHANNELS = {
 }
 
 
-def words_of(comparison: Comparison, *, next_step: str = "werrimbi diagnose") -> str:
+def words_of(
+    comparison: Comparison,
+    *,
+    next_step: str = "werrimbi diagnose",
+    verdict: Verdict | None = None,
+) -> str:
     """A few sentences, filled to 80 columns.
 
     Parameters
     ----------
     next_step : str
         Command that looks for what is missing.
+    verdict : Verdict, optional
+        If it is known already.
     """
-    verdict = verdict_of(comparison)
+    verdict = verdict or verdict_of(comparison)
     paragraphs = [_headline(comparison, verdict)]
     if verdict.enough:
         paragraphs += _by_motion(comparison, verdict)

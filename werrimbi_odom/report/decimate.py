@@ -8,7 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 MOST = 4000
-"""Points of a figure, about."""
+"""Points of a figure's lines, about."""
+
+MARKS = 1000
+"""Marks of a picture, at the most: each is an element of the page, dear where a point is cheap."""
+
+FEWEST = 20
+"""Points of one line of very many, so that it still has a shape."""
 
 
 def along_path(places: NDArray[np.complex128], most: int = MOST) -> NDArray[np.intp]:
@@ -27,7 +33,7 @@ def along_path(places: NDArray[np.complex128], most: int = MOST) -> NDArray[np.i
     return np.unique(np.minimum(kept, places.size - 1)).astype(np.intp)
 
 
-def spread_and_extremes(values: NDArray[np.float64], most: int = MOST) -> NDArray[np.intp]:
+def spread_and_extremes(values: NDArray[np.float64], most: int = MARKS) -> NDArray[np.intp]:
     """Indices of rows to draw as points: the largest of them in size, and of the rest every few."""
     if values.size <= most:
         return np.arange(values.size)

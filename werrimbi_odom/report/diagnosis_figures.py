@@ -16,13 +16,10 @@ from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.before_after_figure import before_after, before_after_figure
-from werrimbi_odom.report.decimate import MOST, small
+from werrimbi_odom.report.decimate import MARKS, small
+from werrimbi_odom.report.dependence_figure import dependence_figure
 from werrimbi_odom.report.diagnosis_numbers import length
-from werrimbi_odom.report.evidence_figures import (
-    dependence_figure,
-    evidence_map_figure,
-    ordered_cells,
-)
+from werrimbi_odom.report.evidence_figures import evidence_map_figure, ordered_cells
 from werrimbi_odom.report.manoeuvre_figure import ideal_of, manoeuvre_figure
 from werrimbi_odom.report.sketches import effect_sketch
 from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, escaped, paled, plain
@@ -44,6 +41,9 @@ __all__ = [
 ]
 
 _MOST_BARS = 10
+_PER_EFFECT = 52  # height of its two bars and the gap [pixels]
+_GAP = 0.3
+_WORST = -60.0  # a bar that is longer to the left goes out of the figure [%]
 
 
 def ranking_figure(diagnosis: Diagnosis) -> go.Figure:
@@ -72,7 +72,10 @@ def ranking_figure(diagnosis: Diagnosis) -> go.Figure:
             orientation="h",
             name=word,
             marker=look,
-            text=[_text(each) if side == "holdout" else "" for each in sides],
+            text=[
+                _text(each) if side == "holdout" and gain >= 0.0 else ""
+                for each, gain in zip(sides, gains, strict=True)
+            ],
             textposition="outside",
             cliponaxis=False,
             customdata=[item.effect for item in ranked],
@@ -88,14 +91,24 @@ def ranking_figure(diagnosis: Diagnosis) -> go.Figure:
         for gain in (_gain(item.holdout), _gain(item.train))
         if np.isfinite(gain)
     ]
-    low, high = min([0.0, *finite]), max([5.0, *finite])
+    low, high = max(min([0.0, *finite]), _WORST), max([5.0, *finite])
     figure.update_xaxes(
         title="error lowered by [%]",
-        range=[max(low, -60.0) * 1.15, high + 0.35 * (high - max(low, -60.0))],
+        range=[1.05 * low, high + 0.35 * (high - low)],
     )
     figure.update_yaxes(autorange="reversed", showgrid=False)
-    plain(figure, height=130 + 52 * max(len(ranked), 2))
-    return figure.update_layout(barmode="group", bargap=0.3)
+    for name, item in zip(names, ranked, strict=True):
+        if _gain(item.holdout) < 0.0:  # beyond a bar to the left its text would lie on the names
+            figure.add_annotation(
+                text=_text(item.holdout),
+                x=0.0,
+                y=name,
+                xanchor="left",
+                yshift=-0.25 * _PER_EFFECT * (1.0 - _GAP),
+                showarrow=False,
+            )
+    plain(figure, height=130 + _PER_EFFECT * max(len(ranked), 2))
+    return figure.update_layout(barmode="group", bargap=_GAP)
 
 
 def _label(item: Ranked, diagnosis: Diagnosis) -> str:
@@ -140,7 +153,7 @@ def set_up_figure(diagnosis: Diagnosis) -> go.Figure:
         ("with the mistake put right", diagnosis.set_up.robot, BLUE, "circle"),
     ):
         measured, predicted = _legs(diagnosis, robot)
-        rows = np.linspace(0, runs.count - 1, min(runs.count, MOST // 4)).astype(int)
+        rows = np.linspace(0, runs.count - 1, min(runs.count, MARKS // 4)).astype(int)
         for place, column, factor, unit in ((1, 2, float(np.degrees(1.0)), "°"), (2, 0, 1.0, "m")):
             figure.add_scatter(
                 x=small(factor * predicted[rows, column]),

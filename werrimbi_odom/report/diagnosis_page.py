@@ -84,16 +84,20 @@ def diagnosis_page(told: Told, steps: NextSteps, made: Mapping[str, str]) -> Pag
 
 def _effects(diagnosis: Diagnosis) -> list[Shown]:
     """What was found, or its rivals, drawn and described."""
-    names = list(dict.fromkeys([*diagnosis.found, *diagnosis.rivals]))
+    names = list(dict.fromkeys([*diagnosis.rivals, *diagnosis.found]))
     cards = [card for name in names if (card := effect_card(name))]
     if not cards:
         return []
     many = len(diagnosis.rivals) > 1
+    beside = [name for name in diagnosis.found if name not in diagnosis.rivals]
+    apart = f"These drives cannot tell {' and '.join(diagnosis.rivals)} apart; the next step can."
+    if beside:
+        apart += f" Beside them there is {' and '.join(beside)}."
     return [
         Shown(
             "physics",
             "The rivals" if many else "What it is",
-            "These drives cannot tell them apart; the next manoeuvre below can."
+            apart
             if many
             else "The physics, what it does to the data, and how to check it on the robot.",
             html=f'<div class="cards">{"".join(cards)}</div>',

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The evidence map as a heat map, and the dependence behind each of its cells."""
+"""The evidence map as a heat map."""
 
 from __future__ import annotations
 
@@ -11,11 +11,8 @@ import numpy as np
 
 from werrimbi_odom.inference.diagnosis.diagnosis import VERY_SURE
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Amount, Dependence
-from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
-from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.report.decimate import small
-from werrimbi_odom.report.response import unit_of
-from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, RISING, escaped, plain
+from werrimbi_odom.inference.diagnosis.variables import CONSTANT
+from werrimbi_odom.report.style import RISING, escaped, plain
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -36,9 +33,7 @@ _WORDS = {
     "position": "place on the floor",
 }
 
-_POINTS = 160
-_RUNS = 6
-_CELLS = 1500
+_CHANNELS = {"left": "left wheel", "right": "right wheel"}
 
 
 def variable_words(name: str) -> str:
@@ -142,11 +137,7 @@ def evidence_map_figure(
         hoverinfo="skip",
         showlegend=False,
     )
-    shown = [
-        value
-        for value in (0.0, 10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5, 1e6)
-        if value <= max(top, FAINTEST)
-    ]
+    shown = _ticks(max(top, FAINTEST))
     figure.update_layout(
         coloraxis={
             "colorscale": [list(stop) for stop in RISING],
@@ -160,11 +151,26 @@ def evidence_map_figure(
             },
         }
     )
-    figure.update_yaxes(autorange="reversed", title="error of", showgrid=False)
+    figure.update_yaxes(
+        autorange="reversed",
+        title={"text": "error of", "standoff": 12},
+        showgrid=False,
+        tickvals=list(CHANNELS),
+        ticktext=[_CHANNELS.get(channel, channel) for channel in CHANNELS],
+    )
     figure.update_xaxes(tickangle=-40, title="goes with", showgrid=False)
     plain(figure, height=height, legend=False)
     figure.update_layout(dragmode=False, margin={"t": 40})
     return figure
+
+
+def _ticks(top: float) -> list[float]:
+    """Values for the scale, which goes by the root, far enough apart to be read."""
+    found = [0.0]
+    for value in (10.0, 30.0, 100.0, 300.0, 1e3, 3e3, 1e4, 3e4, 1e5, 3e5, 1e6):
+        if value <= top and np.sqrt(value) - np.sqrt(found[-1]) >= 0.12 * np.sqrt(top):
+            found.append(value)
+    return found
 
 
 def _place_of(name: str) -> int:
@@ -195,136 +201,3 @@ def _told(cell: Dependence) -> str:
         f"<br>in proportion to {cell.amount.per}, as a {cell.form}"
         f"<br>χ² falls by {cell.gain:.0f} for {cell.degrees} numbers; {chance}"
     )
-
-
-def dependence_figure(cell: Dependence, run_names: Sequence[str] = ()) -> go.Figure:
-    """The error of a cell over its variable, as the evidence map has fitted it."""
-    import plotly.graph_objects as go
-
-    figure = go.Figure()
-    unit, factor = unit_of(cell.amount)
-    if cell.form == "place":
-        return _floor(cell, unit, factor)
-    if cell.form == "turns":
-        _turns(figure, cell, unit, factor, run_names)
-    else:
-        _curve(figure, cell, unit, factor)
-    figure.add_hline(y=0.0, line={"color": GREY, "width": 1})
-    figure.update_yaxes(title=f"{amount_words(cell.amount)}<br>[{unit}]")
-    return plain(figure, height=360)
-
-
-def _curve(figure: go.Figure, cell: Dependence, unit: str, factor: float) -> None:
-    left, right = functions_of(cell.variable)[cell.form]
-    values = cell.variable.left
-    functions = left
-    if not cell.variable.shared:
-        values, functions = (
-            np.concatenate([values, cell.variable.right]),
-            np.concatenate([left, right]),
-        )
-    order = np.argsort(values)
-    chosen = np.unique(order[np.linspace(0, values.size - 1, _POINTS).astype(int)])
-    chosen = chosen[np.argsort(values[chosen])]
-    figure.add_scatter(
-        x=small(values[chosen]),
-        y=small(factor * (functions[chosen] @ cell.coefficients)),
-        mode="lines",
-        line={"color": BLUE, "width": 3},
-        name=cell.form,
-        hovertemplate=f"%{{x:.3g}}: %{{y:+.3g}} {unit}<extra></extra>",
-        showlegend=False,
-    )
-    name = variable_words(cell.variable.name)
-    if cell.variable.name == CONSTANT:
-        figure.update_xaxes(showticklabels=False)
-        figure.add_annotation(
-            text=f"{factor * float(cell.coefficients[0]):+.3g} {unit}, whatever is driven",
-            x=0.5,
-            y=0.5,
-            xref="paper",
-            yref="paper",
-            showarrow=False,
-        )
-    figure.update_xaxes(title=f"{name} [{cell.variable.unit}]" if cell.variable.unit else name)
-
-
-def _turns(
-    figure: go.Figure, cell: Dependence, unit: str, factor: float, run_names: Sequence[str]
-) -> None:
-    angle = np.linspace(0.0, 2.0 * np.pi, 121)
-    waves = np.stack(
-        [np.cos(cell.variable.harmonic * angle), np.sin(cell.variable.harmonic * angle)], axis=-1
-    )
-    looks = (
-        (BLUE, "solid"),
-        (ORANGE, "dash"),
-        (GREEN, "dot"),
-        (INK, "dashdot"),
-        (GREY, "solid"),
-        (ORANGE, "solid"),
-    )
-    own = np.atleast_2d(cell.coefficients)
-    for number, (coefficients, (colour, dash)) in enumerate(zip(own, looks, strict=False)):
-        name = run_names[number] if cell.variable.per_run and number < len(run_names) else ""
-        figure.add_scatter(
-            x=small(np.degrees(angle)),
-            y=small(factor * (waves @ coefficients)),
-            mode="lines",
-            line={"color": colour, "width": 2.5, "dash": dash},
-            name=escaped(name),
-            showlegend=bool(name),
-            hovertemplate=f"%{{x:.0f}}°: %{{y:+.3g}} {unit}<extra></extra>",
-        )
-    figure.update_xaxes(title=f"{variable_words(cell.variable.name)} [°]", dtick=45, range=[0, 360])
-
-
-def _floor(cell: Dependence, unit: str, factor: float) -> go.Figure:
-    """The error by place: larger where it is darker, signs by shape."""
-    import plotly.graph_objects as go
-
-    cells, _ = functions_of(cell.variable)["place"]
-    values = factor * (cells @ cell.coefficients)
-    step = max(1, values.size // _CELLS)
-    x, y, error = cell.variable.left[::step], cell.variable.right[::step], values[::step]
-    largest = max(float(np.max(np.abs(error), initial=0.0)), 1e-12)
-    figure = go.Figure()
-    for name, which, symbol in (
-        ("more than predicted", error > 0.0, "triangle-up"),
-        ("less than predicted", error <= 0.0, "triangle-down"),
-    ):
-        figure.add_scatter(
-            x=small(x[which]),
-            y=small(y[which]),
-            mode="markers",
-            name=name,
-            marker={
-                "symbol": symbol,
-                "size": small(5.0 + 7.0 * np.abs(error[which]) / largest),
-                "color": small(np.abs(error[which])),
-                "coloraxis": "coloraxis",
-                "line": {"width": 0},
-            },
-            customdata=small(error[which]),
-            hovertemplate=f"x %{{x:.2f}} m, y %{{y:.2f}} m<br>%{{customdata:+.3g}} {unit}"
-            "<extra></extra>",
-        )
-    figure.update_layout(
-        coloraxis={
-            "colorscale": [list(stop) for stop in RISING],
-            "cmin": 0.0,
-            "cmax": largest,
-            "colorbar": {
-                "title": {"text": f"{amount_words(cell.amount)}<br>[{unit}]"},
-                "thickness": 14,
-            },
-        }
-    )
-    figure.update_xaxes(title="x [m]")
-    figure.update_yaxes(title="y [m]", scaleanchor="x", scaleratio=1)
-    return plain(figure, height=480)
-
-
-def values_at_steps(cell: Dependence) -> Floats:
-    """The variable itself, at every step (of the left wheel, where each has its own)."""
-    return cell.variable.left

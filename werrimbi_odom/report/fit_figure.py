@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from werrimbi_odom.report.decimate import MARKS, small, spread_and_extremes
 from werrimbi_odom.report.path_figure import Floats
 from werrimbi_odom.report.style import BLUE, ORANGE, styled
 
@@ -31,11 +32,13 @@ def leg_figure(before: Floats, after: Floats, *, title: str, subtitle: str) -> g
         ("after", after, BLUE, "circle"),
     ):
         known = errors[np.isfinite(errors[:, :2]).all(axis=1)]
+        size = 1e3 * np.hypot(known[:, 0], known[:, 1])
+        drawn = 1e3 * known[spread_and_extremes(size, MARKS // 2)]
         figure.add_scatter(
-            x=1e3 * known[:, 0],
-            y=1e3 * known[:, 1],
+            x=small(drawn[:, 0]),
+            y=small(drawn[:, 1]),
             mode="markers",
-            name=f"{name}: median {1e3 * np.median(np.hypot(known[:, 0], known[:, 1])):.1f} mm",
+            name=f"{name}: median {np.median(size):.1f} mm",
             marker={"color": colour, "symbol": symbol, "size": 7},
             opacity=0.7,
             hovertemplate=f"{name}<br>along %{{x:.1f}} mm<br>sideways %{{y:.1f}} mm<extra></extra>",

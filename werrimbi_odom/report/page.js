@@ -26,9 +26,65 @@
     return copy;
   };
 
+  // On a telephone: panels below one another, scales below and not beside, long names in two
+  // lines, and no more height than equal scales can fill.
+  const NARROW = 620;
+  const fitted = (figure, room) => {
+    const { data, layout } = figure;
+    const named = (kind) => Object.keys(layout).filter((name) => name.startsWith(kind)).sort();
+    layout.font = { ...layout.font, size: 12 };
+    layout.margin = { ...layout.margin, l: 45, r: 12 };
+    for (const note of layout.annotations || []) note.font = { ...note.font, size: 12 };
+    for (const trace of data) if (trace.name) trace.name = broken(trace.name, room / 9);
+    const scales = named("coloraxis").map((name) => layout[name].colorbar).filter(Boolean);
+    for (const scale of scales) {
+      const where = layout.showlegend ? { y: -0.16, yanchor: "top" } : { y: 1.02, yanchor: "bottom" };
+      Object.assign(scale, { orientation: "h", x: 0.5, thickness: 10, ...where });
+      scale.title = { text: scale.title.text.replace("<br>", " "), side: "top" };
+    }
+    const beside = named("xaxis").filter((name) => (layout[name].domain || [0])[0] > 0.2);
+    if (beside.length) stacked(layout, named("xaxis"), named("yaxis"));
+    else if (named("yaxis").some((name) => layout[name].scaleanchor)) {
+      layout.height = Math.min(layout.height, Math.round(room + 90));
+    }
+    if (scales.length) {
+      layout.margin[layout.showlegend ? "b" : "t"] = 110;
+      layout.height += 60;
+    }
+    for (const trace of data) {
+      if (trace.type === "bar" && trace.textposition === "outside" && layout.xaxis.range) {
+        layout.xaxis.range[1] += 0.8 * (layout.xaxis.range[1] - layout.xaxis.range[0]);
+        break;
+      }
+    }
+  };
+  const broken = (text, most) => {
+    const lines = [""];
+    for (const word of text.split(" ")) {
+      const line = lines[lines.length - 1];
+      if (line && line.length + word.length >= most) lines.push(word);
+      else lines[lines.length - 1] = line ? `${line} ${word}` : word;
+    }
+    return lines.join("<br>");
+  };
+  const stacked = (layout, across, up) => {
+    const each = 1 / across.length, height = 0.72 * each;
+    across.forEach((name, index) => {
+      const top = 1 - index * each;
+      Object.assign(layout[name], { domain: [0, 1], anchor: up[index].replace("axis", "") });
+      layout[up[index]].domain = [top - height, top];
+      const title = (layout.annotations || [])[index];
+      if (title && title.yref === "paper") Object.assign(title, { x: 0.5, y: top });
+    });
+    layout.height = 120 + 230 * across.length;
+    layout.legend = { ...layout.legend, y: 1 + 45 / layout.height };
+  };
+
   const settings = {
     responsive: true,
     displaylogo: false,
+    showSendToCloud: false,  // plotly 4 offers to upload the figure; nobody's drives leave by us
+    plotlyServerURL: "",
     modeBarButtonsToRemove: ["select2d", "lasso2d", "autoScale2d", "toggleSpikelines"],
   };
 
@@ -36,8 +92,10 @@
     const key = place.dataset.figure;
     const figure = data.figures[`${key}-${chosen[key] || 0}`];
     const copy = themed(figure, isDark);
-    place.style.height = `${copy.layout.height}px`;
     if (width) { copy.layout.width = width; copy.layout.autosize = false; }
+    const room = width || place.clientWidth;
+    if (room < NARROW) fitted(copy, room);
+    place.style.height = `${copy.layout.height}px`;
     return Plotly.react(place, copy.data, copy.layout, settings).then(() => {
       place.dataset.drawn = isDark ? "dark" : "light";
       hide(place);
@@ -49,17 +107,46 @@
   // marks inside it say nothing.
   const hide = (place) => {
     for (const part of place.children) part.setAttribute("aria-hidden", "true");
+    for (const part of place.querySelectorAll("[tabindex], a, button")) part.tabIndex = -1;
   };
+
+  // What is wider than the page can be moved by keys too.
+  const reach = () => {
+    for (const part of document.querySelectorAll(".wide, pre")) {
+      const wider = part.scrollWidth > part.clientWidth;
+      if (wider) part.setAttribute("tabindex", "0");
+      else part.removeAttribute("tabindex");
+    }
+  };
+  window.addEventListener("resize", reach);
+  reach();
 
   const show = (isDark) => {
     dark = isDark;
     root.dataset.theme = dark ? "dark" : "light";
     button.textContent = dark ? "Light" : "Dark";
     button.setAttribute("aria-pressed", String(dark));
-    return places.reduce(
-      (before, place) => before.then(() => draw(place, dark)).then(rest), Promise.resolve());
+    latest = drawAll(++turn, new Set(places));
+    return latest;
   };
-  const rest = () => new Promise((done) => setTimeout(done, 0));
+
+  // What is looked at comes first, the rest between other things; a later turn (the theme, a
+  // printer) leaves the earlier one where it is.
+  let turn = 0;
+  let latest = Promise.resolve();
+  const drawAll = async (mine, left) => {
+    while (left.size && mine === turn) {
+      const place = [...left].reduce((one, other) => (away(other) < away(one) ? other : one));
+      left.delete(place);
+      await draw(place, dark);
+      await new Promise((done) => setTimeout(done, 0));
+    }
+    if (mine !== turn) await latest;
+  };
+  const away = (place) => {
+    const seen = place.getBoundingClientRect();
+    return Math.max(0, seen.top - window.innerHeight, -seen.bottom);
+  };
 
   button.addEventListener("click", () => show(!dark));
   wanted.addEventListener("change", (event) => show(event.matches));
@@ -137,6 +224,7 @@
   window.addEventListener("beforeprint", () => {
     if (before !== null) return;
     before = dark;
+    turn += 1;
     root.dataset.theme = "light";
     for (const place of places) draw(place, false, 690);
   });

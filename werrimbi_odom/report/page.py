@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 _POLICY = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
-    "img-src data: blob:; font-src data:"
+    "img-src data: blob:; font-src data:; form-action 'none'; base-uri 'none'"
 )
 
 
@@ -92,6 +92,9 @@ def page_html(page: Page) -> str:
     links = "".join(
         f'<li><a href="#{shown.key}">{html.escape(shown.title)}</a></li>' for shown in page.shown
     )
+    nav = ""
+    if len(page.shown) > 1:
+        nav = f'<nav aria-label="On this page"><ul>{links}</ul></nav>'
     body = "\n".join(_section(shown) for shown in page.shown)
     numbers = ""
     if page.tables:
@@ -115,7 +118,7 @@ def page_html(page: Page) -> str:
 <h1>{html.escape(page.title)}</h1>
 <button type="button" id="theme" aria-pressed="false">Dark</button>
 </header>
-<nav aria-label="On this page"><ul>{links}</ul></nav>
+{nav}
 <main>
 <section id="words" aria-label="Verdict">
 {f"<pre>{html.escape(page.words)}</pre>" if page.printed else paragraphs(page.words)}

@@ -124,6 +124,6 @@ def _table(lines: list[str]) -> str:
         for row in rows[1:]
     )
     return (
-        f'<div class="wide"><table><caption>{html.escape(lines[0])}</caption>'
+        f'<div class="wide"><table><caption><span>{html.escape(lines[0])}</span></caption>'
         f"<thead><tr>{heads}</tr></thead><tbody>{body}</tbody></table></div>"
     )

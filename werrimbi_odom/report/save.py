@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.report.page import Page, write_page
+from werrimbi_odom.report.style import KEPT_HERE
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -29,7 +30,7 @@ def save_page(figure: go.Figure, path: Path) -> None:
     """One self-contained interactive page; opens without a network."""
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(path.name + ".part")
-    figure.write_html(temporary, include_plotlyjs=True, full_html=True)
+    figure.write_html(temporary, include_plotlyjs=True, full_html=True, config=dict(KEPT_HERE))
     temporary.replace(path)
 
 

@@ -26,6 +26,9 @@ IN_THE_DARK: Mapping[str, str] = {
 }
 """What each colour becomes on a dark page; pages exchange them by name."""
 
+KEPT_HERE: Mapping[str, object] = {"showSendToCloud": False, "plotlyServerURL": ""}
+"""Settings of plotly, which from version 4 on offers to upload a figure: it stays where it is."""
+
 RISING = (
     (0.0, "#F3E9A6"),
     (0.2, "#E2C35C"),

@@ -8,14 +8,17 @@ fewer points; every figure is counted with all.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.legs import CHI2_95
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.decimate import FEWEST, MARKS, along_path, small
 from werrimbi_odom.report.style import BLUE, GREY, ORANGE, plain
 
 if TYPE_CHECKING:
@@ -35,7 +38,10 @@ CLASSES = (
 _POINTS = 6000
 """Of all paths, that are drawn."""
 
-_TEXTS = 1500
+_LEGS = 2000
+"""Of each class, that are drawn; beyond (some hours of driving) every few."""
+
+_TEXTS = MARKS
 """Legs, beyond which only those that err tell their figures under the pointer."""
 
 
@@ -80,6 +86,35 @@ def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None)
             hoverinfo="skip",
         )
     _add_texts(figure, comparison, chosen, grade)
+    return _from_above(figure)
+
+
+def measured_figure(runs: Sequence[Run]) -> go.Figure | None:
+    """The measured paths alone; None where no positions were measured."""
+    import plotly.graph_objects as go
+
+    figure = go.Figure()
+    for run in runs:
+        if run.reference is None:
+            continue
+        places = run.reference.x + 1j * run.reference.y
+        places = places[np.isfinite(places)]
+        if places.size == 0:
+            continue
+        places = places[along_path(places, max(FEWEST, _POINTS // len(runs)))]
+        figure.add_scatter(
+            x=small(places.real),
+            y=small(places.imag),
+            mode="lines",
+            line={"color": GREY, "width": 1.5},
+            hoverinfo="skip",
+            showlegend=False,
+        )
+    return _from_above(figure) if figure.data else None
+
+
+def _from_above(figure: go.Figure) -> go.Figure:
+    """Equal scales, to be moved about."""
     figure.update_xaxes(title="x [m]")
     figure.update_yaxes(title="y [m]", scaleanchor="x", scaleratio=1)
     plain(figure, height=480)
@@ -92,17 +127,20 @@ def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None)
 def _add_texts(
     figure: Any, comparison: Comparison, chosen: NDArray[np.bool_], grade: NDArray[np.intp]
 ) -> None:
-    """Points in the middle of the legs, unseen, that tell their figures under the pointer."""
+    """The middle of the legs, unseen, which tells their figures under the pointer.
+
+    An unseen line and no marks: it is one element of the page, however many corners it has.
+    """
     legs = comparison.legs
     told = np.flatnonzero(chosen & np.isfinite(legs.x) & np.isfinite(legs.end_x))
     if told.size > _TEXTS:
         told = told[np.argsort(-grade[told], kind="stable")[:_TEXTS]]
     figure.add_scatter(
-        x=0.5 * (legs.x + legs.end_x)[told],
-        y=0.5 * (legs.y + legs.end_y)[told],
-        mode="markers",
+        x=small(0.5 * (legs.x + legs.end_x)[told]),
+        y=small(0.5 * (legs.y + legs.end_y)[told]),
+        mode="lines",
         showlegend=False,
-        marker={"size": 16, "opacity": 0.0},
+        line={"width": 0, "color": "rgba(0, 0, 0, 0)"},
         text=[leg_told(comparison, int(index)) for index in told],
         hovertemplate="%{text}<extra></extra>",
     )
@@ -140,13 +178,17 @@ def _lines(comparison: Comparison) -> list[tuple[Floats, Floats]]:
     return lines
 
 
-def _joined(lines: list[tuple[Floats, Floats]], which: NDArray[np.intp]) -> tuple[Floats, Floats]:
+def _joined(
+    lines: list[tuple[Floats, Floats]], which: NDArray[np.intp]
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
     """Lines behind each other, parted by NaN."""
     gap = np.array([np.nan])
+    if which.size > _LEGS:
+        which = which[np.linspace(0, which.size - 1, _LEGS).astype(np.intp)]
     parts = [lines[int(index)] for index in which]
     if not parts:
-        return np.empty(0), np.empty(0)
+        return small(np.empty(0)), small(np.empty(0))
     return (
-        np.concatenate([piece for x, _ in parts for piece in (x, gap)]),
-        np.concatenate([piece for _, y in parts for piece in (y, gap)]),
+        small(np.concatenate([piece for x, _ in parts for piece in (x, gap)])),
+        small(np.concatenate([piece for _, y in parts for piece in (y, gap)])),
     )

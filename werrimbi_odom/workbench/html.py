@@ -104,7 +104,7 @@ def paragraphs(words: str, classes: str = "") -> None:
 
 def rows(heads: list[str], lines: list[list[str]], caption: str) -> None:
     """A table of texts; the first column names its row."""
-    with box("div", "wide"), box("table"):
+    with box("div", "wide", tabindex="0", role="group", aria_label=caption), box("table"):
         text("caption", caption)
         with box("thead"), box("tr"):
             for head in heads:

@@ -7,15 +7,21 @@ from __future__ import annotations
 import asyncio
 import multiprocessing
 import time
+from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from multiprocessing.connection import Connection
-from typing import Any
+from pathlib import Path
+from threading import Thread
+from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.workbench.crossing import packed, unpacked
-from werrimbi_odom.workbench.opened import Opened
-from werrimbi_odom.workbench.work import Task, known_to_both, work
+from werrimbi_odom.workbench.tasks import Task, begin
+
+if TYPE_CHECKING:
+    from werrimbi_odom.workbench.opened import Given
 
 
 class CancelledError(Exception):
@@ -34,6 +40,7 @@ class Job:
     begun: float = field(default_factory=time.monotonic)
     """[s]"""
     _process: Any = field(default=None, repr=False)
+    _pipe: Any = field(default=None, repr=False)
 
     def cancel(self) -> None:
         """Stop it; whoever waits for its result gets `CancelledError`."""
@@ -41,8 +48,13 @@ class Job:
         if self._process is not None:
             self._process.kill()
 
-    async def result(self, opened: Opened, collection: Collection) -> Any:
+    async def result(self, given: Given, known: Mapping[str, Any], collection: Collection) -> Any:
         """Do the work; the event loop goes on meanwhile.
+
+        Parameters
+        ----------
+        known
+            What the worker has too, and need not send back, by the words it knows it by.
 
         Raises
         ------
@@ -52,27 +64,49 @@ class Job:
             When it was stopped.
         """
         try:
-            return await asyncio.to_thread(self._run, opened, collection)
+            return await asyncio.to_thread(self._run, given, known, collection)
         finally:
             self.cancel()
 
-    def _run(self, opened: Opened, collection: Collection) -> Any:
+    def start(self) -> None:
+        """Have the process there, and let it import what it needs, before the work is known.
+
+        Raises
+        ------
+        CancelledError
+            When it was stopped already.
+        """
         # Not forked: a copy of a process with threads (those of the server) may hang.
         context = multiprocessing.get_context("spawn")
-        receiving, sending = context.Pipe(duplex=False)
-        data = packed((self.task, opened.given), {})
-        files = opened.given.told.effect_files
-        process = context.Process(target=work, args=(sending, data, files), daemon=True)
+        self._pipe, other = context.Pipe()
+        process = context.Process(target=begin, args=(other,), daemon=True)
         if self.cancelled:
             raise CancelledError
         process.start()
         self._process = process
         if self.cancelled:
             process.kill()
-        sending.close()  # ours; so that its end is seen when the worker ends
+        other.close()  # ours; so that its end is seen when the worker ends
+
+    def ask(self, given: Given) -> None:
+        """Say what is to be done, to a process that was started."""
+        data = packed((self.task, given), {})
+        # It may still be importing, and a pipe holds little until it reads.
+        Thread(target=self._send, args=(given.told.effect_files, data), daemon=True).start()
+
+    def _send(self, files: tuple[Path, ...], data: bytes) -> None:
+        with suppress(OSError):  # it was stopped; whoever waits for the result is told
+            self._pipe.send(files)
+            self._pipe.send_bytes(data)
+
+    def _run(self, given: Given, known: Mapping[str, Any], collection: Collection) -> Any:
+        if self._process is None:
+            self.start()
+            self.ask(given)
+        process, receiving = self._process, self._pipe
         try:
-            return self._received(receiving, opened, collection)
-        except EOFError:
+            return self._received(receiving, known, collection)
+        except (EOFError, OSError):  # what it had not read yet makes it a reset, not an end
             if self.cancelled:
                 raise CancelledError from None
             raise InputError(
@@ -83,13 +117,15 @@ class Job:
             process.join()
             receiving.close()
 
-    def _received(self, receiving: Connection, opened: Opened, collection: Collection) -> Any:
+    def _received(
+        self, receiving: Connection, known: Mapping[str, Any], collection: Collection
+    ) -> Any:
         while True:
             what, value, words = receiving.recv()
             if what == "done":
                 if self.cancelled:
                     raise CancelledError
-                return unpacked(value, collection, known_to_both(opened))
+                return unpacked(receiving.recv_bytes(), collection, known)
             if what == "refused":
                 raise InputError(value)
             self.share, self.words = value, words

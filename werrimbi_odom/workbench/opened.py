@@ -11,6 +11,7 @@ from pathlib import Path
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison, judged
 from werrimbi_odom.inference.comparison.judged_legs import Prepared
+from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.holdout import at_home, judge_of
 from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model
 from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
@@ -79,6 +80,9 @@ class Look:
     robot: Robot
     train: Comparison
     holdout: Comparison
+    verdict: Verdict
+    """On the fitted drives."""
+    holdout_verdict: Verdict
 
     @property
     def holdout_error(self) -> float:
@@ -105,7 +109,8 @@ class Opened:
         """Compare a robot on all drives."""
         train = self.train.compared(robot, lambda share, words: show(0.6 * share, words))
         show(0.6, "held-out drives")
-        return Look(robot, train, self.holdout.compared(robot))
+        holdout = self.holdout.compared(robot)
+        return Look(robot, train, holdout, verdict_of(train), verdict_of(holdout))
 
 
 def opened(given: Given) -> Opened:

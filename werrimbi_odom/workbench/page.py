@@ -6,14 +6,19 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from typing import Any
 
-from nicegui import app, ui
+from nicegui import Client, app, ui
 
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.workbench.figure import ask_for_drawing
 from werrimbi_odom.workbench.html import box, button, listen, text
+from werrimbi_odom.workbench.opening import Opening
 from werrimbi_odom.workbench.tab import Shared, Tab, new_tab
 from werrimbi_odom.workbench.views.add import add_view
 from werrimbi_odom.workbench.views.compare import compare_view
 from werrimbi_odom.workbench.views.diagnose import diagnose_view
+from werrimbi_odom.workbench.views.opening import failed_view, opening_view
 from werrimbi_odom.workbench.views.save import save_view
 from werrimbi_odom.workbench.views.strip import strip, under_way
 
@@ -47,16 +52,49 @@ for (const event of ["keydown", "pointerdown"]) {
 _SESSION, _DARK = "session", "dark"
 
 
-async def page(shared: Shared) -> None:
-    """Everything that a tab sees."""
+async def page(opening: Opening) -> None:
+    """Everything that a tab sees: first what is known before anything is compared."""
+    ask_for_drawing()
     ui.add_css(STYLE.read_text(encoding="utf-8"))
     ui.add_head_html(FOCUS)
-    ui.page_title(f"{shared.source.path.name} · werrimbi workbench")
-    theme = ui.dark_mode()
+    ui.page_title(f"{opening.source.path.name} · werrimbi workbench")
+    client, theme = ui.context.client, ui.dark_mode()
+    first = box("div")
+    with first:
+        text("p", "Opening …", "opening")
+    await client.connected()
+    if not client.has_socket_connection:
+        return  # something that only fetched the page
+    kept = app.storage.tab
+    dark = kept.get(_DARK)
+    if dark is None:
+        dark = await ui.run_javascript(
+            "matchMedia('(prefers-color-scheme: dark)').matches", timeout=30.0
+        )
+    theme.set_value(bool(dark))
+    if opening.shared is None:
+        first.clear()
+        with first:
+            opening_view(opening, bool(dark))
+    try:
+        shared = await opening.result()
+    except InputError as error:
+        first.clear()
+        with first:
+            failed_view(str(error))
+        return
+    if client.id in Client.instances:  # its browser may have gone meanwhile
+        first.delete()
+        _work(shared, bool(dark), theme)
+
+
+def _work(shared: Shared, dark: bool, theme: Any) -> None:
+    """The page proper."""
+    client, kept = ui.context.client, app.storage.tab
     status = text("p", "", "status", role="status", aria_live="polite")
     top = box("header")
     strip_place = box("div", "strip-place")
-    main = box("main", data_key="main")
+    main = box("div", "main", data_key="main")
 
     def draw(focus: str | None) -> None:
         with client:  # whoever asked may be gone: the button that was pressed is drawn anew
@@ -83,24 +121,11 @@ async def page(shared: Shared) -> None:
         theme.set_value(tab.dark)
         draw("theme")
 
-    client = ui.context.client
     tab = new_tab(shared, draw)
-    text("p", "Opening …", "opening").move(main)
+    tab.session, tab.dark = kept.get(_SESSION, tab.session), dark
     for place in (top, strip_place, main):
         listen(place, tab)
     client.on_delete(tab.cancel)
-    await client.connected()
-    if not client.has_socket_connection:
-        return  # something that only fetched the page
-    kept = app.storage.tab
-    tab.session = kept.get(_SESSION, tab.session)
-    dark = kept.get(_DARK)
-    if dark is None:
-        dark = await ui.run_javascript(
-            "matchMedia('(prefers-color-scheme: dark)').matches", timeout=5.0
-        )
-    tab.dark = bool(dark)
-    theme.set_value(tab.dark)
     draw(None)
 
 

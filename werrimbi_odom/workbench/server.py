@@ -4,11 +4,17 @@
 
 from __future__ import annotations
 
+import asyncio
 import socket
 from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.workbench.tab import Shared
+from werrimbi_odom.workbench.job import CancelledError
+
+if TYPE_CHECKING:
+    from werrimbi_odom.workbench.opening import Opening
+    from werrimbi_odom.workbench.tab import Shared
 
 HOST = "127.0.0.1"
 ICON = (
@@ -40,18 +46,31 @@ def listening(port: int) -> socket.socket:
     return found
 
 
-def serve(shared: Shared, at: socket.socket, ready: Callable[[str], None]) -> None:
+def serve(
+    opening: Opening,
+    at: socket.socket,
+    ready: Callable[[str], None],
+    opened: Callable[[str, Shared], None],
+) -> None:
     """Serve the page until it is interrupted.
 
     Parameters
     ----------
     ready
         Told the address once it can be opened.
+    opened
+        Told it again once all is compared, with what came of it.
+
+    Raises
+    ------
+    InputError
+        When the drives could not be opened; the server has ended then.
     """
     import uvicorn
     from fastapi import FastAPI
     from nicegui import app, ui
 
+    from werrimbi_odom.workbench.figure import serve_drawing
     from werrimbi_odom.workbench.guard import guarded
     from werrimbi_odom.workbench.page import page
 
@@ -59,13 +78,15 @@ def serve(shared: Shared, at: socket.socket, ready: Callable[[str], None]) -> No
     site = FastAPI(openapi_url=None)
 
     async def root() -> None:
-        await page(shared)
+        await page(opening)
 
     def stop() -> None:
-        for job in tuple(shared.jobs):
+        opening.job.cancel()
+        for job in tuple(opening.shared.jobs if opening.shared else ()):
             job.cancel()
 
     app.on_shutdown(stop)
+    serve_drawing()
     ui.run_with(
         site, root=root, title="werrimbi workbench", favicon=ICON, tailwind=False,
         show_welcome_message=False, language="en-US", reconnect_timeout=10.0,
@@ -81,6 +102,16 @@ def serve(shared: Shared, at: socket.socket, ready: Callable[[str], None]) -> No
     class Server(uvicorn.Server):
         async def startup(self, sockets: list[socket.socket] | None = None) -> None:
             await super().startup(sockets=sockets)
-            ready(f"http://{HOST}:{port}/")
+            ready(address)
+            self.waiting = asyncio.create_task(self.wait())
 
+        async def wait(self) -> None:
+            try:
+                opened(address, await opening.result())
+            except (InputError, CancelledError):
+                self.should_exit = True
+
+    address = f"http://{HOST}:{port}/"
     Server(config).run(sockets=[at])
+    if isinstance(opening.trouble, InputError):
+        raise opening.trouble

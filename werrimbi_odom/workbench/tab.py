@@ -14,12 +14,14 @@ from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.comparison.verdict import Verdict
 from werrimbi_odom.workbench.job import CancelledError, Job
 from werrimbi_odom.workbench.opened import Look, Opened
 from werrimbi_odom.workbench.parts import Part
 from werrimbi_odom.workbench.saving import Target, saved
 from werrimbi_odom.workbench.steps import Session, begun
-from werrimbi_odom.workbench.work import Add, Diagnose, Task
+from werrimbi_odom.workbench.tasks import Add, Diagnose, Task
+from werrimbi_odom.workbench.work import known_to_both
 
 VIEWS = ("compare", "diagnose", "add", "save")
 
@@ -71,6 +73,12 @@ class Tab:
         look = self.session.now.look
         return look.holdout if self.held_out else look.train
 
+    @property
+    def verdict(self) -> Verdict:
+        """Of `comparison`."""
+        look = self.session.now.look
+        return look.holdout_verdict if self.held_out else look.verdict
+
     def go(self, view: str) -> None:
         """Look at another step of the four, from its top."""
         self.view = view
@@ -118,7 +126,8 @@ class Tab:
         self.tell("")
         try:
             self.changed("cancel")
-            return await job.result(self.shared.opened, self.shared.collection)
+            opened = self.shared.opened
+            return await job.result(opened.given, known_to_both(opened), self.shared.collection)
         except CancelledError:
             self.tell(f"The {name} was cancelled; nothing has changed.")
         except InputError as error:

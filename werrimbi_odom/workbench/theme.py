@@ -8,7 +8,7 @@ import json
 import re
 from typing import TYPE_CHECKING, Any
 
-from werrimbi_odom.report.style import IN_THE_DARK
+from werrimbi_odom.report.style import IN_THE_DARK, KEPT_HERE
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -31,6 +31,7 @@ def shown(figure: go.Figure | str, dark: bool) -> dict[str, Any]:
                 axis["reversescale"] = True  # much stands out from the page
     drawn["config"] = {
         "displaylogo": False,
+        **KEPT_HERE,
         "responsive": True,
         "modeBarButtonsToRemove": BUTTONS,
         "scrollZoom": True,

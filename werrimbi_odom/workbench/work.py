@@ -6,10 +6,8 @@ from __future__ import annotations
 
 import os
 import signal
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping
 from multiprocessing.connection import Connection
-from pathlib import Path
 from typing import Any
 
 from werrimbi_odom.effects.collection import Collection, all_effects
@@ -21,7 +19,6 @@ from werrimbi_odom.inference.diagnosis.holdout import set_aside
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, next_manoeuvre
 from werrimbi_odom.inference.manoeuvres.sight import sight_of
-from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis_figures import (
     before_after,
     before_after_figure,
@@ -32,24 +29,7 @@ from werrimbi_odom.report.diagnosis_figures import (
 from werrimbi_odom.workbench.crossing import packed, unpacked
 from werrimbi_odom.workbench.opened import Given, Opened, Show, opened
 from werrimbi_odom.workbench.steps import Diagnosed, Step
-
-
-@dataclass(frozen=True)
-class Diagnose:
-    """Find out what a robot's model is missing."""
-
-    robot: Robot
-
-
-@dataclass(frozen=True)
-class Add:
-    """Fit one more effect, and compare."""
-
-    effect: str
-    robot: Robot
-
-
-Task = Diagnose | Add
+from werrimbi_odom.workbench.tasks import Add, Diagnose, Open, Task
 
 
 def diagnosed(task: Diagnose, given: Given, collection: Collection, show: Show) -> Diagnosed:
@@ -122,25 +102,57 @@ def known_to_both(opened: Opened) -> Mapping[str, Any]:
     return {"train": opened.train.prepared, "holdout": opened.holdout.prepared}
 
 
-def work(sent: Connection, data: bytes, effect_files: Sequence[Path]) -> None:
-    """In the worker: do what was sent, tell how far it is, send back what came of it."""
+def known_before(given: Given) -> Mapping[str, Any]:
+    """What both have before anything is cut."""
+    runs = (*given.runs, *given.holdout)
+    return {"given": given, **{f"run {number}": run for number, run in enumerate(runs)}}
+
+
+def left_there(opened: Opened) -> Mapping[str, Any]:
+    """Most of what was cut: whoever compares cuts it himself, and the page does without."""
+    return {
+        "cuts": opened.train.prepared.cuts,
+        "holdout cuts": opened.holdout.prepared.cuts,
+        "fine": opened.train.fine,
+        "holdout fine": opened.holdout.fine,
+    }
+
+
+NOT_SENT: Mapping[str, Any] = {"cuts": {}, "holdout cuts": {}, "fine": None, "holdout fine": None}
+"""What the page has for `left_there`."""
+
+
+def work(asked: Connection) -> None:
+    """In the worker: do what is asked, tell how far it is, send back what came of it."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for who started us; he stops us
-    os.nice(5)  # the page stays quick
     try:
-        collection = all_effects(effect_files)
-        task, given = unpacked(data, collection, {})
+        import scipy.stats  # noqa: F401  # takes half a second: now, while the drives are read
+
+        collection = all_effects(asked.recv())
+        task, given = unpacked(asked.recv_bytes(), collection, {})
 
         def show(share: float, words: str) -> None:
-            sent.send(("share", share, words))
+            asked.send(("share", share, words))
 
-        if isinstance(task, Diagnose):
-            result = packed(diagnosed(task, given, collection, show), {})
-        else:
-            show(0.0, "opening")
-            here = opened(given)
-            result = packed(added(task, here, collection, show), known_to_both(here))
-        sent.send(("done", result, ""))
+        result = _done(task, given, collection, show)
+        asked.send(("done", None, ""))
+        asked.send_bytes(result)
     except InputError as error:
-        sent.send(("refused", str(error), ""))
-    except BrokenPipeError:
+        asked.send(("refused", str(error), ""))
+    except (BrokenPipeError, EOFError):
         pass  # nobody waits any more
+
+
+def _done(task: Task, given: Given, collection: Collection, show: Show) -> bytes:
+    """What came of it, packed."""
+    if isinstance(task, Open):
+        show(0.0, "matching ticks and reference")
+        here = opened(given)
+        look = here.look(given.robot, show)
+        return packed((here, look), {**known_before(given), **left_there(here)})
+    os.nice(5)  # the page stays quick
+    if isinstance(task, Diagnose):
+        return packed(diagnosed(task, given, collection, show), {})
+    show(0.0, "opening")
+    here = opened(given)
+    return packed(added(task, here, collection, show), known_to_both(here))

@@ -4,16 +4,14 @@
 
 from __future__ import annotations
 
-from nicegui import ui
-
-from werrimbi_odom.inference.adding.adding import Added
+from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.report.adding_words import remark_told, value_told, words_of
 from werrimbi_odom.report.page_text import unwrapped
+from werrimbi_odom.workbench.figure import figure
 from werrimbi_odom.workbench.gain import gain_figure
 from werrimbi_odom.workbench.html import box, button, paragraphs, rows, text
 from werrimbi_odom.workbench.steps import Step
 from werrimbi_odom.workbench.tab import Tab, millimetres, percent
-from werrimbi_odom.workbench.theme import shown
 
 NOTHING = (
     "Nothing is added yet. Diagnose, and press Add beside an effect: it is fitted together with "
@@ -60,8 +58,7 @@ def _gain(tab: Tab) -> None:
             f"With {past[-1].name} the held-out error {word}: {millimetres(before)} → "
             f"{millimetres(after)} ({percent(100.0 * (after / before - 1.0))}).",
         )
-    with box("div", "figure", role="img", aria_label=f"Held-out error, bar by bar: {told}"):
-        ui.plotly(shown(gain_figure(past), tab.dark)).classes("plot low")
+    figure(gain_figure(past), tab.dark, f"Held-out error, bar by bar: {told}", "plot low")
 
 
 def _values(number: int, added: Added) -> None:

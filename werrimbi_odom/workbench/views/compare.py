@@ -10,7 +10,6 @@ import numpy as np
 
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.legs import LegStatistics
-from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.report.compare_words import words_of
 from werrimbi_odom.report.page_text import unwrapped
 from werrimbi_odom.workbench.html import box, button, paragraphs, rows, text
@@ -33,7 +32,7 @@ def compare_view(tab: Tab) -> None:
     with box("div", "columns"):
         with box("div", "left"):
             text("h2", "Where does the model fail?", tabindex="-1", data_key="title-compare")
-            _words(comparison)
+            _words(tab)
             _next(tab)
             text("h3", "Press a part to see its legs on the floor")
             _motions(tab, comparison)
@@ -46,8 +45,8 @@ def compare_view(tab: Tab) -> None:
         _tables(comparison)
 
 
-def _words(comparison: Comparison) -> None:
-    told = words_of(comparison, next_step="step 2, Diagnose,")
+def _words(tab: Tab) -> None:
+    told = words_of(tab.comparison, next_step="step 2, Diagnose,", verdict=tab.verdict)
     lines = unwrapped(told)
     with box("div", "verdict"):
         text("p", lines[0], "headline")
@@ -55,7 +54,7 @@ def _words(comparison: Comparison) -> None:
 
 
 def _next(tab: Tab) -> None:
-    good = verdict_of(tab.session.now.look.train).good
+    good = tab.session.now.look.verdict.good
     with box("p"):
         button(
             tab,

@@ -6,19 +6,17 @@ from __future__ import annotations
 
 from functools import partial
 
-from nicegui import ui
-
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
 from werrimbi_odom.report.diagnosis_dependence import dependence_words
 from werrimbi_odom.report.diagnosis_numbers import chance_words
 from werrimbi_odom.report.diagnosis_words import NextSteps, Told, words_of
 from werrimbi_odom.report.page_text import unwrapped
+from werrimbi_odom.workbench.figure import figure
 from werrimbi_odom.workbench.html import box, button, paragraphs, text
 from werrimbi_odom.workbench.parts import CellPart
 from werrimbi_odom.workbench.steps import Diagnosed
 from werrimbi_odom.workbench.tab import Tab, millimetres
-from werrimbi_odom.workbench.theme import shown
 from werrimbi_odom.workbench.views.floor import floor
 from werrimbi_odom.workbench.views.why import why
 
@@ -156,7 +154,7 @@ def _response(tab: Tab, found: Diagnosed) -> None:
         text("p", "What is set up rightly lies on the dashed line.")
     for name in ("response", "set_up"):
         if name in found.figures:
-            _figure(tab, found.figures[name], "Figure: error before and after")
+            figure(found.figures[name], tab.dark, "Figure: error before and after", "plot low")
 
 
 def _following(tab: Tab, found: Diagnosed) -> None:
@@ -168,12 +166,12 @@ def _following(tab: Tab, found: Diagnosed) -> None:
     minutes = f", for about {manoeuvre.minutes:.0f} min" if manoeuvre.minutes else ""
     text("p", f"{manoeuvre.do[0].upper()}{manoeuvre.do[1:]}{minutes}: {manoeuvre.why}.")
     if "manoeuvre" in found.figures:
-        _figure(tab, found.figures["manoeuvre"], "Figure: the path to drive, to scale")
-
-
-def _figure(tab: Tab, figure: str, label: str) -> None:
-    with box("div", "figure", role="img", aria_label=label):
-        ui.plotly(shown(figure, tab.dark)).classes("plot low")
+        figure(
+            found.figures["manoeuvre"],
+            tab.dark,
+            "Figure: the path to drive, to scale",
+            "plot low",
+        )
 
 
 def _by_chance(item: Ranked) -> str:
@@ -222,7 +220,8 @@ def _map(tab: Tab, diagnosis: Diagnosis) -> None:
         "chance, ●● sure, ●●● very sure. Press a cell to see its legs on the floor.",
     )
     with box("div", "columns"):
-        with box("div", "left wide"), box("table", "map"):
+        place = box("div", "left wide", tabindex="0", role="group", aria_label="Evidence map")
+        with place, box("table", "map"):
             text("caption", "Evidence map", "unseen")
             with box("thead"), box("tr"):
                 text("th", "goes with", scope="col")

@@ -5,13 +5,12 @@
 from __future__ import annotations
 
 import numpy as np
-from nicegui import ui
 
+from werrimbi_odom.workbench.figure import figure
 from werrimbi_odom.workbench.floor import floor_figure
 from werrimbi_odom.workbench.html import box, button, rows, text
 from werrimbi_odom.workbench.parts import figures_of, worst
 from werrimbi_odom.workbench.tab import Tab, millimetres
-from werrimbi_odom.workbench.theme import shown
 
 
 def floor(tab: Tab) -> None:
@@ -35,8 +34,7 @@ def floor(tab: Tab) -> None:
             if part is not None:
                 button(tab, "Show all legs", lambda: tab.point(None, "told"), key="all-legs")
             _which_drives(tab)
-        with box("div", "figure", role="img", aria_label=f"The floor from above. {told}"):
-            ui.plotly(shown(floor_figure(comparison, which), tab.dark)).classes("plot")
+        figure(floor_figure(comparison, which), tab.dark, f"The floor from above. {told}")
         legs = comparison.legs
         lines = []
         for index in worst(comparison, chosen, 5):

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from nicegui import ui
 
-from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.workbench.html import box, button, text
 from werrimbi_odom.workbench.tab import VIEWS, Tab, millimetres, percent
 
@@ -61,7 +60,7 @@ def _state(tab: Tab, view: str) -> str:
     """How far that step is, in a few words."""
     session = tab.session
     if view == "compare":
-        good = verdict_of(session.now.look.train).good
+        good = session.now.look.verdict.good
         return "the model is good" if good else "the model fails"
     if view == "diagnose":
         if session.diagnosis is None:

@@ -20,7 +20,7 @@ def why(tab: Tab, name: str) -> None:
     except InputError:  # a finding of the set-up that is no effect: degrees for radians
         return
     page = page_of(effect)
-    with box("section", "why", aria_label=f"About {name}"):
+    with box("section", "why", aria_label=f"About {name}", tabindex="0"):
         text("h3", f"What is {name}?", tabindex="-1", data_key=f"page-{name}")
         _sketch(name)
         for paragraph in page.physics:

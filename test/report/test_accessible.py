@@ -1,0 +1,61 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every report by axe-core's rules, in light and dark, on a wide screen and on a telephone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from browser import Visit
+
+from test.axe import COUNT, RUN, axe_script
+from werrimbi_odom.inference.adding.adding import Added
+from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.report.adding_page import write_adding_page
+from werrimbi_odom.report.calibration_page import calibration_page
+from werrimbi_odom.report.compare_page import write_compare_page
+from werrimbi_odom.report.diagnosis_page import write_diagnosis_page
+from werrimbi_odom.report.fit_figure import leg_figure
+from werrimbi_odom.report.page import write_page
+
+TOO_WIDE = "Math.max(0, document.documentElement.scrollWidth - window.innerWidth)"
+ALL_OPEN = "document.querySelectorAll('details').forEach(item => { item.open = true; })"
+
+
+@pytest.fixture(scope="module")
+def pages(
+    comparison: Comparison,
+    diagnosis: Diagnosis,
+    added: Added,
+    tmp_path_factory: pytest.TempPathFactory,
+) -> dict[str, Path]:
+    folder = tmp_path_factory.mktemp("pages")
+    found = {name: folder / f"{name}.html" for name in ("compare", "diagnose", "add", "fit")}
+    write_compare_page(comparison, found["compare"])
+    write_diagnosis_page(diagnosis, found["diagnose"])
+    write_adding_page(added, found["add"])
+    errors = np.random.default_rng(1).normal(0.0, 0.01, (3000, 2))
+    figure = leg_figure(errors, 0.5 * errors, title="Legs", subtitle="before and after")
+    numbers = {"wheel_separation_multiplier": (1.0, 1.01)}
+    words = "All is well.\n\nFound\n  parameter  before  after\n  k          1       1.01"
+    write_page(calibration_page("Fit", words, "See.", figure, numbers, {}), found["fit"])
+    return found
+
+
+@pytest.mark.parametrize("width", [1280, 390])
+@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("name", ["compare", "diagnose", "add", "fit"])
+def test_no_rule_is_broken_and_nothing_is_too_wide(
+    pages: dict[str, Path], look: Callable[..., Visit], name: str, dark: bool, width: int
+) -> None:
+    script = axe_script()
+    visit = look(pages[name], ALL_OPEN, script, COUNT, RUN, TOO_WIDE, dark=dark, width=width)
+    _, _, passed, broken, too_wide = visit.answers
+    assert passed > 10
+    assert broken == []
+    assert too_wide == 0
+    assert visit.complaints == []

@@ -1,0 +1,44 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A figure on the page, drawn by plotly.js itself.
+
+It is asked for when the page begins, so that it is there when the first figure comes.
+"""
+
+from __future__ import annotations
+
+from importlib.resources import as_file, files
+from typing import Any
+
+from nicegui import app, ui
+from nicegui.element import Element
+
+from werrimbi_odom.workbench.html import box
+from werrimbi_odom.workbench.theme import shown
+
+DRAWING = "plotly.min.js"
+
+
+class _Figure(Element, component="figure.js"):
+    """What `figure.js` draws."""
+
+    def __init__(self, drawn: dict[str, Any]) -> None:
+        super().__init__()
+        self._props["figure"] = drawn
+
+
+def serve_drawing() -> None:
+    """Have the drawing program at an address of the server; it never leaves this machine."""
+    with as_file(files("plotly") / "package_data" / DRAWING) as file:
+        app.add_static_file(local_file=file, url_path=f"/{DRAWING}")
+
+
+def ask_for_drawing() -> None:
+    """Have the page load the drawing program while other things go on."""
+    ui.add_head_html(f'<script async src="/{DRAWING}"></script>')
+
+
+def figure(drawn: Any, dark: bool, label: str, classes: str = "plot") -> None:
+    """A plotly figure, or its JSON, in the page's colours; `label` is for who does not see it."""
+    with box("div", "figure", role="figure", aria_label=label):
+        _Figure(shown(drawn, dark)).classes(classes)

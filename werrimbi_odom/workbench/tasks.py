@@ -1,0 +1,43 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What long work there is, and where its process begins.
+
+Few imports: the process is started before all else, and imports its own beside its parent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from multiprocessing.connection import Connection
+
+from werrimbi_odom.model.robot import Robot
+
+
+@dataclass(frozen=True)
+class Diagnose:
+    """Find out what a robot's model is missing."""
+
+    robot: Robot
+
+
+@dataclass(frozen=True)
+class Add:
+    """Fit one more effect, and compare."""
+
+    effect: str
+    robot: Robot
+
+
+@dataclass(frozen=True)
+class Open:
+    """Cut the drives into legs, and compare the robot as given."""
+
+
+Task = Diagnose | Add | Open
+
+
+def begin(asked: Connection) -> None:
+    """Where a worker begins; see `work.work`."""
+    from werrimbi_odom.workbench.work import work
+
+    work(asked)
