@@ -363,6 +363,7 @@ def test_the_shipped_drive_as_folder_and_as_bag(
     assert "ticks from /joint_states" in capsys.readouterr().out
 
 
+@pytest.mark.evidence
 def test_a_million_rows(place: Path) -> None:
     count = 1_000_000
     ticks(place, [(0.001 * n, 3 * n, 3 * n + n // 7) for n in range(count)])

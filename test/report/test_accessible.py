@@ -46,8 +46,7 @@ def pages(
     return found
 
 
-@pytest.mark.parametrize("width", [1280, 390])
-@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize(("dark", "width"), [(False, 1280), (True, 390)])
 @pytest.mark.parametrize("name", ["compare", "diagnose", "add", "fit"])
 def test_no_rule_is_broken_and_nothing_is_too_wide(
     pages: dict[str, Path], look: Callable[..., Visit], name: str, dark: bool, width: int

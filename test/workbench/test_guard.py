@@ -4,11 +4,11 @@
 
 from __future__ import annotations
 
-import asyncio
 from typing import Any
 
 import pytest
 
+from test.workbench.loops import awaited
 from werrimbi_odom.workbench.guard import guarded
 
 PORT = 4711
@@ -31,7 +31,7 @@ def heard(kind: str, *headers: tuple[str, str], method: str = "GET") -> bool:
 
     raw = [(name.encode(), value.encode()) for name, value in headers]
     scope = {"type": kind, "headers": raw, "method": method, "path": "/"}
-    asyncio.run(guarded(application, PORT)(scope, receive, send))
+    awaited(guarded(application, PORT)(scope, receive, send))
     if not reached:
         refusal = sent[0]
         assert refusal.get("status", 403) == 403

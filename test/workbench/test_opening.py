@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 from test.workbench.conftest import ROOT
+from test.workbench.loops import awaited
 from test.workbench.session import written
 from werrimbi_odom.effects.collection import all_effects
 from werrimbi_odom.errors import InputError
@@ -51,7 +52,7 @@ def test_the_page_gets_the_figures_that_were_worked_out_elsewhere(
 ) -> None:
     """To the last digit those of this process, and the drives are the very same objects."""
     opening = begun(*day)
-    shared = asyncio.run(opening.result())
+    shared = awaited(opening.result())
     assert opening.shared is shared
     here = opened(opening.given)
     look = here.look(day[0].robot)
@@ -74,7 +75,7 @@ def test_all_tabs_wait_for_one_opening_and_one_that_leaves_does_not_stop_it(
         first.cancel()
         assert await second is await opening.result()
 
-    asyncio.run(look())
+    awaited(look())
 
 
 def test_an_opening_that_is_stopped_says_so(day: tuple[RobotFile, list[Run], list[Run]]) -> None:
@@ -85,7 +86,7 @@ def test_an_opening_that_is_stopped_says_so(day: tuple[RobotFile, list[Run], lis
             await opening.result()
         assert opening.shared is None
 
-    asyncio.run(look())
+    awaited(look())
 
 
 def test_drives_without_a_reference_are_refused_in_a_line(
@@ -94,7 +95,7 @@ def test_drives_without_a_reference_are_refused_in_a_line(
     source, runs, _ = day
     bare = Run(runs[0].name, runs[0].path, runs[0].ticks, None)
     with pytest.raises(InputError):
-        asyncio.run(begun(source, [bare], [bare]).result())
+        awaited(begun(source, [bare], [bare]).result())
     assert measured_figure([bare]) is None
 
     robot, train, _ = written(tmp_path)
