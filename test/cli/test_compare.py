@@ -182,3 +182,19 @@ def test_in_a_process_of_its_own_without_a_terminal() -> None:
     assert done.returncode == 0
     assert done.stderr == ""
     assert "Errors of legs of 1 m (rms)" in done.stdout
+
+
+@pytest.mark.parametrize(
+    ("option", "name", "said"),
+    [
+        ("--report", "page.txt", "ends in .html, .pdf or .png"),
+        ("--report", "nowhere/page.html", "there is no folder"),
+        ("--json", "nowhere/figures.json", "there is no folder"),
+    ],
+)
+def test_what_could_not_be_written_is_said_before_the_work(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], option: str, name: str, said: str
+) -> None:
+    not_there = tmp_path / "a_drive_that_would_be_read_next"
+    words = ("--robot", wrong_base(tmp_path), not_there, option, tmp_path / name)
+    assert said in complaint(capsys, *words)

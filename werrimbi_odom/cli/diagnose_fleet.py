@@ -15,7 +15,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.recordings import how_of, read_effects, refuse_own_inputs
+from werrimbi_odom.cli.recordings import how_of, read_effects, refuse_outputs
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 _NARROW, _WIDE = 80, 140
 """Columns that the table may have; 100 where there is no terminal."""
-_REPORTS = (".html", ".htm", ".pdf", ".png")
 
 
 def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
@@ -91,7 +90,7 @@ def run_fleet(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.fleet.one import Task, failed
 
     members = members_of(arguments.fleet)
-    _refuse_outputs(arguments, members)
+    refuse_outputs(arguments, _inputs(arguments, members))
     read_effects(arguments)  # a mistake in them is no robot's
     how = how_of(arguments)
     tasks = [Task(each.name, Asked(each.robot, each.runs, each.holdout, how)) for each in members]
@@ -193,18 +192,6 @@ def _write(arguments: argparse.Namespace, fleet: Fleet) -> list[Path]:
         made = {"fleet": str(arguments.fleet), **made_of(arguments)}
         written += write_fleet_page(fleet, arguments.report, made)
     return written
-
-
-def _refuse_outputs(arguments: argparse.Namespace, members: Sequence[Member]) -> None:
-    """What cannot be written at the end of an hour is said at its beginning."""
-    refuse_own_inputs(arguments, _inputs(arguments, members))
-    for name in ("json", "report"):
-        path: Path | None = getattr(arguments, name)
-        if path is not None and not path.parent.is_dir():
-            raise InputError(f"--{name} {path}: there is no folder {path.parent}")
-    report: Path | None = arguments.report
-    if report is not None and report.suffix.lower() not in _REPORTS:
-        raise InputError(f"--report {report}: a report ends in .html, .pdf or .png")
 
 
 def _inputs(arguments: argparse.Namespace, members: Sequence[Member]) -> Iterator[Path]:

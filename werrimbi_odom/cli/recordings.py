@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from werrimbi_odom.fleet.asked import How, Recordings
 
 
+REPORTS = (".html", ".htm", ".pdf", ".png")
+"""Endings that a report may have."""
+
+
 def add_recording_arguments(
     parser: argparse.ArgumentParser,
     holdout: bool = False,
@@ -108,7 +112,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     asked = Asked(arguments.robot, tuple(arguments.runs), holdout, how_of(arguments))
     paths = [*asked.runs, *asked.holdout]
     refuse_twice(paths)
-    refuse_own_inputs(arguments, [arguments.robot, *paths, *arguments.effects])
+    refuse_outputs(arguments, [arguments.robot, *paths, *arguments.effects])
     collection = read_effects(arguments)
     with share_done("reading") as show:
         return read(asked, collection, show)
@@ -145,8 +149,8 @@ def read_effects(arguments: argparse.Namespace) -> Collection:
     return collection
 
 
-def refuse_own_inputs(arguments: argparse.Namespace, inputs: Iterable[Path]) -> None:
-    """What is written must not be what is read.
+def refuse_outputs(arguments: argparse.Namespace, inputs: Iterable[Path]) -> None:
+    """What could not be written at the end of long work is said at its beginning.
 
     Parameters
     ----------
@@ -156,7 +160,8 @@ def refuse_own_inputs(arguments: argparse.Namespace, inputs: Iterable[Path]) -> 
     Raises
     ------
     InputError
-        When --json or --report is a folder, or one of the inputs, or both are the same.
+        When --json or --report is a folder or lies in none, is one of the inputs, both are the
+        same, or the report has an ending that no report has.
     """
     from werrimbi_odom.fleet.asked import place_of
 
@@ -172,6 +177,10 @@ def refuse_own_inputs(arguments: argparse.Namespace, inputs: Iterable[Path]) -> 
             continue
         if out.is_dir():
             raise InputError(f"--{name} {out} is a folder; give a file name in it")
+        if not out.parent.is_dir():
+            raise InputError(f"--{name} {out}: there is no folder {out.parent}")
+        if name == "report" and out.suffix.lower() not in REPORTS:
+            raise InputError(f"--report {out}: a report ends in .html, .pdf or .png")
         if place_of(out) in taken:
             raise InputError(f"--{name} {out} would overwrite what is read, or written, already")
         taken.add(place_of(out))
