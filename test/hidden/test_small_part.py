@@ -20,10 +20,7 @@ from test.hidden.sets import HiddenSet
 
 pytest.importorskip("mujoco", reason="hidden sets need the physics engine (pip install mujoco)")
 
-EFFECTS = (
-    "castor_kick=0.02",
-    "left_missed_ticks=0.04",
-)
+EFFECTS = ("castor_kick=0.02",)
 CLEAN = HiddenSet("clean", (), 11, "short")
 CALIBRATION = HiddenSet("calibration", ("track_width=1.02",), 12, "short")
 OUTSIDER = HiddenSet("outsider", ("radius_follows_payload=0.004",), 11, "short")

@@ -156,9 +156,10 @@ def diagnosed(runs: list[Run]) -> Diagnosis:
     ("truth", "odd"),
     [
         ("reference_lever_arm", ReferenceMount(x=-0.01)),
-        pytest.param("reference_delay", ReferenceDelay(delay=0.025), marks=pytest.mark.evidence),
+        ("reference_delay", ReferenceDelay(delay=0.025)),
     ],
 )
+@pytest.mark.evidence
 def test_a_lever_arm_and_a_delay_at_one_speed_are_ambiguous_and_the_manoeuvre_resolves_it(
     truth: str, odd: Peculiarity
 ) -> None:

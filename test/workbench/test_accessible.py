@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import pytest
+
 from test.axe import COUNT, RUN, axe_script
 from test.workbench.conftest import PATIENCE, Looked
 from test.workbench.session import HIDDEN
@@ -30,6 +32,7 @@ def assert_in_light_and_dark(looked: Looked, state: str) -> None:
     looked.page.locator("body:not(.body--dark)").wait_for()
 
 
+@pytest.mark.evidence
 def test_no_rule_is_broken_in_any_state(looked: Looked) -> None:
     script, page = axe_script(), looked.page
     page.evaluate(script)
