@@ -90,6 +90,7 @@ def serve(
     ui.run_with(
         site, root=root, title="werrimbi workbench", favicon=ICON, tailwind=False,
         show_welcome_message=False, language="en-US", reconnect_timeout=10.0,
+        gzip_middleware_factory=None,  # it never leaves this machine: packing only costs time
     )  # fmt: skip
     config = uvicorn.Config(
         guarded(site, port),
