@@ -20,8 +20,8 @@ import pytest
 from test.fleet.conftest import broken
 from test.fleet.test_spread import KILLS, nowhere
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.asked import Asked, How
 from werrimbi_odom.fleet import cluster as ours
-from werrimbi_odom.fleet.asked import Asked, How
 from werrimbi_odom.fleet.cluster import on_cluster
 from werrimbi_odom.fleet.code import EFFECTS, PACKAGE, code_here, doubts, refusal
 from werrimbi_odom.fleet.one import Task

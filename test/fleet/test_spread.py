@@ -16,8 +16,8 @@ import pytest
 
 from test.fleet.conftest import broken
 from werrimbi_odom.cli.main import INTERRUPTED
+from werrimbi_odom.files.asked import Asked, How
 from werrimbi_odom.fleet import one, spread
-from werrimbi_odom.fleet.asked import Asked, How
 from werrimbi_odom.fleet.one import Task, row_of
 
 ROOT = Path(__file__).parents[2]

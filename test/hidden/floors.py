@@ -12,7 +12,7 @@ from dataclasses import replace
 
 from test.hidden.right_laws import RIGHT_LAWS
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.diagnosis.candidates import (
     CALIBRATED,
     candidates,
@@ -24,7 +24,6 @@ from werrimbi_odom.inference.diagnosis.holdout import Judge, judge_of
 from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.matching import match_finely
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.model.effect import Effect

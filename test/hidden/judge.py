@@ -24,10 +24,10 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.adding.adding import add_effect
 from werrimbi_odom.inference.adding.drafting import draft_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
 from werrimbi_odom.model.effect import Effect
 

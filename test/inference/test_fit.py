@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.legs import (
     LegErrors,
     LegStatistics,
@@ -22,7 +23,6 @@ from werrimbi_odom.inference.diagnosis.evidence import dependences
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.matching import match
 from werrimbi_odom.inference.fitting.noise import NOISES, noise_estimates
 from werrimbi_odom.inference.fitting.together import together

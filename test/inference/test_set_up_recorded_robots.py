@@ -13,9 +13,8 @@ import pytest
 
 from test.inference.set_up_mistakes import DELAYS, FACTORS, ONE_SIDE, REFERENCE, SIZES, WIRING
 from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.files.run_folder import read_run_folder
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.set_up.mistakes import SetUp, look_for_mistakes
 from werrimbi_odom.model.robot import Robot
 

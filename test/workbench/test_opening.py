@@ -17,12 +17,13 @@ from test.workbench.loops import awaited
 from test.workbench.session import written
 from werrimbi_odom.effects.collection import all_effects
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.asked import Judging
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.workbench.floor import measured_figure
 from werrimbi_odom.workbench.job import CancelledError, Job
-from werrimbi_odom.workbench.opened import Given, Told, opened
+from werrimbi_odom.workbench.opened import Given, opened
 from werrimbi_odom.workbench.opening import Opening
 from werrimbi_odom.workbench.saving import Target
 from werrimbi_odom.workbench.tasks import Open
@@ -42,8 +43,8 @@ def day(tmp_path_factory: pytest.TempPathFactory) -> tuple[RobotFile, list[Run],
 def begun(source: RobotFile, runs: list[Run], holdout: list[Run]) -> Opening:
     job = Job(Open())
     job.start()
-    told = Told("absolute", 1.0, source.limits, None, None, ())
-    given = Given(source.robot, tuple(runs), tuple(holdout), told)
+    judging = Judging(kind="absolute", leg=1.0, limits=source.limits, sigma_xy=None, sigma_yaw=None)
+    given = Given(source.robot, tuple(runs), tuple(holdout), judging, ())
     return Opening(job, given, source, all_effects([]), Target(Path("new.yaml")))
 
 

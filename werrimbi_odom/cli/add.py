@@ -5,16 +5,16 @@
 from __future__ import annotations
 
 import argparse
-import json
 import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from werrimbi_odom.cli.json_file import write_json
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.fleet.asked import Recordings
+    from werrimbi_odom.files.asked import Recordings
     from werrimbi_odom.inference.adding.added import Added
 
 HELP = "add a physical effect to the model: fit it, judge it on held-out drives, write it"
@@ -60,12 +60,8 @@ def run(arguments: argparse.Namespace) -> int:
             effect,
             given.runs,
             given.source.robot,
-            given.kind,
             holdout=given.holdout,
-            leg=given.leg,
-            limits=given.source.limits,
-            sigma_xy=given.sigma_xy,
-            sigma_yaw=given.sigma_yaw,
+            **given.judging,
             show=show,
         )
     if added.objection is not None and not arguments.force:
@@ -90,8 +86,6 @@ def _refuse_out(arguments: argparse.Namespace) -> None:
 
 def _write(arguments: argparse.Namespace, given: Recordings, added: Added) -> list[Path]:
     """The robot file, then the JSON and the page that were asked for; returns what was written."""
-    from werrimbi_odom.cli.calibration_files import plain
-    from werrimbi_odom.files.replacing import replacing
     from werrimbi_odom.files.robot_file import write_robot_file
     from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
     from werrimbi_odom.report.adding_words import json_of
@@ -110,9 +104,7 @@ def _write(arguments: argparse.Namespace, given: Recordings, added: Added) -> li
     )
     written = [arguments.out]
     if arguments.json is not None:
-        with replacing(arguments.json) as file:
-            json.dump(plain(json_of(added)), file, indent=2, allow_nan=False)
-            file.write("\n")
+        write_json(arguments.json, json_of(added))
         written.append(arguments.json)
     if arguments.report is not None:
         from werrimbi_odom.cli.report_made import made_of

@@ -40,19 +40,19 @@ def run(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.inference.fitting.matching import match, match_finely, stated
 
     given = read_recordings(arguments)
-    source = given.source
-    runs = match_finely(given.runs, source.robot, given.leg, source.limits)
+    source, how = given.source, given.how
+    runs = match_finely(given.runs, source.robot, how.leg, source.limits)
     result = calibrate(
         runs,
         source.robot,
-        given.kind,
-        sigma_xy=given.sigma_xy or stated(runs, "sigma_xy"),
-        sigma_yaw=given.sigma_yaw or stated(runs, "sigma_yaw"),
+        how.kind,
+        sigma_xy=how.sigma_xy or stated(runs, "sigma_xy"),
+        sigma_yaw=how.sigma_yaw or stated(runs, "sigma_yaw"),
     )
     _say(result)
     figures = _json(result)
     if given.holdout:
-        held_out = [match(run, source.robot, given.leg, source.limits) for run in given.holdout]
+        held_out = [match(run, source.robot, how.leg, source.limits) for run in given.holdout]
         figures["holdout"] = _judged(held_out, source, result)
     changes = {name: item.value for name, item in result.multipliers.items() if item.determined}
     for name in ("left_wheel_noise", "right_wheel_noise"):

@@ -5,11 +5,11 @@
 from __future__ import annotations
 
 import argparse
-import json
-import math
 from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from werrimbi_odom.cli.json_file import write_json
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -51,15 +51,12 @@ def write_all(
     printed
         Show the words line by line, as they are printed.
     """
-    from werrimbi_odom.files.replacing import replacing
     from werrimbi_odom.files.robot_file import write_robot_file
 
     write_robot_file(source, changes, arguments.out, force=arguments.force)
     written = [arguments.out]
     if arguments.json is not None:
-        with replacing(arguments.json) as file:
-            json.dump(plain(figures), file, indent=2, allow_nan=False)
-            file.write("\n")
+        write_json(arguments.json, figures)
         written.append(arguments.json)
     if arguments.report is not None and figure is not None:
         from werrimbi_odom.cli.report_made import made_of
@@ -75,14 +72,3 @@ def write_all(
         page = calibration_page(title, words, see, figure, before_after, made, printed=printed)
         written += save_report(page, arguments.report)
     print(f"\nwritten: {', '.join(str(path) for path in written)}")
-
-
-def plain(value: Any) -> Any:
-    """Values that JSON has; null for what is not finite."""
-    if isinstance(value, Mapping):
-        return {key: plain(part) for key, part in value.items()}
-    if isinstance(value, (list, tuple)):
-        return [plain(part) for part in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

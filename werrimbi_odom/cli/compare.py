@@ -5,11 +5,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from werrimbi_odom.cli.json_file import write_json
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 
 if TYPE_CHECKING:
@@ -46,11 +46,7 @@ def run(arguments: argparse.Namespace) -> int:
         comparison = compare(
             given.runs,
             given.source.robot,
-            given.kind,
-            leg=given.leg,
-            limits=given.source.limits,
-            sigma_xy=given.sigma_xy,
-            sigma_yaw=given.sigma_yaw,
+            **given.judging,
             show=show,
         )
     print(words_of(comparison, next_step=_next_step(arguments)))
@@ -74,15 +70,11 @@ def _next_step(arguments: argparse.Namespace) -> str:
 
 def _write(arguments: argparse.Namespace, comparison: Comparison) -> list[Path]:
     """The JSON and the page that were asked for; returns what was written."""
-    from werrimbi_odom.cli.calibration_files import plain
-    from werrimbi_odom.files.replacing import replacing
     from werrimbi_odom.report.compare_json import json_of
 
     written = []
     if arguments.json is not None:
-        with replacing(arguments.json) as file:
-            json.dump(plain(json_of(comparison)), file, indent=2, allow_nan=False)
-            file.write("\n")
+        write_json(arguments.json, json_of(comparison))
         written.append(arguments.json)
     if arguments.report is not None:
         from werrimbi_odom.cli.report_made import made_of

@@ -5,12 +5,12 @@
 from __future__ import annotations
 
 import argparse
-import json
 import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.cli.diagnose_fleet import add_fleet_arguments, refuse_mixing, run_fleet
+from werrimbi_odom.cli.json_file import write_json
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.errors import InputError
 
@@ -130,14 +130,9 @@ def _paths(paths: list[str]) -> str:
 
 def _write(arguments: argparse.Namespace, told: Told, figures: dict[str, Any]) -> list[Path]:
     """The JSON and the page that were asked for; returns what was written."""
-    from werrimbi_odom.cli.calibration_files import plain
-    from werrimbi_odom.files.replacing import replacing
-
     written = []
     if arguments.json is not None:
-        with replacing(arguments.json) as file:
-            json.dump(plain(figures), file, indent=2, allow_nan=False)
-            file.write("\n")
+        write_json(arguments.json, figures)
         written.append(arguments.json)
     if arguments.report is not None:
         from werrimbi_odom.cli.report_made import made_of

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import shutil
 import sys
 from collections import Counter
@@ -15,6 +14,7 @@ from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from werrimbi_odom.cli.json_file import write_json
 from werrimbi_odom.cli.recordings import how_of, read_effects, refuse_outputs
 from werrimbi_odom.errors import InputError
 
@@ -85,7 +85,7 @@ def run_fleet(arguments: argparse.Namespace) -> int:
         On Ctrl-C; what is done by then is told and written.
     """
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.fleet.asked import Asked
+    from werrimbi_odom.files.asked import Asked
     from werrimbi_odom.fleet.members import members_of
     from werrimbi_odom.fleet.one import Task, failed
 
@@ -175,15 +175,11 @@ def _tell(arguments: argparse.Namespace, fleet: Fleet) -> None:
 
 
 def _write(arguments: argparse.Namespace, fleet: Fleet) -> list[Path]:
-    from werrimbi_odom.cli.calibration_files import plain
-    from werrimbi_odom.files.replacing import replacing
     from werrimbi_odom.report.fleet_rows import fleet_json
 
     written = []
     if arguments.json is not None:
-        with replacing(arguments.json) as file:
-            json.dump(plain(fleet_json(fleet)), file, indent=2, allow_nan=False)
-            file.write("\n")
+        write_json(arguments.json, fleet_json(fleet))
         written.append(arguments.json)
     if arguments.report is not None:
         from werrimbi_odom.cli.report_made import made_of

@@ -5,17 +5,17 @@
 from __future__ import annotations
 
 import argparse
-import json
 import shlex
 import textwrap
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from werrimbi_odom.cli.json_file import write_json
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.fleet.asked import Recordings
+    from werrimbi_odom.files.asked import Recordings
     from werrimbi_odom.inference.adding.added import Added
     from werrimbi_odom.inference.adding.drafting import Draft
     from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -57,22 +57,22 @@ def run(arguments: argparse.Namespace) -> int:
     _refuse_out(arguments)
     given = read_recordings(arguments)
     known = given.collection.effects
-    options: dict[str, Any] = {
-        "holdout": given.holdout,
-        "leg": given.leg,
-        "limits": given.source.limits,
-        "sigma_xy": given.sigma_xy,
-        "sigma_yaw": given.sigma_yaw,
-    }
     with share_done("diagnosing") as show:
         robot = given.source.robot
-        diagnosis = diagnose(given.runs, robot, known, given.kind, show=show, **options)
+        diagnosis = diagnose(
+            given.runs, robot, known, holdout=given.holdout, show=show, **given.judging
+        )
         if diagnosis.verdict != "unknown" and not arguments.force:
             raise InputError(_known(diagnosis, arguments))
         draft = draft_effect(diagnosis, show)
         files = package_of(draft)
         tried = add_effect(
-            draft.effect, given.runs, diagnosis.robot, given.kind, show=show, **options
+            draft.effect,
+            given.runs,
+            diagnosis.robot,
+            holdout=given.holdout,
+            show=show,
+            **given.judging,
         )
     _write(arguments.out, files)
     print(_words(draft, tried))
@@ -144,7 +144,7 @@ def _next(arguments: argparse.Namespace, draft: Draft, given: Recordings) -> str
     """The commands that try it, and that install it."""
     file = shlex.quote(str(arguments.out / f"{draft.name}.py"))
     robot, out = shlex.quote(str(arguments.robot)), shlex.quote(str(arguments.out))
-    kind = "" if given.kind == "absolute" else f" --reference-kind {given.kind}"
+    kind = "" if given.how.kind == "absolute" else f" --reference-kind {given.how.kind}"
     rest = " RUN..." + (" --holdout RUN..." if given.holdout else "")
     return (
         f"\nRead it:     werrimbi explain {draft.name} --effects {file}\n"
@@ -155,8 +155,6 @@ def _next(arguments: argparse.Namespace, draft: Draft, given: Recordings) -> str
 
 
 def _write_json(path: Path, draft: Draft, tried: Added, files: list[str]) -> None:
-    from werrimbi_odom.cli.calibration_files import plain
-    from werrimbi_odom.files.replacing import replacing
     from werrimbi_odom.report.adding_words import json_of
 
     cell = draft.dependence
@@ -176,6 +174,4 @@ def _write_json(path: Path, draft: Draft, tried: Added, files: list[str]) -> Non
             ],
         },
     }
-    with replacing(path) as file:
-        json.dump(plain(figures), file, indent=2, allow_nan=False)
-        file.write("\n")
+    write_json(path, figures)

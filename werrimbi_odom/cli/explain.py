@@ -5,10 +5,11 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from werrimbi_odom.cli.json_file import write_json
 
 if TYPE_CHECKING:
     from rich.console import Console
@@ -62,11 +63,7 @@ def run(arguments: argparse.Namespace) -> int:
         figures = as_json(effect)
         _print_page(effect)
     if arguments.json is not None:
-        from werrimbi_odom.files.replacing import replacing
-
-        with replacing(arguments.json) as file:
-            json.dump(figures, file, indent=2, allow_nan=False)
-            file.write("\n")
+        write_json(arguments.json, figures)
     return 0
 
 

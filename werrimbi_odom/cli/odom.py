@@ -10,6 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO, TypeVar
 
+from werrimbi_odom.cli.json_file import plain
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
@@ -167,7 +168,6 @@ def _write(
     """Both files, or neither."""
     from contextlib import ExitStack
 
-    from werrimbi_odom.cli.calibration_files import plain
     from werrimbi_odom.files.replacing import replacing
 
     with ExitStack() as files:

@@ -15,7 +15,7 @@ from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
-    from werrimbi_odom.fleet.asked import How, Recordings
+    from werrimbi_odom.files.asked import How, Recordings
 
 
 REPORTS = (".html", ".htm", ".pdf", ".png")
@@ -106,7 +106,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
         When something cannot be used, a run is given twice, or an output would overwrite an input.
     """
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.fleet.asked import Asked, read, refuse_twice
+    from werrimbi_odom.files.asked import Asked, read, refuse_twice
 
     holdout = tuple(getattr(arguments, "holdout", None) or ())
     asked = Asked(arguments.robot, tuple(arguments.runs), holdout, how_of(arguments))
@@ -120,7 +120,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
 
 def how_of(arguments: argparse.Namespace) -> How:
     """The options that say how drives are read and judged."""
-    from werrimbi_odom.fleet.asked import How
+    from werrimbi_odom.files.asked import How
 
     return How(
         arguments.reference_kind,
@@ -163,7 +163,7 @@ def refuse_outputs(arguments: argparse.Namespace, inputs: Iterable[Path]) -> Non
         When --json or --report is a folder or lies in none, is one of the inputs, both are the
         same, or the report has an ending that no report has.
     """
-    from werrimbi_odom.fleet.asked import place_of
+    from werrimbi_odom.files.asked import place_of
 
     read: list[Path] = []
     for path in inputs:

@@ -5,18 +5,18 @@
 from __future__ import annotations
 
 import argparse
-import json
 import os
 import tempfile
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from werrimbi_odom.cli.json_file import write_json
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.fleet.asked import Recordings
+    from werrimbi_odom.files.asked import Recordings
     from werrimbi_odom.workbench.job import Job
     from werrimbi_odom.workbench.opening import Opening
     from werrimbi_odom.workbench.tab import Shared
@@ -94,23 +94,21 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _opening(job: Job, arguments: argparse.Namespace, given: Recordings) -> Opening:
     """What is to be opened and compared once, for all who look."""
-    from werrimbi_odom.workbench.opened import Given, Told
+    from werrimbi_odom.workbench.opened import Given
     from werrimbi_odom.workbench.opening import Opening
     from werrimbi_odom.workbench.saving import Target, beside
 
-    told = Told(
-        given.kind,
-        given.leg,
-        given.source.limits,
-        given.sigma_xy,
-        given.sigma_yaw,
-        tuple(arguments.effects),
-    )
     out = arguments.out or beside(Path(arguments.robot))
     target = Target(out, arguments.force and arguments.out is not None)
     return Opening(
         job,
-        Given(given.source.robot, given.runs, given.holdout, told),
+        Given(
+            given.source.robot,
+            given.runs,
+            given.holdout,
+            given.judging,
+            tuple(arguments.effects),
+        ),
         given.source,
         given.collection,
         target,
@@ -119,18 +117,13 @@ def _opening(job: Job, arguments: argparse.Namespace, given: Recordings) -> Open
 
 def _tell(path: Path, address: str, shared: Shared) -> None:
     """For programs: where the page is, and the error that it begins with."""
-    from werrimbi_odom.cli.calibration_files import plain
-    from werrimbi_odom.files.replacing import replacing
-
     found = {
         "address": address,
         "out": str(shared.target.path),
         "holdout": {"rmse_position_m": shared.look.holdout_error},
         "train": {"rmse_position_m": shared.look.train_error},
     }
-    with replacing(path) as file:
-        json.dump(plain(found), file, indent=2, allow_nan=False)
-        file.write("\n")
+    write_json(path, found)
 
 
 def _port(text: str) -> int:

@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,6 +17,9 @@ from werrimbi_odom.model.pose import Floats
 
 EXACT = 2.0**53
 """Whole numbers below this are told apart by a float64."""
+
+ReferenceKind = Literal["absolute", "incremental"]
+"""Poses on one map, or each pose told from the last one (a matcher of scans)."""
 
 
 @dataclass(frozen=True, eq=False)

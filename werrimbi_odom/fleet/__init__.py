@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Many robots at once: each diagnosed by itself, here or on a cluster, told in one table.
 
-Reading order: `asked` (what is read of one robot), `one` (its diagnosis, whatever happens),
+Reading order: `one` (a robot's diagnosis, whatever happens),
 `members` (the robots of a folder), `spread` (on the processors of this machine), `parcel`, `code`
 and `cluster` (on a Dask cluster).
 """

@@ -11,9 +11,9 @@ from pathlib import Path
 from typing import Any
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.asked import BAG, refuse_twice
 from werrimbi_odom.files.bag import SUFFIXES
 from werrimbi_odom.files.run_folder import TICKS
-from werrimbi_odom.fleet.asked import BAG, refuse_twice
 
 ROBOT = "robot.yaml"
 TRAIN, RUNS, HOLDOUT = "train", "runs", "holdout"

@@ -13,7 +13,7 @@ from threading import Lock
 
 from werrimbi_odom.effects.collection import all_effects
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.fleet.asked import Asked, Recordings, read
+from werrimbi_odom.files.asked import Asked, Recordings, read
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
 from werrimbi_odom.inference.manoeuvres.sight import sight_of
@@ -48,18 +48,14 @@ def diagnosed(
         given.runs,
         given.source.robot,
         effects,
-        given.kind,
         holdout=given.holdout,
-        leg=given.leg,
-        limits=given.source.limits,
-        sigma_xy=given.sigma_xy,
-        sigma_yaw=given.sigma_yaw,
+        **given.judging,
         show=show,
     )
     show(0.97, "the next step")
     manoeuvre = next_manoeuvre(diagnosis)
     sights = sight_of(diagnosis, effects)
-    return Told(diagnosis, manoeuvre, sights, given.leg, bool(given.holdout))
+    return Told(diagnosis, manoeuvre, sights, given.how.leg, bool(given.holdout))
 
 
 def row_of(task: Task) -> Row:

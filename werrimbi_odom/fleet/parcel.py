@@ -14,9 +14,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.asked import BAG, Asked
 from werrimbi_odom.files.bag import SUFFIXES
 from werrimbi_odom.files.run_folder import REFERENCE, TICKS
-from werrimbi_odom.fleet.asked import BAG, Asked
 from werrimbi_odom.fleet.one import Task, row_of
 from werrimbi_odom.report.fleet_rows import Row
 

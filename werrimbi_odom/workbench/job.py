@@ -92,7 +92,7 @@ class Job:
         """Say what is to be done, to a process that was started."""
         data = packed((self.task, given), {})
         # It may still be importing, and a pipe holds little until it reads.
-        Thread(target=self._send, args=(given.told.effect_files, data), daemon=True).start()
+        Thread(target=self._send, args=(given.effect_files, data), daemon=True).start()
 
     def _send(self, files: tuple[Path, ...], data: bytes) -> None:
         with suppress(OSError):  # it was stopped; whoever waits for the result is told

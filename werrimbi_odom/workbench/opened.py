@@ -8,34 +8,18 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
+from werrimbi_odom.files.asked import Judging
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison, judged
 from werrimbi_odom.inference.comparison.judged_legs import Prepared
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.holdout import at_home, judge_of
-from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.matching import match_finely
 from werrimbi_odom.inference.fitting.together import Together, together
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
 Show = Callable[[float, str], None]
-
-
-@dataclass(frozen=True)
-class Told:
-    """What the user said of the drives and their reference."""
-
-    kind: ReferenceKind
-    leg: float
-    """[m]"""
-    limits: EncoderLimits
-    sigma_xy: float | None
-    """[m]"""
-    sigma_yaw: float | None
-    """[rad]"""
-    effect_files: tuple[Path, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +29,8 @@ class Given:
     robot: Robot
     runs: tuple[Run, ...]
     holdout: tuple[Run, ...]
-    told: Told
+    judging: Judging
+    effect_files: tuple[Path, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,12 +50,7 @@ class Drives:
         bare = Model(robot, tuple({} for _ in self.prepared.runs))
         if all(applied.ready for applied in robot.effects):
             return bare
-        model = at_home(bare, self.fine, self.prepared.kind).model
-        own = tuple(
-            {name: value for name, value in mine.items() if name not in NUISANCES}
-            for mine in model.own
-        )
-        return Model(model.robot, own)
+        return at_home(bare, self.fine, self.prepared.kind).model.without_nuisances()
 
 
 @dataclass(frozen=True, eq=False)
@@ -121,20 +101,12 @@ def opened(given: Given) -> Opened:
     InputError
         When a run has no usable reference or no ticks.
     """
-    robot, told = given.robot, given.told
-    judge = judge_of(
-        given.runs,
-        given.holdout,
-        robot,
-        told.kind,
-        told.leg,
-        told.limits,
-        told.sigma_xy,
-        told.sigma_yaw,
-    )
+    robot, judging = given.robot, given.judging
+    judge = judge_of(given.runs, given.holdout, robot, **judging)
+    fine = match_finely(judge.fitted_on, robot, judging["leg"], judging["limits"])
     return Opened(
         given,
-        Drives(judge.train, together(match_finely(judge.fitted_on, robot, told.leg, told.limits))),
+        Drives(judge.train, together(fine)),
         Drives(judge.holdout, judge.fine),
         tuple(run.name for run in judge.kept_back),
     )

@@ -41,8 +41,8 @@ def diagnosed(task: Diagnose, given: Given, collection: Collection, show: Show) 
         When the drives do not allow it; the message says why.
     """
     effects = collection.effects
-    runs, options = _arguments(given)
-    found = diagnose(runs, task.robot, effects, show=show, **options)
+    runs, holdout = _split(given)
+    found = diagnose(runs, task.robot, effects, holdout=holdout, show=show, **given.judging)
     show(0.97, "the next step")
     manoeuvre = next_manoeuvre(found)
     sights = tuple(sight_of(found, effects))
@@ -72,29 +72,22 @@ def added(task: Add, opened: Opened, collection: Collection, show: Show) -> Step
     InputError
         When the drives do not allow it; the message says why.
     """
-    runs, options = _arguments(opened.given)
+    runs, holdout = _split(opened.given)
     fitted = add_effect(
         collection.find(task.effect),
         runs,
         task.robot,
+        holdout=holdout,
         show=lambda share, words: show(0.8 * share, words),
-        **options,
+        **opened.given.judging,
     )
     show(0.8, "comparing")
     return Step(opened.look(fitted.robot), fitted)
 
 
-def _arguments(given: Given) -> tuple[tuple[Run, ...], dict[str, Any]]:
-    told = given.told
-    runs, holdout = (given.runs, given.holdout) if given.holdout else set_aside(given.runs)
-    return runs, {
-        "kind": told.kind,
-        "holdout": holdout,
-        "leg": told.leg,
-        "limits": told.limits,
-        "sigma_xy": told.sigma_xy,
-        "sigma_yaw": told.sigma_yaw,
-    }
+def _split(given: Given) -> tuple[tuple[Run, ...], tuple[Run, ...]]:
+    """Runs to learn from, and runs to judge on."""
+    return (given.runs, given.holdout) if given.holdout else set_aside(given.runs)
 
 
 def known_to_both(opened: Opened) -> Mapping[str, Any]:

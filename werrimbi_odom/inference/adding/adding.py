@@ -15,7 +15,7 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.objection import objection
 from werrimbi_odom.inference.adding.start import (
@@ -49,7 +49,6 @@ from werrimbi_odom.inference.fitting.knobs import (
     Model,
     changed,
 )
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
 from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.groups import ByVariable, Cell, by_variables, cells_of
 from werrimbi_odom.inference.comparison.judged_legs import (
     Legs,
@@ -32,7 +32,6 @@ from werrimbi_odom.inference.comparison.systematic import (
     systematic_parts,
 )
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats, wrap
 from werrimbi_odom.model.robot import Robot

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.jumps import jumped_legs, jumps_of
 from werrimbi_odom.inference.comparison.legs import LegErrors, errors_of, joined
 from werrimbi_odom.inference.comparison.reference_noise import (
@@ -28,7 +28,6 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     residuals_of,
 )
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, MatchedRun, cut, every_pose
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.model.encoder import EncoderLimits

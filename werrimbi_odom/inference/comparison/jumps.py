@@ -7,8 +7,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.reference_noise import Residual
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.model.pose import Floats
 
 _JUMP = 12.0  # times the usual scatter of an interval

@@ -9,9 +9,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.position_filter import position_errors
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind, errors_between, reading_noise
+from werrimbi_odom.inference.fitting.likelihood import errors_between, reading_noise
 from werrimbi_odom.inference.fitting.matching import MatchedRun
 from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all, right_handed
 from werrimbi_odom.inference.fitting.together import Together, together

@@ -17,9 +17,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.files.run import Reference, ReferenceKind, Run
 from werrimbi_odom.inference.fitting.knobs import START_YAW, Model
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind, reading_noise
+from werrimbi_odom.inference.fitting.likelihood import reading_noise
 from werrimbi_odom.inference.fitting.prediction import legs_shown, right_handed
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.effect import view_of

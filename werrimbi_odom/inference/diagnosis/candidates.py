@@ -16,9 +16,9 @@ from itertools import product
 
 import numpy as np
 
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.knobs import STEP, Knob, Model, knobs_of
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.effect import AppliedEffect, Effect

@@ -16,6 +16,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.diagnosis.candidates import orthonormal
 from werrimbi_odom.inference.diagnosis.variables import (
     CONSTANT,
@@ -26,7 +27,6 @@ from werrimbi_odom.inference.diagnosis.variables import (
 )
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.prediction import DrivenPath, path_of, predict_all
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.effect import view_of

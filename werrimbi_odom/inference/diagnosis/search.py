@@ -10,6 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.diagnosis.candidates import (
     CALIBRATED,
     Candidate,
@@ -31,7 +32,6 @@ from werrimbi_odom.inference.fitting.knobs import (
     changed,
     knobs_of,
 )
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.robot import Robot

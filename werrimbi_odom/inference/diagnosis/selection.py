@@ -17,6 +17,7 @@ from itertools import combinations
 
 import numpy as np
 
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, orthonormal
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
 from werrimbi_odom.inference.fitting.fit import FEW, fit_model
@@ -28,7 +29,6 @@ from werrimbi_odom.inference.fitting.knobs import (
     own_of,
     shared_of,
 )
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

@@ -8,13 +8,13 @@ from dataclasses import dataclass
 from typing import Literal
 
 from werrimbi_odom.effects.collection import find
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.holdout import Errors, Judge, Sides
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import RIVAL, Fitted
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding
 from werrimbi_odom.model.robot import Robot

@@ -7,13 +7,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.design import Point
-from werrimbi_odom.inference.fitting.likelihood import (
-    Innovations,
-    ReferenceKind,
-    Variances,
-    innovations,
-)
+from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
 from werrimbi_odom.inference.fitting.matching import MatchedRun
 from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all
 from werrimbi_odom.inference.fitting.together import Together, laid_out

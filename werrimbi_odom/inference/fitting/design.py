@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.knobs import (
     HEADING_AT_START,
     MULTIPLIERS,
@@ -18,12 +19,7 @@ from werrimbi_odom.inference.fitting.knobs import (
     Knob,
     Model,
 )
-from werrimbi_odom.inference.fitting.likelihood import (
-    Innovations,
-    ReferenceKind,
-    Variances,
-    innovations,
-)
+from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
 from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.pose import Floats

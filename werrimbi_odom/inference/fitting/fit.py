@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.knobs import (
@@ -26,10 +27,7 @@ from werrimbi_odom.inference.fitting.knobs import (
     own_of,
     shared_of,
 )
-from werrimbi_odom.inference.fitting.likelihood import (
-    ReferenceKind,
-    Variances,
-)
+from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.matching import MatchedRun
 from werrimbi_odom.inference.fitting.noise import held_variances, likeliest
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict, predict_all

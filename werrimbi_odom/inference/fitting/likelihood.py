@@ -12,11 +12,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.filtering import UNMEASURED, Legs, filtered
 from werrimbi_odom.inference.fitting.matching import MatchedRun
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
@@ -26,8 +26,6 @@ from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
-
-ReferenceKind = Literal["absolute", "incremental"]
 
 
 @dataclass(frozen=True, slots=True)

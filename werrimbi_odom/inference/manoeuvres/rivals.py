@@ -15,10 +15,10 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate, orthonormal
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob, Model
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.effect import AppliedEffect

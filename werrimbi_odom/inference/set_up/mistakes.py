@@ -12,8 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.set_up.delay import lag_of
 from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding
 from werrimbi_odom.inference.set_up.headings import search_headings

@@ -86,9 +86,13 @@ def _ask(tab: Tab) -> None:
 
 
 def _verdict(tab: Tab, found: Diagnosed) -> None:
-    leg = tab.shared.opened.given.told.leg
+    given = tab.shared.opened.given
     told = Told(
-        found.diagnosis, found.manoeuvre, found.sights, leg, bool(tab.shared.opened.given.holdout)
+        found.diagnosis,
+        found.manoeuvre,
+        found.sights,
+        given.judging["leg"],
+        bool(given.holdout),
     )
     lines = unwrapped(words_of(told, STEPS))
     with box("div", "verdict"):

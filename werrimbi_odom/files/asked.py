@@ -8,14 +8,15 @@ import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TypedDict
 
 from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.files.run_folder import TICKS
-from werrimbi_odom.inference.fitting.likelihood import ReferenceKind
+from werrimbi_odom.model.encoder import EncoderLimits
 
 BAG = "metadata.yaml"
 _NAMED = 8  # runs of a folder that are named before "..."
@@ -38,6 +39,19 @@ class How:
     """Files with effects of the user's own."""
 
 
+class Judging(TypedDict):
+    """How a robot is judged on drives: what comparing, diagnosing and adding have in common."""
+
+    kind: ReferenceKind
+    leg: float
+    """[m]"""
+    limits: EncoderLimits
+    sigma_xy: float | None
+    """[m]"""
+    sigma_yaw: float | None
+    """[rad]"""
+
+
 @dataclass(frozen=True)
 class Asked:
     """One robot's files."""
@@ -58,13 +72,19 @@ class Recordings:
     runs: tuple[Run, ...]
     holdout: tuple[Run, ...]
     """Runs to judge on alone; empty where none were given."""
-    kind: ReferenceKind
-    leg: float
-    """Length of a leg [m]."""
-    sigma_xy: float | None
-    """Noise of the reference's position, if it was given as an option [m]."""
-    sigma_yaw: float | None
-    """The same of its heading [rad]."""
+    how: How
+
+    @property
+    def judging(self) -> Judging:
+        """How a robot is judged on these runs."""
+        how = self.how
+        return Judging(
+            kind=how.kind,
+            leg=how.leg,
+            limits=self.source.limits,
+            sigma_xy=how.sigma_xy,
+            sigma_yaw=how.sigma_yaw,
+        )
 
 
 def read(
@@ -94,16 +114,7 @@ def read(
         show(number / len(paths), f"reading {path.name}")
         found.append(_run(path, source, how))
     count = len(asked.runs)
-    return Recordings(
-        source,
-        collection,
-        tuple(found[:count]),
-        tuple(found[count:]),
-        how.kind,
-        how.leg,
-        how.sigma_xy,
-        how.sigma_yaw,
-    )
+    return Recordings(source, collection, tuple(found[:count]), tuple(found[count:]), how)
 
 
 def _run(path: Path, source: RobotFile, how: How) -> Run:
