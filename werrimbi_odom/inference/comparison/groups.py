@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference.chances import fisher_above, student_above
 from werrimbi_odom.inference.comparison.legs import LegErrors, LegStatistics, statistics
 from werrimbi_odom.inference.comparison.systematic import CHANNELS
 from werrimbi_odom.model.pose import Floats
@@ -127,8 +128,6 @@ def _bins(name: str, values: Floats) -> list[tuple[float, float, NDArray[np.bool
 
 def _differ(groups: list[Floats]) -> float:
     """Chance that groups of equal mean differ so much: Welch's analysis of variance."""
-    from scipy.stats import f as fisher
-
     groups = [known for group in groups if (known := group[np.isfinite(group)]).size >= _FEWEST]
     if len(groups) < 2:
         return 1.0
@@ -143,7 +142,7 @@ def _differ(groups: list[Floats]) -> float:
     free = len(groups) - 1
     lam = float(np.sum((1.0 - weight / total) ** 2 / (count - 1.0)))
     ratio = between / free / (1.0 + 2.0 * (free - 1) / ((free + 1) ** 2 - 1.0) * lam)
-    return float(fisher.sf(ratio, free, ((free + 1) ** 2 - 1.0) / (3.0 * max(lam, 1e-300))))
+    return fisher_above(ratio, free, ((free + 1) ** 2 - 1.0) / (3.0 * max(lam, 1e-300)))
 
 
 def _means(errors: Floats) -> tuple[float, float, float]:
@@ -162,8 +161,6 @@ def cells_of(legs: LegErrors, left: Floats, x: Floats, y: Floats, leg: float) ->
     leg : float
         Length of a leg, which no square is smaller than [m].
     """
-    from scipy.stats import t as student
-
     known = np.isfinite(x) & np.isfinite(y)
     if known.sum() < 2 * _FEWEST:
         return ()
@@ -183,7 +180,7 @@ def cells_of(legs: LegErrors, left: Floats, x: Floats, y: Floats, leg: float) ->
             size[here].var(ddof=1) / here.sum() + size[others].var(ddof=1) / others.sum()
         )
         ahead = float((size[here].mean() - size[others].mean()) / max(spread, 1e-12))
-        chance = float(student.sf(ahead, here.sum() - 1))
+        chance = student_above(ahead, here.sum() - 1)
         found.append(
             Cell(
                 float((at[0] + 0.5) * side),

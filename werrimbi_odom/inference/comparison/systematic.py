@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.inference.chances import student_above
 from werrimbi_odom.inference.comparison.legs import LegErrors, root_mean_square
 from werrimbi_odom.model.pose import Floats
 
@@ -102,8 +103,6 @@ def systematic_parts(legs: LegErrors) -> tuple[tuple[Systematic, ...], Floats]:
 def _laid_on(
     legs: LegErrors, rows: np.ndarray, channel: int, kind: str, names: tuple[str, ...]
 ) -> tuple[list[Systematic], Floats]:
-    from scipy.stats import t as student
-
     variables = {
         "travel": legs.along,
         "turn": legs.turn,
@@ -135,7 +134,7 @@ def _laid_on(
                 name,
                 float(slopes[column] / size[column]),
                 float(std[column] / size[column]),
-                float(2.0 * student.sf(abs(ratio), rows.size - len(names))),
+                2.0 * student_above(abs(ratio), rows.size - len(names)),
                 root_mean_square(design[:, column] * slopes[column]),
                 promised,
                 bool(of_most[column] * np.sign(slopes[column]) >= 0.5 * abs(slopes[column])),

@@ -9,6 +9,7 @@ from typing import Literal
 
 import numpy as np
 
+from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.comparison.groups import DEPENDS_P, Cell
 from werrimbi_odom.inference.comparison.systematic import (
@@ -167,12 +168,10 @@ def _scatters(figures: LegFigures) -> bool:
 
 def _bad(figures: LegFigures) -> bool:
     """Whether a few legs err beyond any chance, be it in one direction alone."""
-    from scipy.stats import chi2
-
     count, nees = figures.figures.count, figures.figures.nees
     if not 0 < count < FEWEST or not nees > LARGE:
         return False
-    return bool(chi2.sf(count * nees, count) < CERTAIN_P)
+    return chi2_above(count * nees, count) < CERTAIN_P
 
 
 def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:

@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.diagnosis.candidates import orthonormal
 from werrimbi_odom.inference.diagnosis.variables import (
     CONSTANT,
@@ -98,8 +99,6 @@ def dependences(
 
     `knobs` are what the model can turn: what they can explain is no evidence.
     """
-    from scipy.stats import chi2
-
     prediction = predict_all(point.model, runs)
     white, basis = stacked(runs, point, kind, knobs, prediction).flat()
     frame = orthonormal(basis)
@@ -133,7 +132,7 @@ def dependences(
             solution.reshape(len(runs.runs), -1) if variable.per_run else solution,
             gain,
             degrees,
-            float(min(1.0, chi2.sf(gain, degrees) * len(found))),
+            min(1.0, chi2_above(gain, degrees) * len(found)),
         )
         for amount, variable, form, solution, gain, degrees in found
     ]

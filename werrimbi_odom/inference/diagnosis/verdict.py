@@ -9,6 +9,7 @@ from typing import Literal
 
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.holdout import Errors, Judge, Sides
@@ -75,11 +76,9 @@ class Diagnosis:
 
 def chance(fit: Fitted, before: Fitted, tried: int) -> float:
     """How often chance would lower the cost as much, all that was tried counted."""
-    from scipy.stats import chi2
-
     gain = (before.cost + before.needless - fit.cost - fit.needless) / fit.scatter
     numbers = round((fit.price - before.price) / fit.price_of_one)
-    return float(min(1.0, chi2.sf(max(gain, 0.0), max(numbers, 1)) * max(tried, 1)))
+    return min(1.0, chi2_above(max(gain, 0.0), max(numbers, 1)) * max(tried, 1))
 
 
 def told(
@@ -182,8 +181,6 @@ def _ranking(
     start: Errors,
 ) -> list[Ranked]:
     """All effects, what was found first; an effect's figures are those of its first trial."""
-    from scipy.stats import chi2
-
     ranked: dict[str, Ranked] = {}
     mended = judge.of(Model(set_up.robot, judge.nothing_of_own)) if set_up.findings else start
     for finding in set_up.findings:
@@ -200,12 +197,12 @@ def _ranking(
     calibrated = judge.of(rounds[0].before.point.model)
     for name in CALIBRATED:
         importance = final.importance.get(name, 0.0)
-        p_value = float(min(1.0, chi2.sf(importance, 1) * rounds[0].number))
+        p_value = min(1.0, chi2_above(importance, 1) * rounds[0].number)
         untried = Ranked(name, p_value, None, None)
         worth = _worth(name, p_value, mended, calibrated) if importance else untried
         ranked.setdefault(name, worth)
     for score in rounds[0].scores:
-        p_value = float(min(1.0, chi2.sf(score.gain, score.degrees) * rounds[0].number))
+        p_value = min(1.0, chi2_above(score.gain, score.degrees) * rounds[0].number)
         ranked.setdefault(score.candidate.name, Ranked(score.candidate.name, p_value, None, None))
     first = [ranked.pop(name) for name in found if name in ranked]
     return [*first, *sorted(ranked.values(), key=lambda item: item.p_value)]

@@ -1,0 +1,36 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Chances that nothing but noise goes as far.
+
+By scipy.special: scipy.stats has the same functions of it, and takes half a second to import, which
+is a tenth of the time in which an hour of driving is to be seen.
+"""
+
+from __future__ import annotations
+
+
+def chi2_above(value: float, degrees: float) -> float:
+    """Chance that a chi-squared variable is above a value."""
+    from scipy.special import chdtrc
+
+    return float(chdtrc(degrees, max(value, 0.0)))
+
+
+def student_above(value: float, degrees: float) -> float:
+    """Chance that a variable of Student's t is above a value."""
+    from scipy.special import stdtr
+
+    return float(stdtr(degrees, -value))
+
+
+def fisher_above(value: float, above: float, below: float) -> float:
+    """Chance that a variable of Fisher's F is above a value.
+
+    Parameters
+    ----------
+    above, below
+        Degrees of freedom of its numerator and denominator.
+    """
+    from scipy.special import fdtrc
+
+    return float(fdtrc(above, below, max(value, 0.0)))
