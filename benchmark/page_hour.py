@@ -124,8 +124,8 @@ def workbench(browser: Any, folder: Path, drives: Sequence[Path]) -> dict[str, f
         address = process.stdout.readline().split()[0]
         found["address"] = time.perf_counter() - begun
         page = browser.new_page(viewport={"width": 1440, "height": 900})
-        page.goto(address)
-        page.wait_for_selector(".plot .main-svg .js-line", timeout=120_000)
+        page.goto(address, wait_until="commit")
+        page.wait_for_selector("svg.measured", timeout=120_000)
         found["path"] = time.perf_counter() - begun
         page.wait_for_selector('[data-key="go-compare"]', timeout=120_000)
         page.wait_for_selector(".plot .main-svg .js-line", timeout=120_000)

@@ -38,9 +38,10 @@ def main() -> None:
             [sys.executable, "-m", "werrimbi_odom.cli.main", "workbench",
              "--robot", "robot.yaml", *(f"train/{name}" for name in TRAIN),
              "--holdout", *(f"holdout/{name}" for name in HOLDOUT), "--json", str(told)],
-            cwd=folder,
+            cwd=folder, stdout=subprocess.PIPE, text=True,
         )  # fmt: skip
         try:
+            opening(browser, process)
             while not told.exists():
                 if process.poll() is not None:
                     sys.exit("the workbench did not start")
@@ -49,6 +50,23 @@ def main() -> None:
         finally:
             process.kill()
             process.wait()
+
+
+def opening(browser: str, process: subprocess.Popen[str]) -> None:
+    """The page while the drives are compared: who compares is held meanwhile."""
+    from playwright.sync_api import sync_playwright
+
+    assert process.stdout is not None
+    address = process.stdout.readline().split()[0]
+    subprocess.run(["pkill", "-STOP", "-P", str(process.pid)], check=True)
+    with sync_playwright() as playwright:
+        running = playwright.chromium.launch(executable_path=browser, args=["--no-sandbox"])
+        page = running.new_page(viewport=SIZE, color_scheme="light")
+        page.goto(address)
+        page.wait_for_selector("svg.measured")
+        taken(page, "opening")
+        running.close()
+    subprocess.run(["pkill", "-CONT", "-P", str(process.pid)], check=True)
 
 
 def look(browser: str, address: str) -> None:

@@ -21,7 +21,6 @@ from werrimbi_odom.files.asked import Judging
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.workbench.floor import measured_figure
 from werrimbi_odom.workbench.job import CancelledError, Job
 from werrimbi_odom.workbench.opened import Given, opened
 from werrimbi_odom.workbench.opening import Opening
@@ -97,7 +96,6 @@ def test_drives_without_a_reference_are_refused_in_a_line(
     bare = Run(runs[0].name, runs[0].path, runs[0].ticks, None)
     with pytest.raises(InputError):
         awaited(begun(source, [bare], [bare]).result())
-    assert measured_figure([bare]) is None
 
     robot, train, _ = written(tmp_path)
     for run in train:
@@ -110,18 +108,3 @@ def test_drives_without_a_reference_are_refused_in_a_line(
     assert end.returncode == 2
     assert len(end.stderr.splitlines()) == 1
     assert "reference" in end.stderr
-
-
-def test_the_measured_paths_are_drawn_with_few_points(
-    day: tuple[RobotFile, list[Run], list[Run]],
-) -> None:
-    figure = measured_figure(day[1])
-    assert figure is not None
-    assert len(figure.data) == len(day[1])
-    for line, run in zip(figure.data, day[1], strict=True):
-        assert run.reference is not None
-        assert line.x[0] == pytest.approx(run.reference.x[0])
-        assert line.x[-1] == pytest.approx(run.reference.x[-1])
-    many = measured_figure(day[1] * 200)
-    assert many is not None
-    assert sum(len(line.x) for line in many.data) < 400 * 25

@@ -58,20 +58,21 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(
             "the workbench needs NiceGUI, which is not installed: pip install 'nicegui>=3.18'"
         )
+    from werrimbi_odom.workbench.job import Job
+    from werrimbi_odom.workbench.tasks import Open
+
+    job = Job(Open())
+    job.start()  # before all else, so that it imports while the drives are read
     # It would keep a folder .nicegui where the command is run, and ask the network for a relay.
     os.environ["NICEGUI_STORAGE_PATH"] = str(Path(tempfile.gettempdir()) / ".werrimbi_none")
     os.environ.pop("NICEGUI_REDIS_URL", None)
-    from werrimbi_odom.workbench.job import Job
-    from werrimbi_odom.workbench.saving import refuse
-    from werrimbi_odom.workbench.server import listening, serve
-    from werrimbi_odom.workbench.tasks import Open
-
-    if arguments.out is not None:
-        refuse(arguments.out, arguments.force)
-    at = listening(arguments.port)
-    job = Job(Open())
-    job.start()
     try:
+        from werrimbi_odom.workbench.saving import refuse
+        from werrimbi_odom.workbench.server import listening, serve
+
+        if arguments.out is not None:
+            refuse(arguments.out, arguments.force)
+        at = listening(arguments.port)
         opening = _opening(job, arguments, read_recordings(arguments))
     except BaseException:
         job.cancel()

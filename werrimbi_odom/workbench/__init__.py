@@ -3,7 +3,7 @@
 """The workbench: compare, diagnose, add and save on one local page.
 
 What is open (`opened`) is read once and shared; what a browser tab has done with it (`steps`) is
-a value of its own. Long work (`work`) runs in a process of its own (`job`), so that it can be
-stopped. The page (`page`, `views`) shows it all; `guard` and `server` see to it that only this
-machine can ask.
+a value of its own. Long work (`verbs`) runs in a process of its own (`job`, `work`), so that it
+can be stopped. The page (`page`, `views`) shows it all; `guard` and `server` see to it that only
+this machine can ask.
 """

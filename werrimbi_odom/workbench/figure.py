@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A figure on the page, drawn by plotly.js itself.
 
-It is asked for when the page begins, so that it is there when the first figure comes.
+It is asked for before the first figure comes, so that it is there by then.
 """
 
 from __future__ import annotations
@@ -33,9 +33,26 @@ def serve_drawing() -> None:
         app.add_static_file(local_file=file, url_path=f"/{DRAWING}")
 
 
-def ask_for_drawing() -> None:
-    """Have the page load the drawing program while other things go on."""
-    ui.add_head_html(f'<script async src="/{DRAWING}"></script>')
+def ask_for_drawing(at_once: bool) -> None:
+    """Have the page load the drawing program while other things go on.
+
+    Parameters
+    ----------
+    at_once
+        Whether figures will be there at once. It holds the page for a second as it begins: where
+        they will not, what needs no figure is shown first.
+    """
+    begin = "ask()" if at_once else "addEventListener('load', () => setTimeout(ask, 50))"
+    ui.add_head_html(
+        f"""<script>{{
+  const ask = () => {{
+    const program = document.createElement("script");
+    program.src = "/{DRAWING}";
+    document.head.append(program);
+  }};
+  {begin};
+}}</script>"""
+    )
 
 
 def figure(drawn: Any, dark: bool, label: str, classes: str = "plot") -> None:

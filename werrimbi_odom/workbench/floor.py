@@ -8,17 +8,15 @@ fewer points; every figure is counted with all.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.legs import CHI2_95
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.report.decimate import FEWEST, MARKS, along_path, small
+from werrimbi_odom.report.decimate import MARKS, small
 from werrimbi_odom.report.style import BLUE, GREY, ORANGE, plain
 
 if TYPE_CHECKING:
@@ -87,30 +85,6 @@ def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None)
         )
     _add_texts(figure, comparison, chosen, grade)
     return _from_above(figure)
-
-
-def measured_figure(runs: Sequence[Run]) -> go.Figure | None:
-    """The measured paths alone; None where no positions were measured."""
-    import plotly.graph_objects as go
-
-    figure = go.Figure()
-    for run in runs:
-        if run.reference is None:
-            continue
-        places = run.reference.x + 1j * run.reference.y
-        places = places[np.isfinite(places)]
-        if places.size == 0:
-            continue
-        places = places[along_path(places, max(FEWEST, _POINTS // len(runs)))]
-        figure.add_scatter(
-            x=small(places.real),
-            y=small(places.imag),
-            mode="lines",
-            line={"color": GREY, "width": 1.5},
-            hoverinfo="skip",
-            showlegend=False,
-        )
-    return _from_above(figure) if figure.data else None
 
 
 def _from_above(figure: go.Figure) -> go.Figure:

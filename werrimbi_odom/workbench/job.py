@@ -1,10 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Long work in a process of its own: told how far it is, stopped when nobody wants it any more."""
+"""Long work in a process of its own: told how far it is, stopped when nobody wants it any more.
+
+Few imports, as in `tasks`: the first process is begun before anything else is.
+"""
 
 from __future__ import annotations
 
-import asyncio
 import multiprocessing
 import time
 from collections.abc import Mapping
@@ -15,12 +17,11 @@ from pathlib import Path
 from threading import Thread
 from typing import TYPE_CHECKING, Any
 
-from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.workbench.crossing import packed, unpacked
 from werrimbi_odom.workbench.tasks import Task, begin
 
 if TYPE_CHECKING:
+    from werrimbi_odom.effects.collection import Collection
     from werrimbi_odom.workbench.opened import Given
 
 
@@ -63,6 +64,8 @@ class Job:
         CancelledError
             When it was stopped.
         """
+        import asyncio
+
         try:
             return await asyncio.to_thread(self._run, given, known, collection)
         finally:
@@ -90,6 +93,8 @@ class Job:
 
     def ask(self, given: Given) -> None:
         """Say what is to be done, to a process that was started."""
+        from werrimbi_odom.workbench.crossing import packed
+
         data = packed((self.task, given), {})
         # It may still be importing, and a pipe holds little until it reads.
         Thread(target=self._send, args=(given.effect_files, data), daemon=True).start()
@@ -120,6 +125,8 @@ class Job:
     def _received(
         self, receiving: Connection, known: Mapping[str, Any], collection: Collection
     ) -> Any:
+        from werrimbi_odom.workbench.crossing import unpacked
+
         while True:
             what, value, words = receiving.recv()
             if what == "done":

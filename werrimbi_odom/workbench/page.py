@@ -54,14 +54,17 @@ _SESSION, _DARK = "session", "dark"
 
 async def page(opening: Opening) -> None:
     """Everything that a tab sees: first what is known before anything is compared."""
-    ask_for_drawing()
+    ask_for_drawing(at_once=opening.shared is not None)
     ui.add_css(STYLE.read_text(encoding="utf-8"))
     ui.add_head_html(FOCUS)
     ui.page_title(f"{opening.source.path.name} · werrimbi workbench")
-    client, theme = ui.context.client, ui.dark_mode()
+    client, theme = ui.context.client, ui.dark_mode(None)  # as the system has it, until known
     first = box("div")
     with first:
-        text("p", "Opening …", "opening")
+        if opening.shared is None:
+            opening_view(opening)
+        else:
+            text("p", "Opening …", "opening")
     await client.connected()
     if not client.has_socket_connection:
         return  # something that only fetched the page
@@ -73,9 +76,7 @@ async def page(opening: Opening) -> None:
         )
     theme.set_value(bool(dark))
     if opening.shared is None:
-        first.clear()
-        with first:
-            opening_view(opening, bool(dark))
+        import plotly.graph_objects  # noqa: F401  # it takes a while: now, while others work
     try:
         shared = await opening.result()
     except InputError as error:
@@ -85,12 +86,12 @@ async def page(opening: Opening) -> None:
         return
     if client.id in Client.instances:  # its browser may have gone meanwhile
         first.delete()
-        _work(shared, bool(dark), theme)
+        _work(shared, kept, bool(dark), theme)
 
 
-def _work(shared: Shared, dark: bool, theme: Any) -> None:
+def _work(shared: Shared, kept: Any, dark: bool, theme: Any) -> None:
     """The page proper."""
-    client, kept = ui.context.client, app.storage.tab
+    client = ui.context.client
     status = text("p", "", "status", role="status", aria_live="polite")
     top = box("header")
     strip_place = box("div", "strip-place")

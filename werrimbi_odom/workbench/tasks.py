@@ -8,9 +8,12 @@ Few imports: the process is started before all else, and imports its own beside 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from multiprocessing.connection import Connection
+from typing import TYPE_CHECKING
 
-from werrimbi_odom.model.robot import Robot
+if TYPE_CHECKING:
+    from multiprocessing.connection import Connection
+
+    from werrimbi_odom.model.robot import Robot
 
 
 @dataclass(frozen=True)

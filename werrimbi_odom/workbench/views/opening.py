@@ -8,13 +8,12 @@ from typing import Any
 
 from nicegui import ui
 
-from werrimbi_odom.workbench.figure import figure
-from werrimbi_odom.workbench.floor import measured_figure
 from werrimbi_odom.workbench.html import box, text
+from werrimbi_odom.workbench.measured import measured_drawing
 from werrimbi_odom.workbench.opening import Opening
 
 
-def opening_view(opening: Opening, dark: bool) -> None:
+def opening_view(opening: Opening) -> None:
     """What is known before anything is compared: the measured paths."""
     with box("header"), box("div", "title"):
         text("h1", "werrimbi workbench")
@@ -23,10 +22,10 @@ def opening_view(opening: Opening, dark: bool) -> None:
     with box("section", "work", aria_label="Work under way"):
         words = text("p", "Comparing …")
         bar: Any = box("progress", max="1", value="0", aria_label="Comparing, share done")
-    drawn = measured_figure(runs)
+    drawn = measured_drawing(runs)
     if drawn is not None:
         text("h2", "Measured paths; where the model fails on them is being worked out")
-        figure(drawn, dark, "The measured paths from above.")
+        ui.html(drawn, sanitize=False)
 
     def look() -> None:
         words.set_text(f"Comparing: {opening.job.words} ({100.0 * opening.job.share:.0f} %)")
