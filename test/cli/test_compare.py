@@ -190,11 +190,18 @@ def test_in_a_process_of_its_own_without_a_terminal() -> None:
         ("--report", "page.txt", "ends in .html, .pdf or .png"),
         ("--report", "nowhere/page.html", "there is no folder"),
         ("--json", "nowhere/figures.json", "there is no folder"),
+        ("--report", "page.pdf", "a report that ends in .html needs none"),
     ],
 )
 def test_what_could_not_be_written_is_said_before_the_work(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], option: str, name: str, said: str
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+    option: str,
+    name: str,
+    said: str,
 ) -> None:
+    monkeypatch.setenv("PATH", "")  # no browser
     not_there = tmp_path / "a_drive_that_would_be_read_next"
     words = ("--robot", wrong_base(tmp_path), not_there, option, tmp_path / name)
     assert said in complaint(capsys, *words)

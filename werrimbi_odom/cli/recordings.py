@@ -18,10 +18,6 @@ if TYPE_CHECKING:
     from werrimbi_odom.files.asked import How, Recordings
 
 
-REPORTS = (".html", ".htm", ".pdf", ".png")
-"""Endings that a report may have."""
-
-
 def add_recording_arguments(
     parser: argparse.ArgumentParser,
     holdout: bool = False,
@@ -161,7 +157,7 @@ def refuse_outputs(arguments: argparse.Namespace, inputs: Iterable[Path]) -> Non
     ------
     InputError
         When --json or --report is a folder or lies in none, is one of the inputs, both are the
-        same, or the report has an ending that no report has.
+        same, or `refuse_report` refuses the report.
     """
     from werrimbi_odom.files.asked import place_of
 
@@ -179,8 +175,10 @@ def refuse_outputs(arguments: argparse.Namespace, inputs: Iterable[Path]) -> Non
             raise InputError(f"--{name} {out} is a folder; give a file name in it")
         if not out.parent.is_dir():
             raise InputError(f"--{name} {out}: there is no folder {out.parent}")
-        if name == "report" and out.suffix.lower() not in REPORTS:
-            raise InputError(f"--report {out}: a report ends in .html, .pdf or .png")
+        if name == "report":
+            from werrimbi_odom.report.save import refuse_report
+
+            refuse_report(out)
         if place_of(out) in taken:
             raise InputError(f"--{name} {out} would overwrite what is read, or written, already")
         taken.add(place_of(out))

@@ -18,6 +18,9 @@ from werrimbi_odom.report.style import KEPT_HERE
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
+PAGES, PICTURES = (".html", ".htm"), (".pdf", ".png")
+"""How reports end."""
+
 BROWSERS = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable", "chrome")
 
 
@@ -58,6 +61,24 @@ def save_png(figure: go.Figure, path: Path, *, scale: float = 1.5) -> bool:
     return True
 
 
+def refuse_report(path: Path) -> None:
+    """What can be known before there is anything to report.
+
+    Raises
+    ------
+    InputError
+        When no report has such an ending, or no browser is there to draw its pictures.
+    """
+    kind = path.suffix.lower()
+    if kind not in (*PAGES, *PICTURES):
+        raise InputError(f"--report {path}: a report ends in .html, .pdf or .png")
+    if kind in PICTURES and find_browser() is None:
+        raise InputError(
+            f"--report {path}: figures are drawn by Chrome or Chromium, and none is installed "
+            "(apt install chromium); a report that ends in .html needs none"
+        )
+
+
 def save_report(page: Page, path: Path) -> list[Path]:
     """A report as a page (.html), or its main figures as pictures for a paper (.pdf, .png).
 
@@ -69,12 +90,10 @@ def save_report(page: Page, path: Path) -> list[Path]:
     InputError
         When a file cannot be written, its ending is another one, or no browser is installed.
     """
-    kind = path.suffix.lower()
-    if kind in (".html", ".htm"):
+    refuse_report(path)
+    if path.suffix.lower() in PAGES:
         write_page(page, path)
         return [path]
-    if kind not in (".pdf", ".png"):
-        raise InputError(f"--report {path}: a report ends in .html, .pdf or .png")
     main = [shown for shown in page.shown if shown.main and shown.figures]
     files = [
         path if number == 0 else path.with_name(f"{path.stem}-{shown.key}{path.suffix}")
@@ -95,14 +114,8 @@ def save_pictures(pictures: Sequence[tuple[go.Figure, Path]], *, scale: float = 
     Raises
     ------
     InputError
-        When no browser is installed, or a file cannot be written.
+        When a file cannot be written.
     """
-    browser = find_browser()
-    if browser is None:
-        raise InputError(
-            f"--report {pictures[0][1]}: figures are drawn by Chrome or Chromium, and none is "
-            "installed (apt install chromium); a report that ends in .html needs none"
-        )
     import kaleido
 
     with tempfile.TemporaryDirectory(prefix="werrimbi-") as folder:
@@ -125,7 +138,7 @@ def save_pictures(pictures: Sequence[tuple[go.Figure, Path]], *, scale: float = 
                     }
                     for (figure, _), part in zip(pictures, drawn, strict=True)
                 ],
-                kopts={"path": browser},
+                kopts={"path": find_browser()},
             )
         finally:
             logging.disable(logging.NOTSET)
