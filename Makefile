@@ -43,6 +43,7 @@ bench: setup  ## how fast, as ratios measured side by side
 
 evidence: setup  ## the long tests: hidden effects (tables to docs/evidence.md), many seeds, soaks
 	$(BIN)/python -m test.hidden
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[evidence]' || echo "no atheris for this Python: tests that need it will skip"
 	$(BIN)/python -m pytest -m evidence
 
 pictures: setup  ## the pictures of the README, made anew (needs Chrome or Chromium)

