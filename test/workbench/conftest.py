@@ -10,7 +10,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -32,6 +32,18 @@ class Served:
     process: subprocess.Popen[str]
 
 
+def begun(folder: Path, words: Sequence[object]) -> subprocess.Popen[str]:
+    """The command, in a folder."""
+    return subprocess.Popen(
+        [sys.executable, "-m", "werrimbi_odom.cli.main", *map(str, words)],
+        cwd=folder,
+        env={**os.environ, "PYTHONPATH": str(ROOT)},
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
 @pytest.fixture(scope="session")
 def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     pytest.importorskip(
@@ -41,14 +53,7 @@ def served(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Served]:
     robot, train, holdout = written(folder)
     told = tmp_path_factory.mktemp("told") / "address.json"
     words = ["workbench", "--robot", robot, *train, "--holdout", *holdout, "--json", told]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "werrimbi_odom.cli.main", *map(str, words)],
-        cwd=folder,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    process = begun(folder, words)
     try:
         while not told.exists():
             if process.poll() is not None:

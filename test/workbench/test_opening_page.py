@@ -6,8 +6,6 @@ from __future__ import annotations
 
 import os
 import signal
-import subprocess
-import sys
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,7 +14,7 @@ from typing import Any
 import pytest
 
 from test.axe import RUN, axe_script
-from test.workbench.conftest import PATIENCE, ROOT
+from test.workbench.conftest import PATIENCE, begun
 from test.workbench.session import written
 
 
@@ -38,15 +36,7 @@ def held(tmp_path: Path) -> Iterator[tuple[str, int]]:
     """Address of a workbench, and the process that compares for it, held before it begins."""
     pytest.importorskip("nicegui", reason="the workbench needs NiceGUI")
     robot, train, holdout = written(tmp_path)
-    words = ["workbench", "--robot", robot, *train, "--holdout", *holdout]
-    process = subprocess.Popen(
-        [sys.executable, "-m", "werrimbi_odom.cli.main", *map(str, words)],
-        cwd=tmp_path,
-        env={**os.environ, "PYTHONPATH": str(ROOT)},
-        stdout=subprocess.PIPE,
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    process = begun(tmp_path, ["workbench", "--robot", robot, *train, "--holdout", *holdout])
     try:
         worker = None
         while worker is None:

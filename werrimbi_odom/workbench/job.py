@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Long work in a process of its own: told how far it is, stopped when nobody wants it any more.
 
-Few imports, as in `tasks`: the first process is begun before anything else is.
+Few imports: the first process is begun before anything else is.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.workbench.tasks import Task, begin
+from werrimbi_odom.workbench.begin import begin
+from werrimbi_odom.workbench.tasks import Task
 
 if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection

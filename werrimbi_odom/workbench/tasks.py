@@ -1,9 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What long work there is, and where its process begins.
-
-Few imports: the process is started before all else, and imports its own beside its parent.
-"""
+"""What long work there is."""
 
 from __future__ import annotations
 
@@ -11,8 +8,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from multiprocessing.connection import Connection
-
     from werrimbi_odom.model.robot import Robot
 
 
@@ -37,10 +32,3 @@ class Open:
 
 
 Task = Diagnose | Add | Open
-
-
-def begin(asked: Connection) -> None:
-    """Where a worker begins; see `work.work`."""
-    from werrimbi_odom.workbench.work import work
-
-    work(asked)
