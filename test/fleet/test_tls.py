@@ -1,0 +1,96 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A Dask cluster that talks TLS alone, by Dask's own configuration, as docs/fleet.md says."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+from test.fleet.test_spread import nowhere
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.fleet.cluster import on_cluster
+
+distributed = pytest.importorskip("distributed", reason="pip install werrimbi_odom[cluster]")
+
+ROOT = Path(__file__).parents[2]
+ASK = """
+import sys
+from test.fleet.test_spread import nowhere
+from werrimbi_odom.fleet.cluster import on_cluster
+for row in on_cluster([nowhere("robot_1"), nowhere("robot_2")], sys.argv[1], patience=60.0):
+    print(row.robot, row.error)
+"""
+
+
+@pytest.fixture(scope="module")
+def certified(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    """Environment of a machine that has a certificate, signed by itself."""
+    if shutil.which("openssl") is None:
+        pytest.skip("no openssl to make a certificate with")
+    folder = tmp_path_factory.mktemp("tls")
+    key, certificate = folder / "key.pem", folder / "cert.pem"
+    subprocess.run(
+        ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2",
+         "-subj", "/CN=werrimbi", "-keyout", str(key), "-out", str(certificate)],
+        check=True, capture_output=True,
+    )  # fmt: skip
+    configured = {"DASK_DISTRIBUTED__COMM__TLS__CA_FILE": str(certificate)}
+    for role in ("SCHEDULER", "WORKER", "CLIENT"):
+        configured[f"DASK_DISTRIBUTED__COMM__TLS__{role}__CERT"] = str(certificate)
+        configured[f"DASK_DISTRIBUTED__COMM__TLS__{role}__KEY"] = str(key)
+    return {**os.environ, **configured, "PYTHONPATH": str(ROOT)}
+
+
+@pytest.fixture(scope="module")
+def guarded(certified: dict[str, str], tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
+    """Address of a scheduler with a worker."""
+    folder = tmp_path_factory.mktemp("cluster")
+    told = folder / "scheduler.json"
+    dask = [sys.executable, "-m"]
+    words = ["--no-dashboard", "--scheduler-file", str(told)]
+    commands = [
+        [*dask, "distributed.cli.dask_scheduler", "--protocol", "tls", "--port", "0",
+         "--host", "127.0.0.1", *words],
+        [*dask, "distributed.cli.dask_worker", "--nthreads", "1", *words],
+    ]  # fmt: skip
+    processes = [
+        subprocess.Popen(command, cwd=folder, env=certified, stderr=subprocess.DEVNULL)
+        for command in commands
+    ]
+    try:
+        while not told.exists():
+            assert processes[0].poll() is None
+            time.sleep(0.05)
+        yield str(json.loads(told.read_text())["address"])
+    finally:
+        for process in reversed(processes):
+            process.terminate()
+            process.wait(60.0)
+
+
+def test_robots_go_over_tls(guarded: str, certified: dict[str, str]) -> None:
+    assert guarded.startswith("tls://")
+    done = subprocess.run(
+        [sys.executable, "-c", ASK, guarded],
+        env=certified, capture_output=True, text=True, check=False, timeout=180,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    lines = sorted(done.stdout.splitlines())
+    assert [line.split()[0] for line in lines] == ["robot_1", "robot_2"]
+    assert all("robot.yaml" in line for line in lines), "each says what it lacks"
+
+
+@pytest.mark.parametrize("protocol", ["tls", "tcp"])
+def test_who_has_no_certificate_is_not_let_in(guarded: str, protocol: str) -> None:
+    address = guarded.replace("tls://", f"{protocol}://")
+    with pytest.raises(InputError, match="no Dask scheduler answers there"):
+        list(on_cluster([nowhere("robot_1")], address, patience=5.0))
