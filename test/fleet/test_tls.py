@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import json
-import os
+import re
 import shutil
 import subprocess
 import sys
@@ -37,17 +37,21 @@ def certified(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
     if shutil.which("openssl") is None:
         pytest.skip("no openssl to make a certificate with")
     folder = tmp_path_factory.mktemp("tls")
-    key, certificate = folder / "key.pem", folder / "cert.pem"
+    key, certificate = folder / "own.key", folder / "own.pem"
     subprocess.run(
         ["openssl", "req", "-x509", "-newkey", "rsa:2048", "-nodes", "-days", "2",
          "-subj", "/CN=werrimbi", "-keyout", str(key), "-out", str(certificate)],
         check=True, capture_output=True,
     )  # fmt: skip
-    configured = {"DASK_DISTRIBUTED__COMM__TLS__CA_FILE": str(certificate)}
-    for role in ("SCHEDULER", "WORKER", "CLIENT"):
-        configured[f"DASK_DISTRIBUTED__COMM__TLS__{role}__CERT"] = str(certificate)
-        configured[f"DASK_DISTRIBUTED__COMM__TLS__{role}__KEY"] = str(key)
-    return {**os.environ, **configured, "PYTHONPATH": str(ROOT)}
+    shown = re.search(r"  ```sh\n(.*?)  ```", (ROOT / "docs" / "fleet.md").read_text(), re.S)
+    assert shown is not None
+    words = shown[1].replace("ca.pem", str(certificate))
+    words = words.replace("cert.pem", str(certificate)).replace("=key.pem", f"={key}")
+    told = subprocess.run(
+        ["bash", "-c", f"{words}\nenv -0"], check=True, capture_output=True, text=True
+    ).stdout
+    environment = dict(entry.split("=", 1) for entry in told.split("\0") if entry)
+    return {**environment, "PYTHONPATH": str(ROOT)}
 
 
 @pytest.fixture(scope="module")
