@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -205,3 +206,26 @@ def test_what_could_not_be_written_is_said_before_the_work(
     not_there = tmp_path / "a_drive_that_would_be_read_next"
     words = ("--robot", wrong_base(tmp_path), not_there, option, tmp_path / name)
     assert said in complaint(capsys, *words)
+
+
+def test_held_poses_are_left_out_and_told(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The shipped drive, by a tracker that says its old pose for a second now and then."""
+    figures = []
+    for name in ("held", "left_out"):
+        run = tmp_path / name
+        shutil.copytree(RECORDING, run)
+        head, *rows = (run / "reference.csv").read_text().splitlines()
+        for begin in range(40, len(rows) - 30, 60):
+            pose = rows[begin].split(",", 1)[1]
+            for row in range(begin + 1, begin + 20):
+                rows[row] = f"{rows[row].split(',')[0]},{pose}" if name == "held" else ""
+        (run / "reference.csv").write_text("\n".join([head, *filter(None, rows)]) + "\n")
+        figures.append(compared(tmp_path, "--robot", ROBOT, run))
+        said = capsys.readouterr().err
+        assert said.startswith(f"warning: {run}: ") == (name == "held")
+        assert said.count("\n") == (name == "held")
+    held, left_out = (found["legs"] for found in figures)
+    assert held["count"] == left_out["count"]
+    assert held["rmse_position_m"] == pytest.approx(left_out["rmse_position_m"], rel=0.02)

@@ -103,6 +103,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     """
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.files.asked import Asked, read, refuse_twice
+    from werrimbi_odom.files.held import words_about_held
 
     holdout = tuple(getattr(arguments, "holdout", None) or ())
     asked = Asked(arguments.robot, tuple(arguments.runs), holdout, how_of(arguments))
@@ -111,7 +112,11 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     refuse_outputs(arguments, [arguments.robot, *paths, *arguments.effects])
     collection = read_effects(arguments)
     with share_done("reading") as show:
-        return read(asked, collection, show)
+        found = read(asked, collection, show)
+    warning = words_about_held((*found.runs, *found.holdout))
+    if warning is not None:
+        print(f"warning: {warning}", file=sys.stderr)
+    return found
 
 
 def how_of(arguments: argparse.Namespace) -> How:

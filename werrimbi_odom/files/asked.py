@@ -12,6 +12,7 @@ from typing import TypedDict
 
 from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.held import without_held_poses
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
@@ -128,7 +129,8 @@ def _run(path: Path, source: RobotFile, how: How) -> Run:
                 f"{path} is no run but a folder of {len(within)} "
                 f"({', '.join(within[:_NAMED])}{more}); give each of them: {path}/*"
             )
-    return read_run(path, source, ticks_topic=how.ticks_topic, reference_topic=how.reference_topic)
+    run = read_run(path, source, ticks_topic=how.ticks_topic, reference_topic=how.reference_topic)
+    return without_held_poses(run, source.robot) if how.kind == "absolute" else run
 
 
 def refuse_twice(paths: Iterable[Path]) -> None:

@@ -68,6 +68,17 @@ class Reference:
         """Where yaw was measured."""
         return np.isfinite(self.yaw)
 
+    def chosen(self, which: NDArray[np.bool_]) -> Reference:
+        """Some of the poses; `which` has shape (m,)."""
+        return Reference(
+            self.time[which],
+            self.x[which],
+            self.y[which],
+            self.yaw[which],
+            None if self.sigma_xy is None else self.sigma_xy[which],
+            None if self.sigma_yaw is None else self.sigma_yaw[which],
+        )
+
 
 @dataclass(frozen=True, eq=False)
 class Run:
@@ -80,6 +91,8 @@ class Run:
     reference: Reference | None = None
     notes: tuple[str, ...] = ()
     """What the reader chose or left out, in words for the user."""
+    held_poses: int = 0
+    """Poses of the reference that were left out, see `held.without_held_poses`."""
 
 
 def counts_of(values: Floats) -> Counts:

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
+from werrimbi_odom.files.run import ReferenceKind, Run, Ticks
 from werrimbi_odom.inference.comparison.judged_legs import Prepared, judged_legs, prepare
 from werrimbi_odom.inference.comparison.legs import statistics
 from werrimbi_odom.inference.diagnosis.search import with_own_values
@@ -160,18 +160,7 @@ def _part(run: Run, begin: float, end: float) -> Run:
     if reference is None:
         return replace(run, ticks=cut)
     there = (reference.time >= begin) & (reference.time < end)
-    return replace(
-        run,
-        ticks=cut,
-        reference=Reference(
-            reference.time[there],
-            reference.x[there],
-            reference.y[there],
-            reference.yaw[there],
-            None if reference.sigma_xy is None else reference.sigma_xy[there],
-            None if reference.sigma_yaw is None else reference.sigma_yaw[there],
-        ),
-    )
+    return replace(run, ticks=cut, reference=reference.chosen(there))
 
 
 def _figures(prepared: Prepared, model: Model) -> tuple[float, float, float]:

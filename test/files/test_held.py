@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Poses that a tracker holds while the robot goes on are not taken for measured."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.files.held import held_poses, without_held_poses, words_about_held
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.model.robot import Robot
+
+TRUE = WhiteNoiseRobot()
+ROBOT = Robot(TRUE.separation, TRUE.left_radius, *2 * [TRUE.ticks_per_revolution])
+
+
+def driven(seed: int, **seen: float) -> Run:
+    """A minute of lines, curves, spins and stops."""
+    random = np.random.default_rng(seed)
+    recorded = drive(TRUE, wandering(random, 30.0), random, every=5, **seen)
+    ticks, seen_by = recorded.ticks, recorded.reference
+    return Run(
+        "drive",
+        Path("drive"),
+        Ticks(ticks.time, ticks.left, ticks.right),
+        Reference(seen_by.time, seen_by.x, seen_by.y, seen_by.yaw),
+    )
+
+
+def held(reference: Reference, begin: int, end: int) -> Reference:
+    """The same, where the pose of `begin` is repeated until `end`."""
+    rows = np.arange(reference.time.size)
+    rows[begin:end] = begin
+    return replace(reference.chosen(rows), time=reference.time)
+
+
+def moving(run: Run) -> int:
+    """A row from which the robot goes straight on for a while."""
+    assert run.reference is not None
+    way = np.hypot(np.diff(run.reference.x), np.diff(run.reference.y))
+    return int(np.argmax(np.convolve(way, np.ones(30), "valid")))
+
+
+@given(st.integers(0, 50))
+def test_a_reference_that_never_repeats_stays_as_it_is(seed: int) -> None:
+    run = driven(seed)
+    assert without_held_poses(run, ROBOT) is run
+
+
+@given(st.integers(0, 20), st.integers(2, 25))
+def test_held_poses_are_left_out_but_not_the_first_of_them(seed: int, length: int) -> None:
+    run = driven(seed)
+    assert run.reference is not None
+    begin = moving(run)
+    lost = replace(run, reference=held(run.reference, begin, begin + length))
+    np.testing.assert_array_equal(
+        np.flatnonzero(held_poses(lost, ROBOT)), np.arange(begin + 1, begin + length)
+    )
+    left = without_held_poses(lost, ROBOT)
+    assert left.held_poses == length - 1
+    assert left.reference is not None
+    assert left.reference.time[begin] == run.reference.time[begin]
+    assert left.reference.time.size == run.reference.time.size - length + 1
+
+
+def test_a_robot_that_stands_is_measured_where_it_stands() -> None:
+    """Without any noise its pose repeats, as it should."""
+    run = driven(1, sigma_xy=0.0, sigma_yaw=0.0)
+    assert run.reference is not None
+    rows = np.arange(run.reference.time.size)
+    still = np.diff(run.reference.x, append=np.nan) == 0.0
+    assert still.sum() > 5
+    assert not held_poses(run, ROBOT)[rows[still]].any()
+
+
+@pytest.mark.parametrize("grid", [0.003, 0.01, 0.05])
+def test_a_coarse_reference_repeats_between_its_steps(grid: float) -> None:
+    run = driven(2)
+    assert run.reference is not None
+    coarse = replace(
+        run.reference,
+        x=np.round(run.reference.x / grid) * grid,
+        y=np.round(run.reference.y / grid) * grid,
+        yaw=np.full(run.reference.time.size, np.nan),
+    )
+    repeats = (np.diff(coarse.x) == 0.0) & (np.diff(coarse.y) == 0.0)
+    assert repeats.sum() > 5
+    assert not held_poses(replace(run, reference=coarse), ROBOT).any()
+
+
+def test_marks_on_the_floor_may_be_the_same_twice() -> None:
+    """Driven back onto its mark, as it was by hand."""
+    run = driven(3)
+    times = run.ticks.time[[0, -1]]
+    twice = Reference(times, np.zeros(2), np.zeros(2), np.zeros(2))
+    assert not held_poses(replace(run, reference=twice), ROBOT).any()
+
+
+def test_headings_alone_are_held_where_the_robot_turns() -> None:
+    run = driven(4)
+    assert run.reference is not None
+    nothing = np.full(run.reference.time.size, np.nan)
+    turn = np.convolve(np.abs(np.diff(run.reference.yaw)), np.ones(20), "valid")
+    begin = int(np.argmax(turn))
+    yaw = replace(run.reference, x=nothing, y=nothing)
+    lost = replace(run, reference=held(yaw, begin, begin + 10))
+    assert held_poses(lost, ROBOT).sum() >= 7
+    assert not held_poses(replace(run, reference=yaw), ROBOT).any()
+
+
+def test_it_is_said_once_for_all_runs() -> None:
+    run = driven(5)
+    assert run.reference is not None
+    assert words_about_held([run, replace(run, reference=None)]) is None
+    begin = moving(run)
+    lost = without_held_poses(replace(run, reference=held(run.reference, begin, begin + 11)), ROBOT)
+    told = words_about_held([run, lost, lost])
+    assert told is not None
+    assert told.startswith(f"drive and 1 more: 20 of {2 * run.reference.time.size} reference poses")
