@@ -10,9 +10,10 @@ pass of the filter.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
+from typing import NamedTuple
 
 import numpy as np
 
@@ -126,6 +127,56 @@ def candidates(
     return tuple(found)
 
 
+class Signature(NamedTuple):
+    """What a candidate does to the innovations, each in units of its own noise."""
+
+    candidate: Candidate
+    flat: Floats
+    """(n, coordinates), or (n, runs * coordinates) where each run has values of its own."""
+    free: Floats
+    """The same, less what the model can turn already."""
+
+
+def signatures(
+    runs: Together,
+    point: Point,
+    kind: ReferenceKind,
+    knobs: Sequence[Knob],
+    tried: Sequence[Candidate],
+) -> tuple[Floats, Iterator[Signature]]:
+    """Innovations (n,) that `knobs` cannot explain, and what each candidate does to them."""
+    prediction = predict_all(point.model, runs)
+    columns, owners = [], []
+    for number, candidate in enumerate(tried):
+        for coordinate in candidate.coordinates:
+            columns.append(_slope(runs, point.model, candidate, coordinate, prediction))
+            owners.append(number)
+    if not columns:
+        return np.zeros(0), iter(())
+    change = np.stack(columns, axis=-1)
+    found = unexpected(runs, point, kind, change, prediction)
+    marks = found.whitened()[1][..., :-1]
+    white, basis = stacked(runs, point, kind, knobs, prediction).flat()
+    frame = orthonormal(basis)
+    owned = np.array(owners)
+
+    def each() -> Iterator[Signature]:
+        for number, candidate in enumerate(tried):
+            own = marks[..., owned == number]
+            if candidate.per_run:
+                own = of_each_run(runs, own)
+            flat = own.reshape(white.size, -1)
+            yield Signature(candidate, flat, flat - frame @ (frame.T @ flat))
+
+    return white - frame @ (frame.T @ white), each()
+
+
+def of_each_run(runs: Together, marks: Floats) -> Floats:
+    """Columns (m, 3, k) once for each run, and zero in the others: (m, 3, runs * k)."""
+    here = (runs.run_of_leg == run for run in range(len(runs.runs)))
+    return np.concatenate([marks * legs[:, None, None] for legs in here], axis=-1)
+
+
 def scores(
     runs: Together,
     point: Point,
@@ -134,42 +185,16 @@ def scores(
     tried: Sequence[Candidate],
 ) -> tuple[Score, ...]:
     """Score of each candidate beside what `knobs` can turn; those without any effect left out."""
-    prediction = predict_all(point.model, runs)
-    columns, owners = [], []
-    for number, candidate in enumerate(tried):
-        for coordinate in candidate.coordinates:
-            columns.append(_slope(runs, point.model, candidate, coordinate, prediction))
-            owners.append(number)
-    if not columns:
-        return ()
-    change = np.stack(columns, axis=-1)
-    found = unexpected(runs, point, kind, change, prediction)
-    marks = found.whitened()[1][..., :-1]
-    white, basis = stacked(runs, point, kind, knobs, prediction).flat()
-    frame = orthonormal(basis)
-    rest = white - frame @ (frame.T @ white)
-    owned = np.array(owners)
+    rest, found = signatures(runs, point, kind, knobs, tried)
     results = []
-    for number, candidate in enumerate(tried):
-        own = marks[..., owned == number]
-        width = own.shape[-1]
-        if candidate.per_run:
-            own = np.concatenate(
-                [
-                    own * (runs.run_of_leg == index)[:, None, None]
-                    for index in range(len(runs.runs))
-                ],
-                axis=-1,
-            )
-        flat = own.reshape(white.size, -1)
-        free = flat - frame @ (frame.T @ flat)
-        basis_of_it, heard = _heard(free, flat)
+    for candidate, flat, free in found:
+        basis, heard = _heard(free, flat)
         if not heard:
             continue
-        gain = float(np.sum((basis_of_it.T @ rest) ** 2))
+        gain = float(np.sum((basis.T @ rest) ** 2))
         solution = np.asarray(-np.linalg.lstsq(free, rest, rcond=1e-6)[0], dtype=np.float64)
         if candidate.per_run:
-            solution = solution.reshape(-1, width)
+            solution = solution.reshape(len(runs.runs), -1)
         results.append(Score(candidate, gain, heard, solution))
     return tuple(results)
 

@@ -18,6 +18,7 @@ from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.diagnosis.candidates import Score
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.holdout import judge_of
+from werrimbi_odom.inference.diagnosis.lasting import lasting, lasting_effect
 from werrimbi_odom.inference.diagnosis.ownership import Grasp, grasp_of
 from werrimbi_odom.inference.diagnosis.search import (
     Instead,
@@ -44,6 +45,9 @@ SURE = 1e-3
 
 VERY_SURE = 1e-5
 """The same for a dependence that no effect explains: there are hundreds of cells."""
+
+ASKED = 20
+"""Cells of the map, the most certain, of which it is asked whether they last."""
 
 FAR_MORE = 1.3
 """How many times as much a plain dependence must explain as the best effect, to refute it."""
@@ -105,8 +109,8 @@ def diagnose(
         show(0.2 + 0.7 * number / ROUNDS, f"effects, round {number + 1}")
         this = search_round(laid, fit, kind, effects, set_up.robot, sigma)
         rounds.append(this)
-        best = _best(this)
-        beyond = _beyond_the_library(this, best, laid)
+        best = _best(this, laid, kind)
+        beyond = _beyond_the_library(this, best, laid, kind)
         if best is None or beyond is not None:
             break
         if not judge.holds(fit.point.model, best.point.model):
@@ -124,43 +128,49 @@ def diagnose(
     return told(set_up, robot, tuple(rounds), fit, beyond, remaining, judge, laid, kind, instead)
 
 
-def _best(this: Round) -> Fitted | None:
+def _best(this: Round, runs: Together, kind: ReferenceKind) -> Fitted | None:
     """The cheapest model of a round, if chance does not explain it."""
-    for fit in this.tried:
-        if fit.at_bound:
-            continue
-        before = this.before.cost + this.before.needless + this.before.price * fit.scatter
-        if fit.total < before and chance(fit, this.before, this.number) < SURE:
-            return fit
+    fit = next((fit for fit in this.tried if not fit.at_bound), None)
+    if fit is None:
         return None
-    return None
+    before = this.before.cost + this.before.needless + this.before.price * fit.scatter
+    if fit.total >= before or chance(fit, this.before, this.number) >= SURE:
+        return None
+    score = next(score for score in this.scores if score.candidate.name == fit.names[-1])
+    knobs = (*CALIBRATION, *this.before.knobs)
+    lasts = lasting_effect(runs, this.before.point, kind, knobs, score) < SURE
+    return fit if lasts else None
 
 
-def _beyond_the_library(this: Round, best: Fitted | None, runs: Together) -> Dependence | None:
+def _beyond_the_library(
+    this: Round, best: Fitted | None, runs: Together, kind: ReferenceKind
+) -> Dependence | None:
     """A dependence that explains far more than the best effect does: no effect is what it is."""
-    strongest = next((cell for cell in this.dependences if cell.p_value < VERY_SURE), None)
-    if strongest is None:
-        return None
-    named = [
-        score
-        for score in this.scores
-        if best is not None and score.candidate.name == best.names[-1]
-    ]
-    if not named:
-        return strongest
-    assert best is not None
-    score = named[0]
-    grasp = _grasp(score, runs, this.before.point.model)
-    data = runs.data
-    explained = max(_fall(score.gain, data), this.before.cost - best.cost)
-    for cell in this.dependences:
-        if cell.p_value > VERY_SURE:
-            break
-        own = cell.channel in grasp.channels and bool(grasp.fields & set(cell.variable.looks_at))
-        factor = FAR_MORE_OF_ITS_OWN if own else FAR_MORE
-        if _fall(cell.gain - 2 * cell.degrees, data) > factor * explained + 15.0:
-            return cell
-    return None
+    score = next(
+        (
+            score
+            for score in this.scores
+            if best is not None and score.candidate.name == best.names[-1]
+        ),
+        None,
+    )
+    certain = [cell for cell in this.dependences if cell.p_value < VERY_SURE]
+    if score is not None and best is not None:
+        grasp = _grasp(score, runs, this.before.point.model)
+        data = runs.data
+        explained = max(_fall(score.gain, data), this.before.cost - best.cost)
+
+        def far_more(cell: Dependence) -> bool:
+            own = cell.channel in grasp.channels and bool(
+                grasp.fields & set(cell.variable.looks_at)
+            )
+            factor = FAR_MORE_OF_ITS_OWN if own else FAR_MORE
+            return _fall(cell.gain - 2 * cell.degrees, data) > factor * explained + 15.0
+
+        certain = [cell for cell in certain if far_more(cell)]
+    knobs = (*CALIBRATION, *this.before.knobs)
+    found = lasting(runs, this.before.point, kind, knobs, certain[:ASKED])
+    return next((cell for cell, p_value in found if p_value < SURE), None)
 
 
 def _fall(gain: float, data: int) -> float:

@@ -18,7 +18,7 @@ import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
-from werrimbi_odom.inference.diagnosis.candidates import orthonormal
+from werrimbi_odom.inference.diagnosis.candidates import of_each_run, orthonormal
 from werrimbi_odom.inference.diagnosis.variables import (
     CONSTANT,
     Form,
@@ -114,13 +114,7 @@ def dependences(
             own = marks[..., first : first + block.shape[-1]]
             first += block.shape[-1]
             if variable.per_run:
-                own = np.concatenate(
-                    [
-                        own * (runs.run_of_leg == run)[:, None, None]
-                        for run in range(len(runs.runs))
-                    ],
-                    axis=-1,
-                )
+                own = of_each_run(runs, own)
             tested = _tested(own.reshape(white.size, -1), frame, rest)
             if tested is not None:
                 found.append((amount, variable, form, *tested))

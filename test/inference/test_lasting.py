@@ -1,0 +1,116 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A reference that wanders is no effect; what really is there lasts from drive to drive."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.effects import LIBRARY
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.evidence import dependences
+from werrimbi_odom.inference.diagnosis.lasting import lasting
+from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.fitting.knobs import CALIBRATION
+from werrimbi_odom.inference.fitting.matching import match_finely
+from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.model.robot import Robot
+
+TRUE = WhiteNoiseRobot()
+ROBOT = Robot(
+    TRUE.separation,
+    0.05,
+    TRUE.ticks_per_revolution,
+    TRUE.ticks_per_revolution,
+    left_wheel_radius_multiplier=TRUE.left_radius / 0.05,
+    right_wheel_radius_multiplier=TRUE.right_radius / 0.05,
+    left_wheel_noise=TRUE.left_noise,
+    right_wheel_noise=TRUE.right_noise,
+)
+LASTING = 5.0
+"""For how long the wandering reference errs alike [s]."""
+
+Spoil = Callable[[np.ndarray, np.random.Generator], np.ndarray]
+"""Errors of x, y and yaw (m, 3) by the poses' times."""
+
+
+def wanders(time: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    """4 mm and 8 mrad, alike for some seconds, as a camera's map is."""
+    keeps = np.exp(-np.diff(time, prepend=time[0] - LASTING) / LASTING)
+    new = random.normal(size=(time.size, 3)) * np.sqrt(1.0 - keeps**2)[:, None]
+    error = np.zeros((time.size, 3))
+    for row in range(time.size):
+        error[row] = keeps[row] * error[row - 1] + new[row] if row else new[row]
+    return error * [0.004, 0.004, 0.008]
+
+
+def driven(seed: int, spoil: Spoil, name: str, hotter: float = 0.0) -> Run:
+    """A drive of a minute; `hotter` lets both wheels shrink as a channel grows."""
+    random = np.random.default_rng(seed)
+    speed, rate = wandering(random, 60.0)
+    seen = drive(TRUE, (speed, rate), random, every=4)
+    ticks, poses = seen.ticks, seen.reference
+    channel = np.sin(ticks.time / 9.0 + seed)
+    counted = 1.0 + hotter * channel
+    left, right = (
+        np.cumsum(np.diff(side.astype(np.float64), prepend=side[0]) * counted)
+        for side in (ticks.left, ticks.right)
+    )
+    error = spoil(poses.time, random)
+    reference = Reference(
+        poses.time, poses.x + error[:, 0], poses.y + error[:, 1], poses.yaw + error[:, 2]
+    )
+    counts = Ticks(
+        ticks.time, np.rint(left).astype(np.int64), np.rint(right).astype(np.int64),
+        {"warmth": channel},
+    )  # fmt: skip
+    return Run(name, Path(name), counts, reference)
+
+
+def chances(seeds: range, spoil: Spoil, hotter: float = 0.0) -> list[tuple[str, float, float]]:
+    """The most certain cells: what they go with, chance by the map, chance by the quarters."""
+    runs = [driven(seed, spoil, f"drive_{seed}", hotter) for seed in seeds]
+    laid = together(match_finely(runs, ROBOT, 1.0, None))
+    fit = first_fit(laid, ROBOT, "absolute")
+    knobs = (*CALIBRATION, *fit.knobs)
+    cells = dependences(laid, fit.point, "absolute", knobs)[:8]
+    return [
+        (cell.variable.name, cell.p_value, p_value)
+        for cell, p_value in lasting(laid, fit.point, "absolute", knobs, cells)
+    ]
+
+
+def nothing(time: np.ndarray, random: np.random.Generator) -> np.ndarray:
+    return np.zeros((time.size, 3))
+
+
+@pytest.mark.parametrize("first", [10, 20, 30])
+def test_what_a_wandering_reference_shows_does_not_last(first: int) -> None:
+    found = chances(range(first, first + 5), wanders)
+    assert found[0][1] < 1e-5, "by the map alone it would be beyond any chance"
+    assert found[0][2] > 1e-3
+
+
+def test_what_goes_with_a_measured_channel_lasts() -> None:
+    name, by_map, by_quarters = chances(range(40, 44), nothing, hotter=0.01)[0]
+    assert name == "warmth"
+    assert max(by_map, by_quarters) < 1e-5
+
+
+def test_it_lasts_beside_a_reference_that_wanders() -> None:
+    found = chances(range(50, 55), wanders, hotter=0.02)
+    assert min(p_value for name, _, p_value in found if name == "warmth") < 1e-3
+
+
+def test_a_right_robot_by_a_wandering_reference_misses_nothing() -> None:
+    train = [driven(seed, wanders, f"drive_{seed}") for seed in range(60, 64)]
+    holdout = [driven(seed, wanders, f"drive_{seed}") for seed in range(64, 66)]
+    found = diagnose(train, ROBOT, LIBRARY, holdout=holdout)
+    assert found.depends_on[0].p_value < 1e-5
+    assert (found.verdict, found.found) == ("none", ())

@@ -1,0 +1,128 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Whether what the errors go with lasts from drive to drive, or was alike for a while.
+
+Scores and the evidence map take innovations for independent. Those of a reference that wanders (a
+camera, a map that is matched) are not, and go with something by chance much farther. So runs are
+cut into parts, and what a pattern explains in all of them is held against how much more it would
+explain if each part had coefficients of its own: Fisher's F. Where something is really there the
+parts agree, to within the noise.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.chances import fisher_above
+from werrimbi_odom.inference.diagnosis.candidates import (
+    Score,
+    of_each_run,
+    orthonormal,
+    signatures,
+)
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
+from werrimbi_odom.inference.diagnosis.variables import functions_of
+from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
+from werrimbi_odom.inference.fitting.knobs import Knob
+from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.model.pose import Floats
+
+PARTS = 28
+"""Into which all runs are cut, about: so many that their disagreement is known."""
+
+FEWEST, MOST = 4, 12
+"""Of one run."""
+
+LEGS = 5
+"""Of a part, at the least; with fewer (two poses a drive) errors have no time to be alike in."""
+
+HEARD = 0.1
+"""Share of a pattern's size that a part must hold, to say anything of it."""
+
+
+def lasting_effect(
+    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob], score: Score
+) -> float:
+    """How often chance would score an effect as high, by the disagreement of the parts.
+
+    `knobs` are those that it was scored beside.
+    """
+    if _too_few(runs):
+        return 0.0
+    rest, found = signatures(runs, point, kind, knobs, [score.candidate])
+    signature = next(found)
+    return _chance(score.gain, score.degrees, signature.free, rest, _parts(runs))
+
+
+def lasting(
+    runs: Together,
+    point: Point,
+    kind: ReferenceKind,
+    knobs: Sequence[Knob],
+    cells: Iterable[Dependence],
+) -> Iterator[tuple[Dependence, float]]:
+    """Some cells of a model's map, each with how often chance shows as much, by the disagreement.
+
+    `knobs` are those of the map.
+    """
+    if _too_few(runs):
+        yield from ((cell, 0.0) for cell in cells)
+        return
+    prediction = predict_all(point.model, runs)
+    white, basis = stacked(runs, point, kind, knobs, prediction).flat()
+    frame = orthonormal(basis)
+    rest = white - frame @ (frame.T @ white)
+    path = path_of(point.model, runs)
+    parts = _parts(runs)
+    for cell in cells:
+        sides = zip(
+            functions_of(cell.variable)[cell.form],
+            pushes_of(runs, path, cell.amount, point),
+            strict=True,
+        )
+        change = sum(legs_pushed(runs, *side) for side in sides)
+        marks = unexpected(runs, point, kind, np.asarray(change), prediction).whitened()[1]
+        own = marks[..., :-1]
+        if cell.variable.per_run:
+            own = of_each_run(runs, own)
+        flat = own.reshape(white.size, -1)
+        free = flat - frame @ (frame.T @ flat)
+        yield cell, _chance(cell.gain, cell.degrees, free, rest, parts)
+
+
+def _too_few(runs: Together) -> bool:
+    """Whether legs are so long, or so few, that each stands for itself."""
+    return runs.count < LEGS * FEWEST * len(runs.runs)
+
+
+def _parts(runs: Together) -> NDArray[np.intp]:
+    """The part to which each innovation belongs, counted through, (3 m,)."""
+    each = min(max(math.ceil(PARTS / len(runs.runs)), FEWEST), MOST)
+    first = np.searchsorted(runs.run_of_leg, runs.run_of_leg, side="left")
+    count = np.bincount(runs.run_of_leg)[runs.run_of_leg]
+    part = (np.arange(runs.count) - first) * each // count
+    return np.repeat(each * runs.run_of_leg + part, 3)
+
+
+def _chance(
+    gain: float, degrees: int, free: Floats, rest: Floats, parts: NDArray[np.intp]
+) -> float:
+    """Of a pattern's gain, against the disagreement of the parts."""
+    size = np.sqrt(np.sum(free**2, axis=0))
+    scaled = free[:, size > 0.0] / size[size > 0.0]
+    apart, freedom = 0.0, 0
+    for part in range(parts.max() + 1):
+        here = parts == part
+        basis, values, _ = np.linalg.svd(scaled[here], full_matrices=False)
+        own = basis[:, values > HEARD]
+        apart += float(np.sum((own.T @ rest[here]) ** 2))
+        freedom += own.shape[1]
+    freedom = max(freedom - degrees, 1)
+    disagreement = max((apart - gain) / freedom, 1.0)
+    return fisher_above(gain / degrees / disagreement, degrees, freedom)
