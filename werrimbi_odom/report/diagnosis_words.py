@@ -72,13 +72,20 @@ _HEADS = ("What it is", "How large", "How sure", "What it costs", "Check it", "N
 def _none(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     hidden = [sight for sight in told.sights if sight.hidden]
+    wanders = any(cell.p_value < VERY_SURE for cell in diagnosis.depends_on)
     lines = [
-        "Nothing is missing that these drives could show: the model explains them to their noise."
+        "Nothing is missing that these drives could show"
+        + ("." if wanders else ": the model explains them to their noise.")
     ]
     errors = diagnosis.holdout.after
     if math.isfinite(errors):
+        like = "" if wanders else ", and they look like noise"
+        lines.append(f"Its errors on {judged(told)} are {length(errors)}{like}.")
+    if wanders:
         lines.append(
-            f"Its errors on {judged(told)} are {length(errors)}, and they look like noise."
+            "But: for seconds together the errors are alike, more than noise is, and the parts of "
+            "the drives do not agree on what they go with. So errs a reference that wanders (a "
+            "camera, a map that is matched); what is smaller than that is not seen."
         )
     seen = [sight for sight in told.sights if not sight.hidden]
     if seen:
