@@ -80,6 +80,14 @@ def test_a_robot_that_stands_is_measured_where_it_stands() -> None:
     assert not held_poses(run, ROBOT)[rows[still]].any()
 
 
+def test_a_late_reference_shows_a_robot_at_rest_for_a_while_after_it_has_set_off() -> None:
+    run = driven(1, sigma_xy=0.0, sigma_yaw=0.0)
+    late = 0.3
+    assert run.reference is not None
+    seen = replace(run.reference, time=run.reference.time + late)
+    assert not held_poses(replace(run, reference=seen), ROBOT).any()
+
+
 @pytest.mark.parametrize("grid", [0.003, 0.01, 0.05])
 def test_a_coarse_reference_repeats_between_its_steps(grid: float) -> None:
     run = driven(2)

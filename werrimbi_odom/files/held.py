@@ -26,8 +26,12 @@ FEWEST = 20
 """Poses of a run; fewer are taken by hand, and one may well be the one before: a robot that was
 driven back onto its mark."""
 
-LEAST_TRAVEL, LEAST_TURN = 1e-4, 1e-3
-"""Below, a robot stands [m, rad]."""
+LEAST_TRAVEL, LEAST_TURN = 0.01, 0.02
+"""By which a robot must have moved for its pose to be called held [m, rad]: a measurement may stick
+for some millimetres."""
+
+ROLLS = 0.01
+"""Of these, in the interval in which the pose was new: the robot was under way."""
 
 
 def without_held_poses(run: Run, robot: Robot) -> Run:
@@ -59,7 +63,11 @@ def words_about_held(runs: Sequence[Run]) -> str | None:
 
 
 def held_poses(run: Run, robot: Robot) -> NDArray[np.bool_]:
-    """Which poses of a run's reference were held, shape (m,)."""
+    """Which poses of a run's reference were held, shape (m,).
+
+    The wheels must have turned when the pose was new: a reference that is late shows a robot that
+    stands, and for a while after it has set off.
+    """
     reference = run.reference
     assert reference is not None
     count = reference.time.size
@@ -76,8 +84,12 @@ def held_poses(run: Run, robot: Robot) -> NDArray[np.bool_]:
             QUANTA * _quantum(reference.x, reference.y), LEAST_TRAVEL
         )
         turned = np.abs(turn - turn[first]) > max(QUANTA * _quantum(reference.yaw), LEAST_TURN)
-    moved = (travelled & reference.has_position) | (turned & reference.has_yaw)
-    return np.asarray(repeats & moved)
+        travels = np.abs(np.diff(along, prepend=np.nan)) > ROLLS * LEAST_TRAVEL
+        turns = np.abs(np.diff(turn, prepend=np.nan)) > ROLLS * LEAST_TURN
+    travelled &= travels[first] & reference.has_position
+    turned &= turns[first] & reference.has_yaw
+    since = np.maximum.accumulate(np.where(repeats & (travelled | turned), rows, -1))
+    return np.asarray(repeats & (since > first))  # a robot may come back to where it was lost
 
 
 def _driven(run: Run, robot: Robot, time: Floats) -> tuple[Floats, Floats]:
