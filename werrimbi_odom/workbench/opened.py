@@ -13,7 +13,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison, judged
 from werrimbi_odom.inference.comparison.judged_legs import Prepared
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
-from werrimbi_odom.inference.diagnosis.holdout import at_home, judge_of
+from werrimbi_odom.inference.diagnosis.holdout import judge_of, known_at_home
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.matching import match_finely
 from werrimbi_odom.inference.fitting.together import Together, together
@@ -48,9 +48,7 @@ class Drives:
     def at_home(self, robot: Robot) -> Model:
         """The robot with what each run has of its own (phases), learnt in that run."""
         bare = Model(robot, tuple({} for _ in self.prepared.runs))
-        if all(applied.ready for applied in robot.effects):
-            return bare
-        return at_home(bare, self.fine, self.prepared.kind).model.without_nuisances()
+        return known_at_home(bare, self.fine, self.prepared.kind)
 
 
 @dataclass(frozen=True, eq=False)

@@ -66,9 +66,8 @@ class Judge:
 
     def of(self, model: Model) -> Errors:
         """Errors of a model; what each held-out run has of its own is fitted to that run alone."""
-        there = self.at_home(model)
         train = _figures(self.train, model.without_nuisances())
-        holdout = _figures(self.holdout, there.model.without_nuisances())
+        holdout = _figures(self.holdout, known_at_home(model, self.fine, self.kind))
         return Errors(train[0], holdout[0], train[1], holdout[1], holdout[2])
 
     def at_home(self, model: Model) -> Point:
@@ -85,6 +84,14 @@ class Judge:
             point = self.at_home(model)
             costs.append(float(Costs(self.fine, point, self.kind)(point.variances)[0]))
         return costs[1] < costs[0] + 2.0
+
+
+def known_at_home(model: Model, runs: Together, kind: ReferenceKind) -> Model:
+    """A model in other runs, without what belongs to the references alone."""
+    plain = model.without_nuisances()
+    if not any(plain.own) and all(applied.ready for applied in plain.robot.effects):
+        return Model(plain.robot, tuple({} for _ in runs.runs))
+    return at_home(model, runs, kind).model.without_nuisances()
 
 
 def at_home(model: Model, runs: Together, kind: ReferenceKind) -> Point:
