@@ -12,6 +12,8 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from test.loops import awaited
+
 PATIENCE = 120.0
 """Seconds after which a page that has not drawn itself is given up: this machine may be busy."""
 
@@ -49,9 +51,10 @@ def visit(
     tallest
         Of the picture; what lies below is left out [pixels].
     """
-    return asyncio.run(
+    found: Visit = awaited(
         asyncio.wait_for(_visit(path, scripts, browser, dark, width, picture, tallest), PATIENCE)
     )
+    return found
 
 
 async def _visit(

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from test.workbench.loops import awaited
+from test.loops import awaited
 from werrimbi_odom.workbench.guard import guarded
 
 PORT = 4711

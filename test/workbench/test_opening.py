@@ -12,8 +12,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.loops import awaited
 from test.workbench.conftest import ROOT
-from test.workbench.loops import awaited
 from test.workbench.session import written
 from werrimbi_odom.effects.collection import all_effects
 from werrimbi_odom.errors import InputError
