@@ -18,7 +18,7 @@ from werrimbi_odom.report.save import find_browser
 
 ROOT = Path(__file__).parents[1]
 PICTURES = ROOT / "docs" / "pictures"
-sys.path.insert(0, str(ROOT / "test" / "report"))
+sys.path[:0] = [str(ROOT), str(ROOT / "test" / "report")]
 
 from browser import visit  # noqa: E402
 
