@@ -10,12 +10,24 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 ROOT = Path(__file__).parents[1]
 DATA = Path(os.environ.get("WERRIMBI_DATA", ROOT.parent / "shared" / "data"))
 README = (ROOT / "README.md").read_text()
+
+
+def script(name: str) -> Any:
+    """One of the scripts of docs/, as a module."""
+    spec = importlib.util.spec_from_file_location(name, ROOT / "docs" / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
 
 
 def test_the_readme_is_short() -> None:
@@ -30,12 +42,7 @@ def test_every_link_of_the_docs_leads_somewhere() -> None:
 
 @pytest.mark.skipif(not DATA.exists(), reason=f"no recorded robots at {DATA} (WERRIMBI_DATA)")
 def test_the_table_of_real_robots_is_what_its_command_prints() -> None:
-    spec = importlib.util.spec_from_file_location("real_robots", ROOT / "docs" / "real_robots.py")
-    assert spec is not None
-    assert spec.loader is not None
-    module = importlib.util.module_from_spec(spec)
-    sys.modules["real_robots"] = module
-    spec.loader.exec_module(module)
+    module = script("real_robots")
     shown = (ROOT / "docs" / "real_robots.md").read_text()
     numbers = re.compile(r"[\d.]+(?:e-?\d+)?")
     for printed in module.table().splitlines()[2:]:
@@ -78,3 +85,19 @@ def test_the_readmes_commands_run(tmp_path: Path) -> None:
         words = command.replace("RESULTS.csv", table).replace("calibrated.yaml", f"{number}.yaml")
         words = words.replace("RUN...", str(recording)).replace("RUN", str(recording))
         werrimbi(*words.split()[1:], cwd=tmp_path)
+
+
+def test_what_is_shown_was_printed_by_commands_that_there_are() -> None:
+    """docs/shown.md is whole, and its commands name what exists."""
+    module = script("make_shown")
+    kept = module.known()
+    assert module.page(kept) == module.PAGE.read_text()
+    commands = {entry.command for entries in module.SECTIONS.values() for entry in entries}
+    assert set(kept) == commands
+    for command, output in kept.items():
+        assert output != "not run yet", command
+        for word in command.split():
+            if word.endswith(".py") or word.startswith("test/"):
+                assert (ROOT / word).exists(), command
+        assert "(ended with" not in output, f"{command}: {output}"
+        assert " failed" not in output, f"{command}: {output}"
