@@ -108,7 +108,7 @@ SECTIONS: dict[str, tuple[Shown, ...]] = {
                "hostile YAML, CSV and bags. Ten hours of driving: [faults.md](faults.md)."),
     ),
     "Speed": (
-        Shown("The model.", "python benchmark/core_speed.py"),
+        Shown("The model.", "python benchmark/core_speed.py --most 10000000"),
         Shown("What pieces cost and save.", "python benchmark/piece_tolerance.py"),
         Shown(
             "The node beside an empty relay, and beside itself with a piece for each message.",
