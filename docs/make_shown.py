@@ -155,7 +155,7 @@ def page(kept: dict[str, str]) -> str:
     parts = [
         "# What is claimed, and the command that shows it",
         "",
-        "Each with what it printed, on two cores that did nothing else. Written by "
+        "Each with what it printed, on two cores that did little else. Written by "
         "`python docs/make_shown.py`, which runs them all; change nothing by hand. "
         "`python` is that of `make setup` (`.venv/bin/python`).",
     ]
