@@ -17,7 +17,11 @@ BLUE, ORANGE, GREEN, GREY = (
 )
 WIDTH, HEIGHT = 340, 170
 
+DASH = "6 5"
+"""Of lines that are not there: what was meant, or is merely thought."""
+
 Point = tuple[float, float]
+Parts = list[str]
 
 
 def drawing(name: str, says: str, parts: Sequence[str]) -> str:

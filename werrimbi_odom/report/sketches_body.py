@@ -8,10 +8,12 @@ from collections.abc import Callable, Mapping
 
 from werrimbi_odom.report.sketch_parts import (
     BLUE,
+    DASH,
     GREEN,
     GREY,
     INK,
     ORANGE,
+    Parts,
     arc,
     arrow,
     circle,
@@ -22,9 +24,6 @@ from werrimbi_odom.report.sketch_parts import (
     wave,
     words,
 )
-
-DASH = "6 5"
-Parts = list[str]
 
 
 def _track_width() -> Parts:

@@ -8,10 +8,12 @@ from collections.abc import Callable, Mapping
 
 from werrimbi_odom.report.sketch_parts import (
     BLUE,
+    DASH,
     GREEN,
     GREY,
     INK,
     ORANGE,
+    Parts,
     arc,
     arrow,
     circle,
@@ -20,9 +22,6 @@ from werrimbi_odom.report.sketch_parts import (
     robot,
     words,
 )
-
-DASH = "6 5"
-Parts = list[str]
 
 
 def _missed_ticks(side: str) -> Callable[[], Parts]:

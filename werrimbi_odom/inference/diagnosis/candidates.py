@@ -156,8 +156,7 @@ def signatures(
     change = np.stack(columns, axis=-1)
     found = unexpected(runs, point, kind, change, prediction)
     marks = found.whitened()[1][..., :-1]
-    white, basis = stacked(runs, point, kind, knobs, prediction).flat()
-    frame = orthonormal(basis)
+    frame, rest = unexplained(runs, point, kind, knobs, prediction)
     owned = np.array(owners)
 
     def each() -> Iterator[Signature]:
@@ -165,10 +164,19 @@ def signatures(
             own = marks[..., owned == number]
             if candidate.per_run:
                 own = of_each_run(runs, own)
-            flat = own.reshape(white.size, -1)
+            flat = own.reshape(rest.size, -1)
             yield Signature(candidate, flat, flat - frame @ (frame.T @ flat))
 
-    return white - frame @ (frame.T @ white), each()
+    return rest, each()
+
+
+def unexplained(
+    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob], prediction: Prediction
+) -> tuple[Floats, Floats]:
+    """Orthonormal basis (n, k) of what `knobs` can turn, and the innovations (n,) clear of it."""
+    white, basis = stacked(runs, point, kind, knobs, prediction).flat()
+    frame = orthonormal(basis)
+    return frame, white - frame @ (frame.T @ white)
 
 
 def of_each_run(runs: Together, marks: Floats) -> Floats:

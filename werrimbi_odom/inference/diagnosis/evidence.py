@@ -18,7 +18,7 @@ import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
-from werrimbi_odom.inference.diagnosis.candidates import of_each_run, orthonormal
+from werrimbi_odom.inference.diagnosis.candidates import of_each_run, unexplained
 from werrimbi_odom.inference.diagnosis.variables import (
     CONSTANT,
     Form,
@@ -26,7 +26,7 @@ from werrimbi_odom.inference.diagnosis.variables import (
     functions_of,
     variables_of,
 )
-from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
+from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import DrivenPath, path_of, predict_all
 from werrimbi_odom.inference.fitting.together import Together
@@ -100,9 +100,7 @@ def dependences(
     `knobs` are what the model can turn: what they can explain is no evidence.
     """
     prediction = predict_all(point.model, runs)
-    white, basis = stacked(runs, point, kind, knobs, prediction).flat()
-    frame = orthonormal(basis)
-    rest = white - frame @ (frame.T @ white)
+    frame, rest = unexplained(runs, point, kind, knobs, prediction)
     found: list[tuple[Amount, Variable, Form, Floats, float, int]] = []
     path = path_of(point.model, runs)
     levers = {amount: _levers(runs, pushes_of(runs, path, amount, point)) for amount in AMOUNTS}
@@ -115,7 +113,7 @@ def dependences(
             first += block.shape[-1]
             if variable.per_run:
                 own = of_each_run(runs, own)
-            tested = _tested(own.reshape(white.size, -1), frame, rest)
+            tested = _tested(own.reshape(rest.size, -1), frame, rest)
             if tested is not None:
                 found.append((amount, variable, form, *tested))
     cells = [

@@ -22,12 +22,12 @@ from werrimbi_odom.inference.chances import fisher_above
 from werrimbi_odom.inference.diagnosis.candidates import (
     Score,
     of_each_run,
-    orthonormal,
     signatures,
+    unexplained,
 )
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
 from werrimbi_odom.inference.diagnosis.variables import functions_of
-from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
+from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.together import Together
@@ -75,9 +75,7 @@ def lasting(
         yield from ((cell, 0.0) for cell in cells)
         return
     prediction = predict_all(point.model, runs)
-    white, basis = stacked(runs, point, kind, knobs, prediction).flat()
-    frame = orthonormal(basis)
-    rest = white - frame @ (frame.T @ white)
+    frame, rest = unexplained(runs, point, kind, knobs, prediction)
     path = path_of(point.model, runs)
     parts = _parts(runs)
     for cell in cells:
@@ -91,7 +89,7 @@ def lasting(
         own = marks[..., :-1]
         if cell.variable.per_run:
             own = of_each_run(runs, own)
-        flat = own.reshape(white.size, -1)
+        flat = own.reshape(rest.size, -1)
         free = flat - frame @ (frame.T @ flat)
         yield cell, _chance(cell.gain, cell.degrees, free, rest, parts)
 
