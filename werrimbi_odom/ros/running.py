@@ -34,11 +34,9 @@ def run(make_node: Callable[[], Node], name: str, args: list[str] | None = None)
     int
         Exit code: 0 after SIGINT and SIGTERM, 2 when something that was given cannot be used.
     """
-    interrupt = _Interrupt()
+    told = _Told()
     try:
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
-    except KeyboardInterrupt:
-        return 0
     except RuntimeError as error:
         print(f"{name}:", " ".join(str(error).split()), file=sys.stderr)  # in one line
         return 2
@@ -49,45 +47,48 @@ def run(make_node: Callable[[], Node], name: str, args: list[str] | None = None)
         # Not before: rclpy's handlers shut the context down, and rclpy cannot set up anything in
         # a context that is.
         install_signal_handlers(SignalHandlerOptions.ALL)
-        rclpy.spin(node, executor)
-    except (KeyboardInterrupt, ExternalShutdownException):
+        if not told.to_end:
+            rclpy.spin(node, executor)
+    except ExternalShutdownException:
         pass
     except (InputError, ParameterException) as error:
         rclpy.logging.get_logger(name).fatal(str(error))
         return 2
     except Exception:
-        # A signal in the midst of a callback shuts the context down under it, or surfaces as an
+        # A signal shuts the context down under a callback that is at work, which surfaces as an
         # error of whatever rclpy was doing. That is no fault.
-        if rclpy.ok() and not interrupt.told:
+        if rclpy.ok():
             raise
     finally:
-        interrupt.ignore()
+        told.ignore()
         if node is not None:
             node.destroy_node()
         rclpy.try_shutdown()  # puts the handlers back that stood before rclpy's
-        interrupt.ignore()
+        told.ignore()
     return 0
 
 
-class _Interrupt:
-    """Makes the first SIGINT or SIGTERM a KeyboardInterrupt, and ignores what follows.
+class _Told:
+    """Notes that SIGINT or SIGTERM came, and lets what is being done be done.
 
-    Ctrl-C in a terminal reaches a node twice, once through `ros2 run` or a launch file; the second
-    must not break the clearing up.
+    No exception: Python throws one away that is raised in the callback of a weak reference, as
+    there are while modules are imported, and the signal would be lost with it. Starting takes a
+    part of a second, so nobody waits for it; while the node spins, rclpy's own handlers end it.
     """
 
     def __init__(self) -> None:
-        self.told = False
+        self.to_end = False
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, self._take)
 
     def ignore(self) -> None:
-        """Ignore everything from now on, also while Python itself clears up."""
-        self.told = True
+        """Ignore everything from now on, also while Python itself clears up.
+
+        Ctrl-C in a terminal reaches a node twice, once through `ros2 run` or a launch file; the
+        second must not break the clearing up.
+        """
         for number in (signal.SIGINT, signal.SIGTERM):
             signal.signal(number, signal.SIG_IGN)
 
     def _take(self, *_: object) -> None:
-        if not self.told:
-            self.told = True
-            raise KeyboardInterrupt
+        self.to_end = True
