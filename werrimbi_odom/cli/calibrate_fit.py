@@ -69,7 +69,6 @@ def run(arguments: argparse.Namespace) -> int:
         words=f"{_verdict(result)}\n\n{_found(result)}",
         see="Each mark is a short leg, seen by the robot: the error along, and to its left. After "
         "the calibration the cloud should be smaller and lie about the origin.",
-        printed=False,
     )
     return 0
 
@@ -109,7 +108,7 @@ _HEADS = ("parameter", "before", "after", "± 1σ", "")
 
 def _found(result: Calibration) -> str:
     """For the report, the table that `_say` prints."""
-    from werrimbi_odom.report.compare_tables import table
+    from werrimbi_odom.report.text_table import table
 
     return table("What was found", (*_HEADS[:-1], "unit, remark"), _rows(result))
 

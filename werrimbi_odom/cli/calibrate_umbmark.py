@@ -73,7 +73,7 @@ def run(arguments: argparse.Namespace) -> int:
         found_in_words(squares, result, old),
         gained_in_words(result, squares, later, again),
     ]
-    print("\n".join(words))
+    print("\n\n".join(words))
 
     shown, name = (later, "after") if later else (again, "same runs, corrected")
     gain = f", {1e3 * e_max_syst(shown):.1f} mm {name}" if shown else ""
@@ -92,8 +92,8 @@ def run(arguments: argparse.Namespace) -> int:
         figure,
         title="UMBmark: base and radii from squares",
         words="\n\n".join(words),
-        see="Where squares ended, clockwise and anticlockwise, by what the odometry said. After "
-        "the calibration both clouds should lie about the origin; the circle is the larger offset.",
+        see="Where squares ended, clockwise and anticlockwise, measured minus odometry. After the "
+        "calibration both clouds should lie about the origin; the circle is the larger offset.",
     )
     return 0
 

@@ -40,7 +40,6 @@ def write_all(
     title: str = "Calibration",
     words: str = "",
     see: str = "",
-    printed: bool = True,
 ) -> None:
     """The new robot file, then the JSON and the page that were asked for; says what it wrote.
 
@@ -48,8 +47,6 @@ def write_all(
     ----------
     title, words, see
         Of the page: its heading, what was found, and what to see in the figure.
-    printed
-        Show the words line by line, as they are printed.
     """
     from werrimbi_odom.files.robot_file import write_robot_file
 
@@ -69,6 +66,6 @@ def write_all(
             if hasattr(source.robot, name)
         }
         made = made_of(arguments)
-        page = calibration_page(title, words, see, figure, before_after, made, printed=printed)
+        page = calibration_page(title, words, see, figure, before_after, made)
         written += save_report(page, arguments.report)
     print(f"\nwritten: {', '.join(str(path) for path in written)}")

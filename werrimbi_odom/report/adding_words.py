@@ -12,7 +12,8 @@ from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.values import FittedParameter
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
-from werrimbi_odom.report.compare_tables import table
+from werrimbi_odom.report.diagnosis_numbers import scaled_with_std
+from werrimbi_odom.report.text_table import table
 
 WIDTH = 80
 _HONEST = (0.8, 1.25)  # NEES
@@ -56,19 +57,11 @@ def _parameters(added: Added) -> str:
 
 def value_told(item: FittedParameter) -> str:
     """A value with its standard deviation, to the digits that this leaves, and its unit."""
-    unit = f" {item.declared.unit}" if item.declared.unit else ""
     if item.value is None:
         return "another one in each drive"
     if item.std is None or not 0.0 < item.std < math.inf:
-        return f"{item.value:g}{unit}"
-    power = math.floor(math.log10(item.std)) - 1
-    size = math.floor(math.log10(max(abs(item.value), item.std)))
-    if power >= -5 and size < 6:
-        digits = max(-power, 0)
-        return f"{item.value:.{digits}f} ± {item.std:.{digits}f}{unit}"
-    digits = max(size - power, 0)
-    scaled, spread = item.value / 10.0**size, item.std / 10.0**size
-    return f"({scaled:.{digits}f} ± {spread:.{digits}f})e{size}{unit}"
+        return f"{item.value:g} {item.declared.unit}".rstrip()
+    return scaled_with_std(item.value, item.std, item.declared.unit)
 
 
 def remark_told(item: FittedParameter) -> str:
@@ -146,7 +139,7 @@ def _noise(added: Added) -> str:
     for name, short in (("left_wheel_noise", "k_L"), ("right_wheel_noise", "k_R")):
         item = added.noises[name]
         wheels.append(
-            f"{short} = {item.value:.2e} ± {item.std:.0e} m^0.5"
+            f"{short} = {scaled_with_std(item.value, item.std, 'm^0.5')}"
             if item.determined
             else f"{short} not determined, left alone"
         )

@@ -58,7 +58,7 @@ def umbmark_figure(
     )
     _dress(figure, title, subtitle)
     figure.update_layout(width=980, height=760)
-    figure.update_xaxes(title="x, along the first leg: measured − odometry [mm]")
+    figure.update_xaxes(title="x, along the first leg [mm]")
     figure.update_yaxes(title="y, to its left [mm]", scaleanchor="x", scaleratio=1)
     return figure
 

@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.report.page import Page, Shown
-from werrimbi_odom.report.style import FAINT, GREY, INK, PAPER
+from werrimbi_odom.report.style import plain
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -21,8 +21,6 @@ def calibration_page(
     figure: go.Figure,
     changes: Mapping[str, tuple[float, float]],
     made: Mapping[str, str],
-    *,
-    printed: bool = False,
 ) -> Page:
     """A page with one figure.
 
@@ -32,8 +30,6 @@ def calibration_page(
         What to see in the figure.
     changes
         Name of each parameter that was written, before and after.
-    printed
-        Show the words line by line, as they are printed.
     """
     return Page(
         title,
@@ -41,7 +37,6 @@ def calibration_page(
         [Shown("figure", figure_title(figure) or title, see, {"": on_a_page(figure)})],
         written_table(changes),
         made,
-        printed,
     )
 
 
@@ -57,27 +52,13 @@ def on_a_page(figure: go.Figure) -> go.Figure:
 
     found = go.Figure(figure)
     height = int(found.layout.height or 600)
-    legend = found.layout.legend
-    found.update_layout(
-        title=None,
-        template="none",
-        width=None,
-        autosize=True,
-        height=height,
-        font={"size": 14, "color": INK},
-        paper_bgcolor=PAPER,
-        plot_bgcolor=PAPER,
-        margin={"l": 70, "r": 20, "t": 30, "b": 110 if legend.y is not None else 60},
-        hoverlabel={"bgcolor": PAPER, "font": {"color": INK}},
-    )
-    for axes in (found.update_xaxes, found.update_yaxes):
-        axes(gridcolor=FAINT, linecolor=GREY, zerolinecolor=GREY, automargin=True)
-    return found
+    found.update_layout(title=None, width=None, legend={"borderwidth": 0})
+    return plain(found, height=height)
 
 
 def written_table(changes: Mapping[str, tuple[float, float]]) -> str:
     """Parameters before and after, as a plain table."""
-    from werrimbi_odom.report.compare_tables import table
+    from werrimbi_odom.report.text_table import table
 
     if not changes:
         return ""

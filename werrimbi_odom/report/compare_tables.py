@@ -6,11 +6,11 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Sequence
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.comparison.groups import DEPENDS_P, ByVariable
 from werrimbi_odom.inference.comparison.verdict import verdict_of
+from werrimbi_odom.report.text_table import table
 
 WIDTH = 80
 _MOST = 3  # variables with a table of their own
@@ -35,18 +35,6 @@ def tables_of(comparison: Comparison) -> str:
 
 def _depends(item: ByVariable) -> bool:
     return any(p_value < DEPENDS_P for p_value in item.p_values.values())
-
-
-def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
-    """First column to the left, the others to the right, two blanks between."""
-    columns = list(zip(heads, *rows, strict=True))
-    widths = [max(map(len, column)) for column in columns]
-    lines = [title]
-    for row in (heads, *rows):
-        cells = [row[0].ljust(widths[0])]
-        cells += [cell.rjust(width) for cell, width in zip(row[1:], widths[1:], strict=True)]
-        lines.append(("  " + "  ".join(cells)).rstrip())
-    return "\n".join(lines)
 
 
 def _motions(main: OfLength) -> str:

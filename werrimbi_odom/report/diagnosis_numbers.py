@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers in a diagnosis' words and tables."""
+"""Numbers in words and tables."""
 
 from __future__ import annotations
 
@@ -29,6 +29,19 @@ def with_std(value: float, std: float) -> str:
         return f"{value:.4g} ± {std:.2g}"
     digits = max(digits, 0)
     return f"{value:.{digits}f} ± {std:.{digits}f}"
+
+
+def scaled_with_std(value: float, std: float, unit: str = "") -> str:
+    """Value, standard deviation and unit, with a power of ten where the value is small or large."""
+    behind = f" {unit}" if unit else ""
+    power = math.floor(math.log10(std)) - 1
+    size = math.floor(math.log10(max(abs(value), std)))
+    if power >= -5 and size < 6:
+        digits = max(-power, 0)
+        return f"{value:.{digits}f} ± {std:.{digits}f}{behind}"
+    digits = max(size - power, 0)
+    value, std = value / 10.0**size, std / 10.0**size
+    return f"({value:.{digits}f} ± {std:.{digits}f})e{size}{behind}"
 
 
 def chance_words(p_value: float) -> str:

@@ -15,37 +15,43 @@ from werrimbi_odom.inference.calibration.out_and_back import (
     NoiseFit,
     pivot_scatter,
 )
+from werrimbi_odom.report.diagnosis_numbers import scaled_with_std
+from werrimbi_odom.report.text_table import table
 
-WIDTH = 100
+WIDTH = 80
 PIVOT_TURNS = 10.0
 
 
 def noise_in_words(fit: NoiseFit, distance: float, track: float, *, turn_round: bool) -> str:
     """The k of both wheels, and how far they may be believed."""
-    lines = [
-        f"{fit.runs} runs of {distance:g} m out and back: noise of each wheel",
-        f"{'':10}{'k [m^0.5]':>24}{'95 % interval':>26}{'ellipses matched':>20}",
+    heads = ("wheel", "k [m^0.5]", "95 % interval", "ellipses matched")
+    rows = [
         _wheel("left", fit.left, fit.by_moments[0]),
         _wheel("right", fit.right, fit.by_moments[1]),
     ]
-    paragraphs = [
-        "The first column is of greatest likelihood and is written. The last is the paper's way, "
-        "ellipses laid over the data's: it scatters more, for it trusts all three plots alike.",
+    title = f"Noise of each wheel, of {fit.runs} runs of {distance:g} m out and back"
+    sentences = [
+        _misfit(fit),
         _split(fit, track, turn_round=turn_round),
         _mean(fit),
-        _misfit(fit),
+        "Written is the first column, of greatest likelihood. The last is the paper's way, "
+        "ellipses laid over the data's: it scatters more, for it trusts all three plots alike.",
     ]
     if fit.runs < ADVISED_RUNS:
-        paragraphs.append(
+        sentences.append(
             f"{ADVISED_RUNS} runs would tell each k to about 15 %; here are {fit.runs}."
         )
-    return "\n".join(lines + [textwrap.fill(text, WIDTH) for text in paragraphs])
+    parts = [_filled(_verdict(fit)), table(title, heads, rows), *map(_filled, sentences)]
+    return "\n\n".join(parts)
 
 
-def _wheel(side: str, estimate: NoiseEstimate, matched: float) -> str:
-    value = f"{_k(estimate.value)} ± {_k(estimate.std)}"
+def _filled(text: str) -> str:
+    return textwrap.fill(text, WIDTH, break_long_words=False, break_on_hyphens=False)
+
+
+def _wheel(side: str, estimate: NoiseEstimate, matched: float) -> list[str]:
     interval = f"{_k(estimate.low)} to {_k(estimate.high)}"
-    return f"{side:10}{value:>24}{interval:>26}{_k(matched):>20}"
+    return [side, scaled_with_std(estimate.value, estimate.std), interval, _k(matched)]
 
 
 def _split(fit: NoiseFit, track: float, *, turn_round: bool) -> str:
@@ -88,15 +94,22 @@ def _mean(fit: NoiseFit) -> str:
     return f"{said}; no more than scatter."
 
 
+def _verdict(fit: NoiseFit) -> str:
+    if fit.misfit_p < MISFIT_P:
+        return "Careful: what is assumed does not explain the scatter; do not trust these k."
+    left, right = (scaled_with_std(each.value, each.std) for each in (fit.left, fit.right))
+    if fit.split_known:
+        return f"k_L is {left} m^0.5 and k_R {right}; the model explains the scatter."
+    return f"k is {left} m^0.5, of both wheels alike; the model explains the scatter."
+
+
 def _misfit(fit: NoiseFit) -> str:
+    """How well the model's covariance matches the runs', and what would mend it."""
     if fit.misfit_p >= MISFIT_P:
-        return f"The model explains the scatter (chance of a worse match {fit.misfit_p:.2g})."
+        return f"Of runs by this model, {100.0 * fit.misfit_p:.2g} % match it worse than these do."
     ratio = np.sqrt(np.diag(fit.data) / np.diag(fit.model))
     names = [f"{name} {value:.1f}" for name, value in zip(("x", "y", "yaw"), ratio, strict=True)]
-    said = (
-        f"Careful: what is assumed does not explain the scatter (chance {fit.misfit_p:.1g}), so "
-        f"these k are not to be trusted. Scatter of the runs over the model's: {', '.join(names)}. "
-    )
+    said = f"Scatter of the runs over the model's: {', '.join(names)} (chance {fit.misfit_p:.1g}). "
     if fit.missing_reference is None:
         return said + "No noise of the reference explains it either: were some runs disturbed?"
     sigma_xy, sigma_yaw = fit.missing_reference

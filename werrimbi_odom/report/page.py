@@ -60,8 +60,6 @@ class Page:
     """Plain text as it is printed."""
     made: Mapping[str, str] = field(default_factory=dict)
     """How it was made: command, files, options."""
-    printed: bool = False
-    """Show the words as they are printed, line by line: they hold tables of their own."""
 
 
 def write_page(page: Page, path: Path) -> None:
@@ -121,7 +119,7 @@ def page_html(page: Page) -> str:
 {nav}
 <main>
 <section id="words" aria-label="Verdict">
-{f"<pre>{html.escape(page.words)}</pre>" if page.printed else paragraphs(page.words)}
+{paragraphs(page.words)}
 </section>
 {body}
 {numbers}

@@ -11,6 +11,8 @@ import textwrap
 WIDTH = 80
 """Columns that printed words are filled to."""
 
+_WITH_SPREAD = re.compile(r"\(?[-\d.]+ ± [\d.]+\)?(?:e-?\d+)?")
+
 COMMAND = "    "
 """What a line of a command begins with."""
 
@@ -87,8 +89,9 @@ def _verbatim(lines: list[str]) -> str:
 
 
 def _inline(text: str) -> str:
-    """Escaped, with `commands` in their own type."""
-    return re.sub(r"`([^`]*)`", r"<code>\1</code>", html.escape(text))
+    """Escaped, with `commands` in their own type, and values on one line with their spread."""
+    coded = re.sub(r"`([^`]*)`", r"<code>\1</code>", html.escape(text))
+    return _WITH_SPREAD.sub(r'<span class="value">\g<0></span>', coded)
 
 
 def tables(text: str) -> str:

@@ -17,61 +17,105 @@ from werrimbi_odom.inference.calibration.squares import (
 from werrimbi_odom.inference.calibration.umbmark import NORMAL_95, Estimate, Umbmark
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.diagnosis_numbers import scaled_with_std
+from werrimbi_odom.report.text_table import table
 
 DOUBTFUL_P = 0.01
-WIDTH = 100
-
-_SIGNS = {
-    "wheel_separation_multiplier": "C_B",
-    "left_wheel_radius_multiplier": "C_L",
-    "right_wheel_radius_multiplier": "C_R",
-}
+WIDTH = 80
 
 
 def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> str:
-    """Offsets, angles, factors, and what to make of them."""
-    lines = [
-        f"{len(squares.cw)} clockwise and {len(squares.ccw)} anticlockwise squares of "
-        f"{squares.side:g} m: where they ended, measured minus odometry",
-        _centre("clockwise", squares.cw),
-        _centre("anticlockwise", squares.ccw),
-        f"  E_max,syst     {_mm(result.e_max)} mm",
-        "",
-        _angle("a corner falls short of 90 degrees by", "alpha", result.alpha),
-        _angle("a leg bends to the left by", "beta", result.beta),
-        f"  (to first order alpha {_mrad(result.angles.alpha_by_x)} by x, "
-        f"{_mrad(result.angles.alpha_by_y)} by y; beta {_mrad(result.angles.beta_by_x)} by x, "
-        f"{_mrad(result.angles.beta_by_y)} by y)",
-        "",
-        f"{'':31}{'old':>10}{'correction':>25}{'paper':>12}{'new':>12}",
-    ]
-    paper = {"C_B": result.paper.base, "C_L": result.paper.left, "C_R": result.paper.right}
-    found = {"C_B": result.base, "C_L": result.left, "C_R": result.right}
-    for name, new in result.multipliers(old).items():
-        sign = _SIGNS[name]
-        correction = f"{sign} {found[sign].value:.6f} ± {found[sign].std:.6f}"
-        lines.append(
-            f"{name:31}{getattr(old, name):10.6f}{correction:>25}{paper[sign]:12.6f}"
-            f"{new.value:12.6f}"
-        )
-    lines.append(
+    """Verdict, offsets, angles, factors, and what to make of them."""
+    parts = [
+        _verdict(squares, result),
+        table(
+            f"Ends of squares of {squares.side:g} m, measured minus odometry",
+            ("", "squares", "x [mm]", "y [mm]", "one scatters by"),
+            [_centre("clockwise", squares.cw), _centre("anticlockwise", squares.ccw)],
+        ),
+        _angles(result),
+        _factors(result, old),
         _filled(
-            "The column paper has its own equations, of first order; what is written is exact. A "
-            "factor common to both radii does not show in squares: compare a long straight line "
-            "with a tape."
+            "What is written is exact; the paper's equations are of first order. A factor common "
+            "to both radii does not show in squares: compare a long straight line with a tape."
+        ),
+    ]
+    return "\n\n".join([*parts, *(_filled(doubt) for doubt in _doubts(squares, result))])
+
+
+def _verdict(squares: Squares, result: Umbmark) -> str:
+    base, ratio = result.base, result.ratio
+    base_off, radii_off = _significant(base, 1.0), _significant(ratio, 1.0)
+    size = f"E_max,syst is {_mm(result.e_max)} mm on squares of {squares.side:g} m"
+    if not (base_off or radii_off):
+        return _filled(
+            f"Base and radii were right, as far as these squares can tell: {size}, no more than "
+            "the scatter of the runs explains."
         )
-    )
-    lines += [_filled(doubt) for doubt in _doubts(squares, result)]
-    return "\n".join(lines)
+    what = "Base and radii are" if base_off and radii_off else "The base is"
+    lines = [_filled(f"{what if base_off else 'The radii are'} off: {size}.")]
+    if base_off:
+        large = base.value > 1.0
+        lines.append(
+            f"- The wheels stand {_share(base)} {'farther apart' if large else 'closer together'} "
+            f"than the robot file says: at each corner it turns too {'little' if large else 'far'}."
+        )
+    if radii_off:
+        larger, bend = ("right", "left") if ratio.value > 1.0 else ("left", "right")
+        lines.append(
+            f"- The {larger} wheel is larger against the other than the file says, by "
+            f"{_share(ratio)}: what should be straight bends to the {bend}."
+        )
+    return "\n".join(textwrap.fill(line, WIDTH, subsequent_indent="  ") for line in lines)
+
+
+def _centre(sense: str, offsets: Floats) -> list[str]:
+    x, y = offsets.mean(axis=0)
+    spread_x, spread_y = offsets.std(axis=0, ddof=1)
+    return [sense, str(len(offsets)), _mm(x), _mm(y), f"{_mm(spread_x)}, {_mm(spread_y)}"]
+
+
+def _angles(result: Umbmark) -> str:
+    first = result.angles
+    rows = [
+        _angle("alpha: a corner falls short", result.alpha, first.alpha_by_x, first.alpha_by_y),
+        _angle("beta: a leg bends to the left", result.beta, first.beta_by_x, first.beta_by_y),
+    ]
+    return table("Angles", ("", "[degrees]", "[mrad]", "by x alone", "by y"), rows)
+
+
+def _angle(says: str, estimate: Estimate, by_x: float, by_y: float) -> list[str]:
+    degrees, std = math.degrees(estimate.value), math.degrees(estimate.std)
+    return [
+        says,
+        f"{degrees:.3f} ± {std:.3f}",
+        f"{1e3 * estimate.value:.2f} ± {1e3 * estimate.std:.2f}",
+        f"{1e3 * by_x:.2f}",
+        f"{1e3 * by_y:.2f}",
+    ]
+
+
+def _factors(result: Umbmark, old: Robot) -> str:
+    paper, multipliers = result.paper, result.multipliers(old)
+    rows = [
+        [
+            full,
+            f"{getattr(old, full):.6f}",
+            f"{found.value:.6f} ± {found.std:.6f}",
+            f"{by_paper:.6f}",
+            f"{multipliers[full].value:.6f}",
+        ]
+        for full, found, by_paper in (
+            ("wheel_separation_multiplier", result.base, paper.base),
+            ("left_wheel_radius_multiplier", result.left, paper.left),
+            ("right_wheel_radius_multiplier", result.right, paper.right),
+        )
+    ]
+    return table("Corrections C_B, C_L, C_R", ("", "old", "correction", "by paper", "new"), rows)
 
 
 def _doubts(squares: Squares, result: Umbmark) -> list[str]:
     lines = []
-    if not (_significant(result.base, 1.0) or _significant(result.ratio, 1.0)):
-        lines.append(
-            "These corrections are no larger than the scatter of the runs explains: base and "
-            "radii were right, as far as these squares can tell."
-        )
     if result.disagreement_p < DOUBTFUL_P:
         of_alpha, of_beta = result.disagreement
         lines.append(
@@ -89,59 +133,52 @@ def _doubts(squares: Squares, result: Umbmark) -> list[str]:
 def gained_in_words(
     result: Umbmark, squares: Squares, later: Squares | None, again: Squares | None
 ) -> str:
-    """E_max,syst after the calibration, and the comparison with other vehicles."""
-    lines = [""]
+    """E_max,syst after the calibration, and of other vehicles (paper, Table 2)."""
+    parts = []
     if later is not None:
         after = e_max_syst(later)
-        lines.append(
+        parts.append(
             f"E_max,syst after the calibration: {_mm(after)} mm, before: {_mm(result.e_max)} mm "
-            f"({result.e_max / after:.1f} times smaller)"
+            f"({result.e_max / after:.1f} times smaller)."
             if after < result.e_max
             else f"E_max,syst after the calibration: {_mm(after)} mm, no better than before "
-            f"({_mm(result.e_max)} mm): these squares do not confirm it"
+            f"({_mm(result.e_max)} mm): these squares do not confirm it."
         )
-        lines.append(
-            f"  scatter alone would leave a perfect calibration with about "
-            f"{_mm(e_max_of_scatter(later))} mm"
+        parts.append(
+            "Scatter alone would leave a perfect calibration with about "
+            f"{_mm(e_max_of_scatter(later))} mm."
         )
     elif again is not None:
-        lines.append(
+        parts.append(
             f"E_max,syst of the same runs with the new factors: {_mm(e_max_syst(again))} mm; "
-            f"scatter alone leaves about {_mm(e_max_of_scatter(again))} mm"
+            f"scatter alone leaves about {_mm(e_max_of_scatter(again))} mm."
         )
     if later is None:
-        lines.append("To see what it gained, drive squares with the new file: --after RESULTS2.csv")
-    lines.append("\nE_max,syst of others, on squares of 4 m (paper, Table 2):")
-    lines += [f"  {name:34}{1e3 * value:5.0f} mm" for name, value in OTHER_VEHICLES]
+        parts.append(
+            "To see what it gained, drive squares with the new file, and run this again with "
+            "`--after RESULTS2.csv`."
+        )
     shown, when = (squares, "before") if later is None else (later, "after")
-    own, size = f"this robot, {when}, {squares.side:g} m", 1e3 * e_max_syst(shown)
-    lines.append(f"  {own:34}{size:5.{1 if size < 10.0 else 0}f} mm")
-    return "\n".join(lines)
+    rows = [[name, f"{1e3 * value:.0f} mm"] for name, value in OTHER_VEHICLES]
+    size = 1e3 * e_max_syst(shown)
+    rows.append(
+        [f"this robot, {when}, {squares.side:g} m", f"{size:.{1 if size < 10.0 else 0}f} mm"]
+    )
+    others = table("Others on squares of 4 m", ("", "E_max,syst"), rows)
+    return "\n\n".join([_filled(" ".join(parts)), others])
 
 
 def _significant(estimate: Estimate, null: float) -> bool:
     return abs(estimate.value - null) > NORMAL_95 * estimate.std
 
 
-def _centre(sense: str, offsets: Floats) -> str:
-    x, y = offsets.mean(axis=0)
-    spread_x, spread_y = offsets.std(axis=0, ddof=1)
-    return (
-        f"  {sense:14} x {_mm(x):>7} mm   y {_mm(y):>7} mm   "
-        f"(one run scatters by {_mm(spread_x)} and {_mm(spread_y)} mm)"
-    )
-
-
-def _angle(says: str, sign: str, estimate: Estimate) -> str:
-    degrees, std = math.degrees(estimate.value), math.degrees(estimate.std)
-    return (
-        f"{says:38} {degrees:7.3f} ± {std:.3f} degrees  "
-        f"({sign} {_mrad(estimate.value)} ± {_mrad(estimate.std)})"
-    )
+def _share(factor: Estimate) -> str:
+    """How far a factor is from 1."""
+    return f"{scaled_with_std(100.0 * abs(factor.value - 1.0), 100.0 * factor.std)} %"
 
 
 def _filled(text: str) -> str:
-    return textwrap.fill(text, WIDTH)
+    return textwrap.fill(text, WIDTH, break_long_words=False, break_on_hyphens=False)
 
 
 def _mm(length: float) -> str:
