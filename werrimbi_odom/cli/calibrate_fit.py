@@ -38,6 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Calibrate; 0 on success."""
     from werrimbi_odom.inference.calibration.any_driving import calibrate
     from werrimbi_odom.inference.fitting.matching import match, match_finely, stated
+    from werrimbi_odom.report.fit_words import fit_in_words
 
     given = read_recordings(arguments)
     source, how = given.source, given.how
@@ -49,7 +50,8 @@ def run(arguments: argparse.Namespace) -> int:
         sigma_xy=how.sigma_xy or stated(runs, "sigma_xy"),
         sigma_yaw=how.sigma_yaw or stated(runs, "sigma_yaw"),
     )
-    _say(result)
+    words = fit_in_words(result)
+    print(words)
     figures = _json(result)
     if given.holdout:
         held_out = [match(run, source.robot, how.leg, source.limits) for run in given.holdout]
@@ -66,7 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
         figures,
         figure,
         title="Calibration by maximum likelihood",
-        words=f"{_verdict(result)}\n\n{_found(result)}",
+        words=words,
         see="Each mark is a short leg, seen by the robot: the error along, and to its left. After "
         "the calibration the cloud should be smaller and lie about the origin.",
     )
@@ -90,84 +92,6 @@ def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) 
     )
 
 
-def _verdict(result: Calibration) -> str:
-    """For the report, what `_say` prints."""
-    if result.trusted:
-        return "The model explains these drives to their noise."
-    lines = ["Something else is missing: calibration does not explain these drives."]
-    lines += [f"- {words}" for words in result.strange]
-    lines += [
-        f"- the {cell.channel} error still goes with {cell.name} (p = {cell.p_value:.0e})"
-        for cell in result.misfit[:5]
-    ]
-    return "\n".join([*lines, "Next: `werrimbi diagnose` says which physical effect explains it."])
-
-
-_HEADS = ("parameter", "before", "after", "± 1σ", "")
-
-
-def _found(result: Calibration) -> str:
-    """For the report, the table that `_say` prints."""
-    from werrimbi_odom.report.text_table import table
-
-    return table("What was found", (*_HEADS[:-1], "unit, remark"), _rows(result))
-
-
-def _rows(result: Calibration) -> list[Sequence[str]]:
-    rows: list[Sequence[str]] = []
-    for name, item in result.multipliers.items():
-        std = "?" if item.std is None else f"{item.std:.6f}"
-        remark = "" if item.determined else "not determined; left alone"
-        rows.append((name, f"{item.before:.6f}", f"{item.value:.6f}", std, remark))
-    for name, noise in result.noises.items():
-        before = getattr(result.fit.robot, name, None)
-        if not noise.determined:
-            remark = f"not determined (below {2.0 * noise.std:.0e})"
-        else:
-            remark = "m^0.5" if name.endswith("noise") else "m" if name.endswith("xy") else "rad"
-        rows.append(
-            (
-                name,
-                "" if before is None else f"{before:.2e}",
-                f"{noise.value:.2e}" if noise.determined else "",
-                f"{noise.std:.1e}" if noise.determined else "",
-                remark,
-            )
-        )
-    return rows
-
-
-def _say(result: Calibration) -> None:
-    from rich.console import Console
-    from rich.table import Table
-
-    console = Console()
-    table = Table(title="Calibration by maximum likelihood")
-    for heading in _HEADS:
-        left = heading in ("parameter", "")
-        table.add_column(heading, justify="left" if left else "right", no_wrap=bool(heading))
-    for row in _rows(result):
-        table.add_row(*row)
-    console.print(table)
-    left_out = sum(int(legs.sum()) for legs in result.excluded)
-    if left_out:
-        console.print(f"{left_out} legs on which the reference jumped were left out.")
-    if result.trusted:
-        console.print("The model explains these drives to their noise.")
-        return
-    console.print("[bold red]Something else is missing: calibration does not explain these drives.")
-    for words in result.strange:
-        console.print(f"  - {words}", markup=False)
-    for cell in result.misfit[:5]:
-        words = f"the {cell.channel} error still goes with {cell.name}"
-        console.print(f"  - {words} (p = {cell.p_value:.0e})", markup=False)
-    console.print(
-        "The values above are the best of a model that does not fit, so they have no error bars. "
-        "Look first at how the reference is mounted and named: its point on the robot, its forward "
-        "axis, its frame (y to the left, yaw anticlockwise), its clock."
-    )
-
-
 def _judged(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) -> dict[str, Any]:
     """Errors over legs of runs that took no part, before and after; prints them."""
     import numpy as np
@@ -186,7 +110,7 @@ def _judged(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) 
         figures[word] = float(np.sqrt(np.mean(errors**2)))
         figures[f"median_{word}"] = float(np.median(errors))
     print(
-        f"held-out legs, before and after: "
+        f"\nheld-out legs, before and after: "
         f"rms {1e3 * figures['before']:.2f} and {1e3 * figures['after']:.2f} mm, "
         f"median {1e3 * figures['median_before']:.2f} and {1e3 * figures['median_after']:.2f} mm"
     )

@@ -83,14 +83,14 @@ def _in_unit(cell: Dependence, size: float) -> str:
     channel, per = cell.amount.channel, cell.amount.per
     if channel == "heading":
         if per == "turn":
-            return f"{100.0 * size:.2g} %"
+            return f"{_two_digits(100.0 * size)} %"
         each = "second" if per == "duration" else "metre"
-        return f"{math.degrees(size):.2g}° each {each}"
+        return f"{_two_digits(math.degrees(size))}° each {each}"
     if per == "turn":
-        return f"{1e3 * size:.2g} mm each radian"
+        return f"{_two_digits(1e3 * size)} mm each radian"
     if channel == "sideways":
-        return f"{1e3 * size:.2g} mm each metre"
-    return f"{100.0 * size:.2g} %"
+        return f"{_two_digits(1e3 * size)} mm each metre"
+    return f"{_two_digits(100.0 * size)} %"
 
 
 def _shape(cell: Dependence) -> str:
@@ -118,6 +118,10 @@ def _shape(cell: Dependence) -> str:
             "in the reference's frame"
         )
     return ""
+
+
+def _two_digits(value: float) -> str:
+    return f"{value:.2g}" if abs(value) < 99.5 else f"{value:.0f}"
 
 
 def _round(value: float) -> str:

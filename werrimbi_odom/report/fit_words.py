@@ -1,0 +1,77 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a calibration from any driving found, in plain words and a table."""
+
+from __future__ import annotations
+
+import textwrap
+
+from werrimbi_odom.inference.calibration.any_driving import Calibration
+from werrimbi_odom.report.diagnosis_dependence import dependence_words
+from werrimbi_odom.report.diagnosis_numbers import scaled_with_std
+from werrimbi_odom.report.evidence_figures import ordered_cells
+from werrimbi_odom.report.text_table import table
+
+WIDTH = 80
+_MOST = 3  # dependences that are told
+_UNITS = {"left_wheel_noise": "m^0.5", "right_wheel_noise": "m^0.5", "reference_sigma_xy": "m"}
+
+
+def fit_in_words(result: Calibration) -> str:
+    """Whether the model explains the drives, the values, and how far they may be believed."""
+    parts = [_verdict(result), _values(result)]
+    left_out = sum(int(legs.sum()) for legs in result.excluded)
+    if left_out:
+        parts.append(f"{left_out} legs on which the reference jumped were left out.")
+    if not result.trusted:
+        parts.append(
+            _filled(
+                "These values are the best of a model that does not fit, so they have no error "
+                "bars. `werrimbi diagnose` says which physical effect explains the drives, or what "
+                "is set up wrongly: how the reference is mounted, its axes, its clock."
+            )
+        )
+    return "\n\n".join(parts)
+
+
+def _verdict(result: Calibration) -> str:
+    if result.trusted:
+        return "The model explains these drives to their noise."
+    lines = ["Something else is missing: calibration does not explain these drives."]
+    lines += [f"- {words}." for words in result.strange]
+    strongest = ordered_cells(result.misfit)[:_MOST]
+    lines += [f"- {_capital(dependence_words(cell))}." for cell in strongest]
+    return "\n".join(_filled(line) for line in lines)
+
+
+def _values(result: Calibration) -> str:
+    rows = []
+    for name, item in result.multipliers.items():
+        value = f"{item.value:.6f}"
+        if item.std is not None:
+            value += f" ± {item.std:.6f}"
+        rows.append([name, f"{item.before:.6f}", value if item.determined else "not determined"])
+    for name, noise in result.noises.items():
+        unit = _UNITS.get(name, "rad")
+        before = getattr(result.fit.robot, name, None)
+        value = f"not determined (below {2.0 * noise.std:.0e} {unit})"
+        if noise.determined and result.trusted and noise.std > 0.0:
+            value = scaled_with_std(noise.value, noise.std, unit)
+        elif noise.determined:
+            value = f"{noise.value:.2e} {unit}"
+        rows.append([name, "" if before is None else f"{before:.2e}", value])
+    return table("Of greatest likelihood", ("parameter", "before", "after"), rows)
+
+
+def _capital(words: str) -> str:
+    return words[0].upper() + words[1:]
+
+
+def _filled(text: str) -> str:
+    return textwrap.fill(
+        text,
+        WIDTH,
+        subsequent_indent="  " if text.startswith("- ") else "",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
