@@ -11,11 +11,11 @@ from typing import Any
 import pytest
 
 from test.report.browser import visit
-from werrimbi_odom.report.fleet_figure import fleet_figure
-from werrimbi_odom.report.fleet_page import write_fleet_page
-from werrimbi_odom.report.fleet_rows import Fleet, Row, fleet_json
-from werrimbi_odom.report.fleet_tables import cells, fleet_table
-from werrimbi_odom.report.fleet_words import headline, words_of
+from werrimbi_odom.report.fleet.figure import fleet_figure
+from werrimbi_odom.report.fleet.page import write_fleet_page
+from werrimbi_odom.report.fleet.rows import Fleet, Row, fleet_json
+from werrimbi_odom.report.fleet.tables import cells, fleet_table
+from werrimbi_odom.report.fleet.words import headline, words_of
 from werrimbi_odom.report.save import find_browser
 
 PAGE = Path(__file__).parents[2] / "docs" / "fleet.md"

@@ -14,7 +14,7 @@ from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.adding.adding import Added, add_effect
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.adding_words import json_of, words_of
+from werrimbi_odom.report.adding.words import json_of, words_of
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 

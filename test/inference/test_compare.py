@@ -19,8 +19,8 @@ from werrimbi_odom.inference.comparison.judged_legs import prepare
 from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.compare_json import json_of
-from werrimbi_odom.report.compare_words import words_of
+from werrimbi_odom.report.comparison.as_json import json_of
+from werrimbi_odom.report.comparison.words import words_of
 
 TRUE = WhiteNoiseRobot(left_noise=5e-4, right_noise=5e-4)
 RIGHT = Robot(

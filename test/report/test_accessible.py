@@ -15,11 +15,11 @@ from test.axe import COUNT, RUN, axe_script
 from werrimbi_odom.inference.adding.adding import Added
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.report.adding_page import write_adding_page
-from werrimbi_odom.report.calibration_page import calibration_page
-from werrimbi_odom.report.compare_page import write_compare_page
-from werrimbi_odom.report.diagnosis_page import write_diagnosis_page
-from werrimbi_odom.report.fit_figure import leg_figure
+from werrimbi_odom.report.adding.page import write_adding_page
+from werrimbi_odom.report.calibration.fit_figure import leg_figure
+from werrimbi_odom.report.calibration.page import calibration_page
+from werrimbi_odom.report.comparison.page import write_compare_page
+from werrimbi_odom.report.diagnosis.page import write_diagnosis_page
 from werrimbi_odom.report.page import write_page
 
 TOO_WIDE = "Math.max(0, document.documentElement.scrollWidth - window.innerWidth)"

@@ -19,17 +19,18 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Amount
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
-from werrimbi_odom.report.adding_figures import error_falling_figure, steps_of
-from werrimbi_odom.report.compare_figures import (
+from werrimbi_odom.report.adding.figures import error_falling_figure, steps_of
+from werrimbi_odom.report.calibration.fit_figure import leg_figure
+from werrimbi_odom.report.comparison.figures import (
     error_against_figure,
     legs_by_motion_figure,
     nees_figure,
     path_figure,
     variables_of,
 )
-from werrimbi_odom.report.compare_path_figure import covariance_along
+from werrimbi_odom.report.comparison.path_figure import covariance_along
 from werrimbi_odom.report.decimate import FEWEST, MARKS, MOST, along_path
-from werrimbi_odom.report.diagnosis_figures import (
+from werrimbi_odom.report.diagnosis.figures import (
     before_after,
     before_after_figure,
     effect_sketch,
@@ -37,9 +38,8 @@ from werrimbi_odom.report.diagnosis_figures import (
     manoeuvre_figure,
     ranking_figure,
 )
-from werrimbi_odom.report.fit_figure import leg_figure
-from werrimbi_odom.report.response import parts_of, response
-from werrimbi_odom.report.wheel_angle import once_a_turn, over_a_turn, wheel_errors
+from werrimbi_odom.report.diagnosis.response import parts_of, response
+from werrimbi_odom.report.diagnosis.wheel_angle import once_a_turn, over_a_turn, wheel_errors
 
 RELATIVE = 1e3 * AMPLITUDE / PLAIN.wheel_radius
 """How much more or less than its radius says an eccentric wheel rolls, at the most [mm/m]."""

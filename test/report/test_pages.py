@@ -18,10 +18,10 @@ from browser import Visit
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.report.adding_page import write_adding_page
-from werrimbi_odom.report.calibration_page import calibration_page
-from werrimbi_odom.report.compare_page import write_compare_page
-from werrimbi_odom.report.diagnosis_page import write_diagnosis_page
+from werrimbi_odom.report.adding.page import write_adding_page
+from werrimbi_odom.report.calibration.page import calibration_page
+from werrimbi_odom.report.comparison.page import write_compare_page
+from werrimbi_odom.report.diagnosis.page import write_diagnosis_page
 from werrimbi_odom.report.page import write_page
 from werrimbi_odom.report.path_figure import PathDrawing
 from werrimbi_odom.report.path_figure import path_figure as bare_path

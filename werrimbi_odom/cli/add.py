@@ -50,7 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
     """
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.inference.adding.adding import add_effect
-    from werrimbi_odom.report.adding_words import words_of
+    from werrimbi_odom.report.adding.words import words_of
 
     _refuse_out(arguments)
     given = read_recordings(arguments)
@@ -88,7 +88,7 @@ def _write(arguments: argparse.Namespace, given: Recordings, added: Added) -> li
     """The robot file, then the JSON and the page that were asked for; returns what was written."""
     from werrimbi_odom.files.robot_file import write_robot_file
     from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
-    from werrimbi_odom.report.adding_words import json_of
+    from werrimbi_odom.report.adding.words import json_of
 
     changes = {name: float(getattr(added.robot, name)) for name in MULTIPLIERS}
     if added.noise_written:
@@ -108,7 +108,7 @@ def _write(arguments: argparse.Namespace, given: Recordings, added: Added) -> li
         written.append(arguments.json)
     if arguments.report is not None:
         from werrimbi_odom.cli.report_made import made_of
-        from werrimbi_odom.report.adding_page import write_adding_page
+        from werrimbi_odom.report.adding.page import write_adding_page
 
         written += write_adding_page(added, arguments.report, made=made_of(arguments))
     return written

@@ -38,7 +38,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Calibrate; 0 on success."""
     from werrimbi_odom.inference.calibration.any_driving import calibrate
     from werrimbi_odom.inference.fitting.matching import match, match_finely, stated
-    from werrimbi_odom.report.fit_words import fit_in_words
+    from werrimbi_odom.report.calibration.fit_words import fit_in_words
 
     given = read_recordings(arguments)
     source, how = given.source, given.how
@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) -> go.Figure:
     from werrimbi_odom.inference.calibration.any_driving import errors_of_legs
-    from werrimbi_odom.report.fit_figure import leg_figure
+    from werrimbi_odom.report.calibration.fit_figure import leg_figure
 
     model = result.fit.point.model
     headings = [model.start_yaw(index) for index in range(len(runs))]

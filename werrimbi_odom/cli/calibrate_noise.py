@@ -57,8 +57,8 @@ def run(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.files.robot_file import read_robot_file
     from werrimbi_odom.inference.calibration.noise_likelihood import design
     from werrimbi_odom.inference.calibration.out_and_back import fit_noise, out_and_back
-    from werrimbi_odom.report.calibration_figures import noise_figure
-    from werrimbi_odom.report.noise_words import noise_in_words
+    from werrimbi_odom.report.calibration.figures import noise_figure
+    from werrimbi_odom.report.calibration.noise_words import noise_in_words
 
     source = read_robot_file(arguments.robot)
     track = source.robot.track

@@ -55,8 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.files.robot_file import read_robot_file
     from werrimbi_odom.inference.calibration.squares import e_max_syst
     from werrimbi_odom.inference.calibration.umbmark import corrected, recomputed, umbmark
-    from werrimbi_odom.report.calibration_figures import OffsetCloud, umbmark_figure
-    from werrimbi_odom.report.umbmark_words import found_in_words, gained_in_words
+    from werrimbi_odom.report.calibration.figures import OffsetCloud, umbmark_figure
+    from werrimbi_odom.report.calibration.umbmark_words import found_in_words, gained_in_words
 
     source = read_robot_file(arguments.robot)
     old = source.robot

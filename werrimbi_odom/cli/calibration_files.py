@@ -57,7 +57,7 @@ def write_all(
         written.append(arguments.json)
     if arguments.report is not None and figure is not None:
         from werrimbi_odom.cli.report_made import made_of
-        from werrimbi_odom.report.calibration_page import calibration_page
+        from werrimbi_odom.report.calibration.page import calibration_page
         from werrimbi_odom.report.save import save_report
 
         before_after = {

@@ -38,8 +38,8 @@ def run(arguments: argparse.Namespace) -> int:
     """
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.inference.comparison.compare import compare
-    from werrimbi_odom.report.compare_tables import tables_of
-    from werrimbi_odom.report.compare_words import words_of
+    from werrimbi_odom.report.comparison.tables import tables_of
+    from werrimbi_odom.report.comparison.words import words_of
 
     given = read_recordings(arguments)
     with share_done("comparing") as show:
@@ -70,7 +70,7 @@ def _next_step(arguments: argparse.Namespace) -> str:
 
 def _write(arguments: argparse.Namespace, comparison: Comparison) -> list[Path]:
     """The JSON and the page that were asked for; returns what was written."""
-    from werrimbi_odom.report.compare_json import json_of
+    from werrimbi_odom.report.comparison.as_json import json_of
 
     written = []
     if arguments.json is not None:
@@ -78,7 +78,7 @@ def _write(arguments: argparse.Namespace, comparison: Comparison) -> list[Path]:
         written.append(arguments.json)
     if arguments.report is not None:
         from werrimbi_odom.cli.report_made import made_of
-        from werrimbi_odom.report.compare_page import write_compare_page
+        from werrimbi_odom.report.comparison.page import write_compare_page
 
         written += write_compare_page(
             comparison,

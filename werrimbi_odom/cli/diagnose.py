@@ -15,7 +15,7 @@ from werrimbi_odom.cli.recordings import add_recording_arguments, read_recording
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.report.diagnosis_words import NextSteps, Told
+    from werrimbi_odom.report.diagnosis.words import NextSteps, Told
 
 HELP = "which physical effect is missing, how sure that is, and what to do about it"
 
@@ -49,9 +49,9 @@ def run(arguments: argparse.Namespace) -> int:
     _ask_for_robot_and_runs(arguments)
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.fleet.one import diagnosed
-    from werrimbi_odom.report.diagnosis_json import json_of
-    from werrimbi_odom.report.diagnosis_tables import tables_of
-    from werrimbi_odom.report.diagnosis_words import words_of
+    from werrimbi_odom.report.diagnosis.as_json import json_of
+    from werrimbi_odom.report.diagnosis.tables import tables_of
+    from werrimbi_odom.report.diagnosis.words import words_of
 
     given = read_recordings(arguments)
     with share_done("diagnosing") as show:
@@ -78,7 +78,7 @@ def _ask_for_robot_and_runs(arguments: argparse.Namespace) -> None:
 
 def _steps(arguments: argparse.Namespace) -> NextSteps:
     """The commands that follow, for the same files."""
-    from werrimbi_odom.report.diagnosis_words import NextSteps
+    from werrimbi_odom.report.diagnosis.words import NextSteps
 
     same = ["--robot", str(arguments.robot)]
     for option in ("reference_kind", "leg", "ticks_topic", "reference_topic"):
@@ -136,7 +136,7 @@ def _write(arguments: argparse.Namespace, told: Told, figures: dict[str, Any]) -
         written.append(arguments.json)
     if arguments.report is not None:
         from werrimbi_odom.cli.report_made import made_of
-        from werrimbi_odom.report.diagnosis_page import write_diagnosis_page
+        from werrimbi_odom.report.diagnosis.page import write_diagnosis_page
 
         written += write_diagnosis_page(
             told.diagnosis,

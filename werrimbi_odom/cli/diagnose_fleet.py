@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from werrimbi_odom.fleet.members import Member
     from werrimbi_odom.fleet.one import Task
-    from werrimbi_odom.report.fleet_rows import Fleet, Row
+    from werrimbi_odom.report.fleet.rows import Fleet, Row
 
 _NARROW, _WIDE = 80, 140
 """Columns that the table may have; 100 where there is no terminal."""
@@ -139,7 +139,7 @@ def _warn(words: str) -> None:
 
 
 def _fleet(rows: Sequence[Row], members: Sequence[Member]) -> Fleet:
-    from werrimbi_odom.report.fleet_rows import Fleet, ordered
+    from werrimbi_odom.report.fleet.rows import Fleet, ordered
 
     done = {row.robot for row in rows}
     names = [member.name for member in members]
@@ -162,8 +162,8 @@ def _bytes(path: Path) -> bytes:
 
 def _tell(arguments: argparse.Namespace, fleet: Fleet) -> None:
     """Words and table, then the files that were asked for."""
-    from werrimbi_odom.report.fleet_tables import fleet_table
-    from werrimbi_odom.report.fleet_words import words_of
+    from werrimbi_odom.report.fleet.tables import fleet_table
+    from werrimbi_odom.report.fleet.words import words_of
 
     columns = shutil.get_terminal_size((100, 24)).columns
     print(words_of(fleet))
@@ -175,7 +175,7 @@ def _tell(arguments: argparse.Namespace, fleet: Fleet) -> None:
 
 
 def _write(arguments: argparse.Namespace, fleet: Fleet) -> list[Path]:
-    from werrimbi_odom.report.fleet_rows import fleet_json
+    from werrimbi_odom.report.fleet.rows import fleet_json
 
     written = []
     if arguments.json is not None:
@@ -183,7 +183,7 @@ def _write(arguments: argparse.Namespace, fleet: Fleet) -> list[Path]:
         written.append(arguments.json)
     if arguments.report is not None:
         from werrimbi_odom.cli.report_made import made_of
-        from werrimbi_odom.report.fleet_page import write_fleet_page
+        from werrimbi_odom.report.fleet.page import write_fleet_page
 
         made = {"fleet": str(arguments.fleet), **made_of(arguments)}
         written += write_fleet_page(fleet, arguments.report, made)

@@ -84,7 +84,7 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"         {arguments.json}")
     if arguments.report is not None:
         from werrimbi_odom.cli.report_made import made_of
-        from werrimbi_odom.report.adding_page import write_adding_page
+        from werrimbi_odom.report.adding.page import write_adding_page
 
         pages = write_adding_page(tried, arguments.report, made=made_of(arguments))
         print(f"         {', '.join(map(str, pages))}")
@@ -155,7 +155,7 @@ def _next(arguments: argparse.Namespace, draft: Draft, given: Recordings) -> str
 
 
 def _write_json(path: Path, draft: Draft, tried: Added, files: list[str]) -> None:
-    from werrimbi_odom.report.adding_words import json_of
+    from werrimbi_odom.report.adding.words import json_of
 
     cell = draft.dependence
     figures = {

@@ -15,7 +15,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.fleet.code import PACKAGE, code_here, doubts, refusal
 from werrimbi_odom.fleet.one import Task, bug, failed
 from werrimbi_odom.fleet.parcel import packed
-from werrimbi_odom.report.fleet_rows import Row
+from werrimbi_odom.report.fleet.rows import Row
 
 if TYPE_CHECKING:
     from distributed import Client, Future

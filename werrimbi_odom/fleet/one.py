@@ -17,9 +17,9 @@ from werrimbi_odom.files.asked import Asked, Recordings, read
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
 from werrimbi_odom.inference.manoeuvres.sight import sight_of
-from werrimbi_odom.report.diagnosis_json import json_of
-from werrimbi_odom.report.diagnosis_words import Told
-from werrimbi_odom.report.fleet_rows import Row
+from werrimbi_odom.report.diagnosis.as_json import json_of
+from werrimbi_odom.report.diagnosis.words import Told
+from werrimbi_odom.report.fleet.rows import Row
 
 _ONE_AT_A_TIME = Lock()
 """Effects of a file become modules of the whole process, and so is the limit on threads its."""

@@ -18,7 +18,7 @@ from werrimbi_odom.files.asked import BAG, Asked
 from werrimbi_odom.files.bag import SUFFIXES
 from werrimbi_odom.files.run_folder import REFERENCE, TICKS
 from werrimbi_odom.fleet.one import Task, row_of
-from werrimbi_odom.report.fleet_rows import Row
+from werrimbi_odom.report.fleet.rows import Row
 
 MOST = 2**30
 """Bytes of a robot that are sent; a bag of camera pictures is better diagnosed where it lies."""

@@ -16,7 +16,7 @@ from multiprocessing.connection import wait as wait_for
 from threading import Thread
 
 from werrimbi_odom.fleet.one import Task, bug, failed, row_of
-from werrimbi_odom.report.fleet_rows import Row
+from werrimbi_odom.report.fleet.rows import Row
 
 DIED = (
     "the process that diagnosed it died, and again when it was tried alone: killed, out of memory, "

@@ -12,7 +12,7 @@ from werrimbi_odom.inference.diagnosis.holdout import set_aside
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, next_manoeuvre
 from werrimbi_odom.inference.manoeuvres.sight import sight_of
-from werrimbi_odom.report.diagnosis_figures import (
+from werrimbi_odom.report.diagnosis.figures import (
     before_after,
     before_after_figure,
     ideal_of,

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from werrimbi_odom.inference.adding.added import Added
-from werrimbi_odom.report.adding_words import remark_told, value_told, words_of
+from werrimbi_odom.report.adding.words import remark_told, value_told, words_of
 from werrimbi_odom.report.page_text import unwrapped
 from werrimbi_odom.workbench.figure import figure
 from werrimbi_odom.workbench.gain import gain_figure

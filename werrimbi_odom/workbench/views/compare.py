@@ -10,7 +10,7 @@ import numpy as np
 
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.legs import LegStatistics
-from werrimbi_odom.report.compare_words import words_of
+from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.report.page_text import unwrapped
 from werrimbi_odom.workbench.html import box, button, paragraphs, rows, text
 from werrimbi_odom.workbench.parts import (

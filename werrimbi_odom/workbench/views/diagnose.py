@@ -8,9 +8,9 @@ from functools import partial
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
-from werrimbi_odom.report.diagnosis_dependence import dependence_words
-from werrimbi_odom.report.diagnosis_numbers import chance_words
-from werrimbi_odom.report.diagnosis_words import NextSteps, Told, words_of
+from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.diagnosis.words import NextSteps, Told, words_of
+from werrimbi_odom.report.numbers import chance_words
 from werrimbi_odom.report.page_text import unwrapped
 from werrimbi_odom.workbench.figure import figure
 from werrimbi_odom.workbench.html import box, button, paragraphs, text

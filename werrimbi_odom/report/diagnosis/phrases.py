@@ -15,8 +15,8 @@ from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
 from werrimbi_odom.inference.manoeuvres.sight import Sight
 from werrimbi_odom.inference.set_up.mistakes import SetUpFinding
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.report.diagnosis_numbers import chance_words, length, with_std
-from werrimbi_odom.report.diagnosis_values import Value, effect_named, ranked_of, values_of
+from werrimbi_odom.report.diagnosis.values import Value, effect_named, ranked_of, values_of
+from werrimbi_odom.report.numbers import chance_words, length, with_std
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.values import FittedParameter
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
-from werrimbi_odom.report.diagnosis_numbers import scaled_with_std
+from werrimbi_odom.report.numbers import scaled_with_std
 from werrimbi_odom.report.text_table import table
 
 WIDTH = 80

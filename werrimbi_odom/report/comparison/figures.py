@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.report.compare_channels import CHANNELS, NAMES, measured_channels
-from werrimbi_odom.report.compare_path_figure import path_figure
+from werrimbi_odom.report.comparison.channels import CHANNELS, NAMES, measured_channels
+from werrimbi_odom.report.comparison.nees_figure import nees_figure
+from werrimbi_odom.report.comparison.path_figure import path_figure
 from werrimbi_odom.report.decimate import MARKS, small, spread_and_extremes
-from werrimbi_odom.report.nees_figure import nees_figure
+from werrimbi_odom.report.diagnosis.wheel_angle import WHEEL_ANGLES, wheel_angle_figure
 from werrimbi_odom.report.style import BLUE, FAINT, GREY, paled, plain
-from werrimbi_odom.report.wheel_angle import WHEEL_ANGLES, wheel_angle_figure
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from werrimbi_odom.inference.comparison.compare import Comparison
-from werrimbi_odom.report.compare_channels import NAMES, measured_channels
+from werrimbi_odom.report.comparison.channels import NAMES, measured_channels
 from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, paled, plain
 
 if TYPE_CHECKING:

@@ -17,8 +17,8 @@ from werrimbi_odom.inference.diagnosis.variables import CONSTANT
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, Model
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.report.evidence_figures import amount_words, variable_words
-from werrimbi_odom.report.response import Response, parts_of, response, unit_of
+from werrimbi_odom.report.diagnosis.evidence_figures import amount_words, variable_words
+from werrimbi_odom.report.diagnosis.response import Response, parts_of, response, unit_of
 from werrimbi_odom.report.style import BLUE, GREY, ORANGE, plain
 
 if TYPE_CHECKING:

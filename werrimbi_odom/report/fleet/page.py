@@ -8,10 +8,10 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.report.fleet_figure import fleet_figure
-from werrimbi_odom.report.fleet_rows import Fleet
-from werrimbi_odom.report.fleet_tables import fleet_table_html
-from werrimbi_odom.report.fleet_words import words_of
+from werrimbi_odom.report.fleet.figure import fleet_figure
+from werrimbi_odom.report.fleet.rows import Fleet
+from werrimbi_odom.report.fleet.tables import fleet_table_html
+from werrimbi_odom.report.fleet.words import words_of
 from werrimbi_odom.report.page import Page, Shown
 from werrimbi_odom.report.save import save_report
 

@@ -15,7 +15,8 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
-from werrimbi_odom.report.diagnosis_figures import (
+from werrimbi_odom.report.diagnosis.evidence_figures import variable_words
+from werrimbi_odom.report.diagnosis.figures import (
     before_after,
     before_after_figure,
     dependence_figure,
@@ -27,9 +28,8 @@ from werrimbi_odom.report.diagnosis_figures import (
     ranking_figure,
     set_up_figure,
 )
-from werrimbi_odom.report.diagnosis_tables import tables_of
-from werrimbi_odom.report.diagnosis_words import NextSteps, Told, words_of
-from werrimbi_odom.report.evidence_figures import variable_words
+from werrimbi_odom.report.diagnosis.tables import tables_of
+from werrimbi_odom.report.diagnosis.words import NextSteps, Told, words_of
 from werrimbi_odom.report.page import Page, Shown
 from werrimbi_odom.report.save import save_report
 

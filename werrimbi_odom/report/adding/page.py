@@ -8,14 +8,14 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from werrimbi_odom.inference.adding.added import Added
-from werrimbi_odom.report.adding_figures import (
+from werrimbi_odom.report.adding.figures import (
     error_falling_figure,
     held_out_legs_figure,
     steps_of,
 )
-from werrimbi_odom.report.adding_words import words_of
-from werrimbi_odom.report.diagnosis_page import effect_card
-from werrimbi_odom.report.evidence_figures import evidence_map_figure
+from werrimbi_odom.report.adding.words import words_of
+from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure
+from werrimbi_odom.report.diagnosis.page import effect_card
 from werrimbi_odom.report.page import Page, Shown
 from werrimbi_odom.report.save import save_report
 

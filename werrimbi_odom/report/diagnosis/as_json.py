@@ -15,8 +15,8 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, strongest
 from werrimbi_odom.inference.manoeuvres.sight import Sight
-from werrimbi_odom.report.diagnosis_dependence import dependence_words
-from werrimbi_odom.report.diagnosis_values import values_of
+from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.diagnosis.values import values_of
 
 
 def json_of(

@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.report import sketches_body, sketches_records
-from werrimbi_odom.report.sketch_parts import drawing
+from werrimbi_odom.report.sketches import body, records
+from werrimbi_odom.report.sketches.parts import drawing
 
-SKETCHES = {**sketches_body.SKETCHES, **sketches_records.SKETCHES}
+SKETCHES = {**body.SKETCHES, **records.SKETCHES}
 """For each effect of the library what the drawing shows, and the drawing."""
 
 

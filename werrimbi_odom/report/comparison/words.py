@@ -9,7 +9,7 @@ import textwrap
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
 from werrimbi_odom.inference.comparison.verdict import FEWEST, Depends, Verdict, verdict_of
-from werrimbi_odom.report.compare_phrases import systematic_told
+from werrimbi_odom.report.comparison.phrases import systematic_told
 
 WIDTH = 80
 

@@ -7,9 +7,9 @@ from __future__ import annotations
 import textwrap
 
 from werrimbi_odom.inference.calibration.any_driving import Calibration
-from werrimbi_odom.report.diagnosis_dependence import dependence_words
-from werrimbi_odom.report.diagnosis_numbers import scaled_with_std
-from werrimbi_odom.report.evidence_figures import ordered_cells
+from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
+from werrimbi_odom.report.numbers import scaled_with_std
 from werrimbi_odom.report.text_table import table
 
 WIDTH = 80

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from werrimbi_odom.report.sketch_parts import (
+from werrimbi_odom.report.sketches.parts import (
     BLUE,
     DASH,
     GREEN,

@@ -17,7 +17,7 @@ from werrimbi_odom.inference.calibration.squares import (
 from werrimbi_odom.inference.calibration.umbmark import NORMAL_95, Estimate, Umbmark
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.diagnosis_numbers import scaled_with_std
+from werrimbi_odom.report.numbers import scaled_with_std
 from werrimbi_odom.report.text_table import table
 
 DOUBTFUL_P = 0.01

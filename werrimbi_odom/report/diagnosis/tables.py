@@ -10,8 +10,8 @@ from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.manoeuvres.sight import Sight
-from werrimbi_odom.report.diagnosis_numbers import length, p_words, with_std
-from werrimbi_odom.report.diagnosis_values import values_of
+from werrimbi_odom.report.diagnosis.values import values_of
+from werrimbi_odom.report.numbers import length, p_words, with_std
 from werrimbi_odom.report.text_table import table
 
 _RANKED = 8

@@ -7,8 +7,8 @@ from __future__ import annotations
 import html
 from io import StringIO
 
-from werrimbi_odom.report.fleet_rows import ERROR, Fleet, Row
-from werrimbi_odom.report.fleet_words import error_words, missing_words, next_words
+from werrimbi_odom.report.fleet.rows import ERROR, Fleet, Row
+from werrimbi_odom.report.fleet.words import error_words, missing_words, next_words
 from werrimbi_odom.report.text_table import table
 
 HEADS = ("robot", "runs", "verdict", "what is missing", "held-out error [mm]", "next step")

@@ -9,8 +9,8 @@ import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from werrimbi_odom.report.diagnosis_numbers import listed, with_std
-from werrimbi_odom.report.fleet_rows import ERROR, Fleet, Row, believed
+from werrimbi_odom.report.fleet.rows import ERROR, Fleet, Row, believed
+from werrimbi_odom.report.numbers import listed, with_std
 
 WIDTH = 80
 _GROUPS = 6

@@ -10,10 +10,9 @@ from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, chance
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES
-from werrimbi_odom.report.diagnosis_dependence import dependence_words
-from werrimbi_odom.report.diagnosis_json import significant
-from werrimbi_odom.report.diagnosis_numbers import chance_words, length, listed
-from werrimbi_odom.report.diagnosis_phrases import (
+from werrimbi_odom.report.diagnosis.as_json import significant
+from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.diagnosis.phrases import (
     Told,
     about,
     also,
@@ -24,7 +23,8 @@ from werrimbi_odom.report.diagnosis_phrases import (
     sizes,
     whole,
 )
-from werrimbi_odom.report.diagnosis_values import effect_named
+from werrimbi_odom.report.diagnosis.values import effect_named
+from werrimbi_odom.report.numbers import chance_words, length, listed
 
 __all__ = ["NextSteps", "Told", "words_of"]
 

@@ -8,8 +8,8 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.report.fleet_rows import ERROR, Fleet, Row
-from werrimbi_odom.report.fleet_words import missing_words
+from werrimbi_odom.report.fleet.rows import ERROR, Fleet, Row
+from werrimbi_odom.report.fleet.words import missing_words
 from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, PAPER, escaped, plain
 
 if TYPE_CHECKING:

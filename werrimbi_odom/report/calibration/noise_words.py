@@ -15,7 +15,7 @@ from werrimbi_odom.inference.calibration.out_and_back import (
     NoiseFit,
     pivot_scatter,
 )
-from werrimbi_odom.report.diagnosis_numbers import scaled_with_std
+from werrimbi_odom.report.numbers import scaled_with_std
 from werrimbi_odom.report.text_table import table
 
 WIDTH = 80
