@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import re
 import shutil
@@ -98,3 +99,6 @@ def test_who_has_no_certificate_is_not_let_in(guarded: str, protocol: str) -> No
     address = guarded.replace("tls://", f"{protocol}://")
     with pytest.raises(InputError, match="no Dask scheduler answers there"):
         list(on_cluster([nowhere("robot_1")], address, patience=5.0))
+    clients = [item for item in gc.get_objects() if isinstance(item, distributed.Client)]
+    open_ones = [client for client in clients if client.status not in ("closed", "newly-created")]
+    assert open_ones == [], "Dask hangs if they are collected while another client starts"

@@ -182,7 +182,7 @@ def test_errors_a_hundred_times_apart_are_drawn_on_a_logarithmic_axis() -> None:
     assert fleet_figure(Fleet((BAD,))) is None
 
 
-@pytest.mark.parametrize("dark", [False, True])
+@pytest.mark.parametrize("dark", [False, pytest.param(True, marks=pytest.mark.evidence)])
 def test_the_page_draws_itself_without_a_complaint(tmp_path: Path, dark: bool) -> None:
     browser = find_browser()
     if browser is None:

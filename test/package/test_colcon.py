@@ -92,7 +92,7 @@ def test_the_built_executables_start(workspace: Path) -> None:
 
 
 def test_colcon_test_runs_the_packages_tests(workspace: Path) -> None:
-    run = colcon(workspace, "test", "--pytest-args", "-k", "test_moments")
+    run = colcon(workspace, "test", "--pytest-args", "test/model/test_moments.py")
     assert run.returncode == 0, run.stdout + run.stderr
     result = (workspace / "build" / "werrimbi_odom" / "pytest.xml").read_text()
     assert 'errors="0" failures="0"' in result

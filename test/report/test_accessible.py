@@ -46,8 +46,21 @@ def pages(
     return found
 
 
-@pytest.mark.parametrize(("dark", "width"), [(False, 1280), (True, 390)])
-@pytest.mark.parametrize("name", ["compare", "diagnose", "add", "fit"])
+NAMES = ("compare", "diagnose", "add", "fit")
+
+
+@pytest.mark.parametrize(
+    ("name", "dark", "width"),
+    [
+        *((name, False, 1280) for name in NAMES),
+        ("diagnose", True, 390),
+        *(
+            pytest.param(name, True, 390, marks=pytest.mark.evidence)
+            for name in NAMES
+            if name != "diagnose"
+        ),
+    ],
+)
 def test_no_rule_is_broken_and_nothing_is_too_wide(
     pages: dict[str, Path], look: Callable[..., Visit], name: str, dark: bool, width: int
 ) -> None:

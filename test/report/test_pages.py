@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -56,15 +57,49 @@ def diagnosis_page(diagnosis: Diagnosis, tmp_path_factory: pytest.TempPathFactor
     return path
 
 
-@pytest.mark.parametrize("dark", [False, True])
-def test_a_comparison_draws_itself_in_light_and_dark(
-    compare_page: Path, look: Look, dark: bool
-) -> None:
-    visit = look(compare_page, UNDRAWN, FIGURES, PAPER, FIGURE_PAPER, dark=dark)
+LABELS = (
+    "[...document.querySelectorAll('.figure, svg.sketch')]"
+    ".filter(f => !(f.getAttribute('aria-label') || '').length).length",
+    "[...document.querySelectorAll('select')].filter(s => !s.labels.length).length",
+    "[...document.querySelectorAll('.figure')].filter(f => f.tabIndex !== 0).length",
+    "document.documentElement.lang",
+)
+"""Figures and choices without a label, figures that Tab misses, and the language."""
+ALL_LABELLED = [0, 0, 0, "en"]
+
+ASKED = {
+    "colours": (PAPER, FIGURE_PAPER),
+    "labels": LABELS,
+    "uploads": (
+        "[...document.querySelectorAll('.modebar-btn')].map(item => item.dataset.title)",
+        "[...document.querySelectorAll('.figure')].map(item => item._context.plotlyServerURL)",
+    ),
+    "names": (
+        "[...document.querySelectorAll('select[data-for=path] option')].map(o => o.textContent)",
+        "werrimbi.choose('against', 5).then(() => document.querySelectorAll('b').length)",
+        "document.getElementById('figure-against').data.map(t => t.name)",
+    ),
+}
+
+
+@pytest.fixture(scope="module")
+def seen(compare_page: Path, look: Look) -> dict[str, list[Any]]:
+    """What one visit to the comparison saw, in the light."""
+    scripts = [script for group in ASKED.values() for script in group]
+    visit = look(compare_page, UNDRAWN, FIGURES, *scripts)
     assert_well_drawn(visit)
-    paper = "rgb(21, 24, 28)" if dark else "rgb(255, 255, 255)"
-    assert visit.answers[2] == paper
-    assert visit.answers[3].upper() == ("#15181C" if dark else "#FFFFFF")
+    answers = iter(visit.answers[2:])
+    return {name: [next(answers) for _ in group] for name, group in ASKED.items()}
+
+
+def test_a_comparison_draws_itself_in_the_light(seen: dict[str, list[Any]]) -> None:
+    assert [colour.upper() for colour in seen["colours"]] == ["RGB(255, 255, 255)", "#FFFFFF"]
+
+
+def test_a_comparison_draws_itself_in_the_dark(compare_page: Path, look: Look) -> None:
+    visit = look(compare_page, UNDRAWN, FIGURES, PAPER, FIGURE_PAPER, dark=True)
+    assert_well_drawn(visit)
+    assert [colour.upper() for colour in visit.answers[2:]] == ["RGB(21, 24, 28)", "#15181C"]
 
 
 def test_the_switch_turns_page_and_figures_dark(compare_page: Path, look: Look) -> None:
@@ -81,38 +116,23 @@ def test_the_switch_turns_page_and_figures_dark(compare_page: Path, look: Look) 
     assert set(visit.answers[4]) == {"dark"}
 
 
-def test_a_name_from_a_record_is_text_and_not_html(compare_page: Path, look: Look) -> None:
-    visit = look(
-        compare_page,
-        UNDRAWN,
-        FIGURES,
-        "[...document.querySelectorAll('select[data-for=path] option')].map(o => o.textContent)",
-        "werrimbi.choose('against', 5).then(() => document.querySelectorAll('b').length)",
-        "document.getElementById('figure-against').data.map(t => t.name)",
-    )
-    assert_well_drawn(visit)
-    assert visit.answers[2] == ["all 3 drives", "first", "second", "<b>third</b> & last"]
-    assert visit.answers[3] == 0
-    assert any(
-        name and name.startswith("&lt;b&gt;third&lt;/b&gt; &amp; last:")
-        for name in visit.answers[4]
-    )
+def test_a_name_from_a_record_is_text_and_not_html(seen: dict[str, list[Any]]) -> None:
+    options, bold, names = seen["names"]
+    assert options == ["all 3 drives", "first", "second", "<b>third</b> & last"]
+    assert bold == 0
+    assert any(name and name.startswith("&lt;b&gt;third&lt;/b&gt; &amp; last:") for name in names)
 
 
-def test_no_figure_offers_to_be_uploaded(compare_page: Path, look: Look) -> None:
+def test_no_figure_offers_to_be_uploaded(seen: dict[str, list[Any]]) -> None:
     """Plotly 4 does so, if it is not told otherwise."""
-    visit = look(
-        compare_page,
-        UNDRAWN,
-        FIGURES,
-        "[...document.querySelectorAll('.modebar-btn')].map(item => item.dataset.title)",
-        "[...document.querySelectorAll('.figure')].map(item => item._context.plotlyServerURL)",
-    )
-    assert_well_drawn(visit)
-    buttons, addresses = visit.answers[2:]
+    buttons, addresses = seen["uploads"]
     assert "Zoom" in buttons
     assert not [title for title in buttons if re.search("share|upload|cloud|edit", title, re.I)]
     assert set(addresses) == {""}
+
+
+def test_every_figure_has_a_label_and_every_choice_too(seen: dict[str, list[Any]]) -> None:
+    assert seen["labels"] == ALL_LABELLED
 
 
 def test_what_is_looked_at_is_drawn_first(compare_page: Path, look: Look) -> None:
@@ -175,24 +195,6 @@ def test_keys_move_and_zoom_a_figure(compare_page: Path, look: Look) -> None:
     assert focus == "figure-path"
 
 
-def test_every_figure_has_a_label_and_every_choice_too(
-    compare_page: Path, diagnosis_page: Path, look: Look
-) -> None:
-    for page in (compare_page, diagnosis_page):
-        visit = look(
-            page,
-            UNDRAWN,
-            FIGURES,
-            "[...document.querySelectorAll('.figure, svg.sketch')]"
-            ".filter(f => !(f.getAttribute('aria-label') || '').length).length",
-            "[...document.querySelectorAll('select')].filter(s => !s.labels.length).length",
-            "[...document.querySelectorAll('.figure')].filter(f => f.tabIndex !== 0).length",
-            "document.documentElement.lang",
-        )
-        assert_well_drawn(visit)
-        assert visit.answers[2:] == [0, 0, 0, "en"]
-
-
 def test_the_evidence_map_is_there_and_a_click_opens_the_dependence(
     diagnosis_page: Path, look: Look
 ) -> None:
@@ -216,6 +218,7 @@ def test_the_evidence_map_is_there_and_a_click_opens_the_dependence(
         "f.emit('plotly_click', {points: [{customdata: custom}]}); "
         "return new Promise(done => setTimeout(() => done("
         "[String(custom[3]), document.querySelector('select[data-for=cell]').value]), 1500)); })()",
+        *LABELS,
     )
     assert_well_drawn(visit)
     assert visit.answers[2] == ["left", "left wheel's angle"]
@@ -223,6 +226,7 @@ def test_the_evidence_map_is_there_and_a_click_opens_the_dependence(
     assert visit.answers[5] == "3"
     asked, shown = visit.answers[6]
     assert asked == shown
+    assert visit.answers[7:] == ALL_LABELLED
 
 
 def test_the_effect_added_draws_itself(added: Added, tmp_path: Path, look: Look) -> None:

@@ -53,7 +53,7 @@ def held(tmp_path: Path) -> Iterator[tuple[str, int]]:
         process.communicate()
 
 
-@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("scheme", ["light", pytest.param("dark", marks=pytest.mark.evidence)])
 def test_paths_and_progress_are_there_before_anything_is_compared(
     held: tuple[str, int], browser: Any, scheme: str
 ) -> None:

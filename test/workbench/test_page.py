@@ -45,7 +45,11 @@ def press(looked: Looked, key: str, how: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("how", "file"), [("clicks", "robot_new.yaml"), ("keys", "robot_new_2.yaml")]
+    ("how", "file"),
+    [
+        ("clicks", "robot_new.yaml"),
+        pytest.param("keys", "robot_new_2.yaml", marks=pytest.mark.evidence),
+    ],
 )
 def test_the_hidden_effect_is_found_added_and_saved(
     looked: Looked, another: Looked, served: Served, how: str, file: str

@@ -8,7 +8,7 @@ import re
 import time
 from collections import deque
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.errors import InputError
@@ -198,7 +198,6 @@ def _connected(address: str, patience: float) -> Iterator[Client]:
         )
     try:
         import dask
-        from distributed import Client
         from distributed import TimeoutError as LateError
     except ModuleNotFoundError as missing:
         raise InputError(
@@ -208,7 +207,7 @@ def _connected(address: str, patience: float) -> Iterator[Client]:
     # A robot's drives are what is sent, once: there is nothing better to advise.
     with dask.config.set({"distributed.admin.large-graph-warning-threshold": "16 GiB"}):
         try:
-            client = Client(address, timeout=patience, set_as_default=False)
+            client = _client(address, patience)
         except (OSError, ValueError, TypeError, RuntimeError, LateError) as error:
             said = " ".join(str(error).split())
             raise InputError(
@@ -219,6 +218,26 @@ def _connected(address: str, patience: float) -> Iterator[Client]:
             yield client
         finally:
             client.close(timeout=5.0)
+
+
+def _client(address: str, patience: float) -> Client:
+    """A client that closes itself when it does not get through.
+
+    Dask leaves that to the garbage collector, which may come while another client starts its loop:
+    both want the same lock, of one thread, and nothing moves any more.
+    """
+    from distributed import Client as DaskClient
+
+    class Closing(DaskClient):  # type: ignore[misc]
+        def start(self, **how: Any) -> None:
+            try:
+                super().start(**how)
+            except BaseException:
+                with suppress(Exception):
+                    self.close(timeout=5.0)
+                raise
+
+    return Closing(address, timeout=patience, set_as_default=False)
 
 
 def _submitted(
