@@ -166,6 +166,7 @@ def complaint(path: Path, text: str | bytes) -> str:
         (GOOD + "---\n" + GOOD, ", line 7: a second document begins"),
         (GOOD.encode() + b"    # \xff\n", ", line 7: byte 0xff is not UTF-8"),
         (GOOD + "\0", ": this is not YAML"),
+        (GOOD.replace(" 0.05", "  # m\n      0.05\n\n"), ", line 4: a comment between a key and"),
     ],
 )
 def test_wrong_files(tmp_path: Path, text: str | bytes, said: str) -> None:

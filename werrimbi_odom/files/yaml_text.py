@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import Any
 
@@ -72,6 +73,13 @@ def load(text: str, path: Path) -> CommentedMap:
         where = f", line {mark.line + 1}" if mark is not None else ""
         problem = " ".join(str(error.problem or error.context).split())
         raise InputError(f"{path}{where}: this is not YAML: {problem}") from None
+    except NotImplementedError as error:  # ruamel keeps comments, but not in every place
+        found = re.search(r"line: (\d+)", str(error))
+        where = f", line {int(found[1]) + 1}" if found else ""
+        raise InputError(
+            f"{path}{where}: a comment between a key and its value cannot be kept; put it on a "
+            "line above them"
+        ) from None
     except (
         YAMLError,
         ValueError,
