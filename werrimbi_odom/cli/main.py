@@ -47,6 +47,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     argv : sequence of str, optional
         What follows the command's name; by default what the process was given.
     """
+    # Before numpy is there, for our matrices are small: two threads of OpenBLAS wait for each other
+    # more than they work, the longer the busier the machine (the workbench, with its browser).
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     words = sys.argv[1:] if argv is None else list(argv)
     verb = "werrimbi"
     try:
