@@ -92,6 +92,15 @@ def test_a_table_to_a_robot_file(desk: Path, capsys: pytest.CaptureFixture[str])
         assert words in said
 
 
+def test_squares_that_do_not_scatter_are_told_without_a_spread(
+    desk: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = "cw,0.032,0.031\n" * 2 + "ccw,0.097,-0.094\n" * 2
+    (desk / "same.csv").write_text(f"sense,x_m,y_m\n{rows}", encoding="utf-8")
+    assert umbmark(desk, table="same.csv") == 0
+    assert "closer together than the robot file says" in " ".join(capsys.readouterr().out.split())
+
+
 def test_a_second_table_says_what_was_gained(
     desk: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -32,8 +32,13 @@ def with_std(value: float, std: float) -> str:
 
 
 def scaled_with_std(value: float, std: float, unit: str = "") -> str:
-    """Value, standard deviation and unit, with a power of ten where the value is small or large."""
+    """Value, standard deviation and unit, with a power of ten where the value is small or large.
+
+    The value alone where there is no standard deviation: zero, infinite, or not a number.
+    """
     behind = f" {unit}" if unit else ""
+    if not 0.0 < std < math.inf:
+        return f"{value:g}{behind}"
     power = math.floor(math.log10(std)) - 1
     size = math.floor(math.log10(max(abs(value), std)))
     if power >= -5 and size < 6:

@@ -59,9 +59,8 @@ def value_told(item: FittedParameter) -> str:
     """A value with its standard deviation, to the digits that this leaves, and its unit."""
     if item.value is None:
         return "another one in each drive"
-    if item.std is None or not 0.0 < item.std < math.inf:
-        return f"{item.value:g} {item.declared.unit}".rstrip()
-    return scaled_with_std(item.value, item.std, item.declared.unit)
+    std = math.nan if item.std is None else item.std
+    return scaled_with_std(item.value, std, item.declared.unit)
 
 
 def remark_told(item: FittedParameter) -> str:

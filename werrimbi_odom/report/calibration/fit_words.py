@@ -55,7 +55,7 @@ def _values(result: Calibration) -> str:
         unit = _UNITS.get(name, "rad")
         before = getattr(result.fit.robot, name, None)
         value = f"not determined (below {2.0 * noise.std:.0e} {unit})"
-        if noise.determined and result.trusted and noise.std > 0.0:
+        if noise.determined and result.trusted:
             value = scaled_with_std(noise.value, noise.std, unit)
         elif noise.determined:
             value = f"{noise.value:.2e} {unit}"
