@@ -52,15 +52,8 @@ def main() -> None:
         run("compare", *drives(data), "--report", "compare.html")
         run("add", "eccentric_left_wheel", *drives(data), *held_out(data),
             "--out", "new.yaml", "--report", "add.html")  # fmt: skip
-        run(
-            "calibrate",
-            "fit",
-            *drives(Path("calibration")),
-            "--out",
-            "fit.yaml",
-            "--report",
-            "fit.html",
-        )
+        run("calibrate", "fit", *drives(Path("calibration")),
+            "--out", "fit.yaml", "--report", "fit.html")  # fmt: skip
         robot = ("--robot", "none/robot.yaml")
         Path("SQUARES.csv").write_text(SQUARES)
         run("calibrate", "umbmark", "SQUARES.csv", "--side", "4", *robot,

@@ -69,11 +69,9 @@ def run(arguments: argparse.Namespace) -> int:
     again = recomputed(squares, old, result.factors) if squares.driven_cw else None
     multipliers = result.multipliers(old)
 
-    words = [
-        found_in_words(squares, result, old),
-        gained_in_words(result, squares, later, again),
-    ]
-    print("\n\n".join(words))
+    found = found_in_words(squares, result, old)
+    words = f"{found}\n\n{gained_in_words(result, squares, later, again)}"
+    print(words)
 
     shown, name = (later, "after") if later else (again, "same runs, corrected")
     gain = f", {1e3 * e_max_syst(shown):.1f} mm {name}" if shown else ""
@@ -91,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
         _json(squares, result, old, later, again),
         figure,
         title="UMBmark: base and radii from squares",
-        words="\n\n".join(words),
+        words=words,
         see="Where squares ended, clockwise and anticlockwise, measured minus odometry. After the "
         "calibration both clouds should lie about the origin; the circle is the larger offset.",
     )

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import argparse
 import shlex
-import textwrap
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -128,6 +127,8 @@ def _write(folder: Path, files: dict[str, str]) -> None:
 
 
 def _words(draft: Draft, tried: Added) -> str:
+    from werrimbi_odom.report.printed import filled
+
     cell, sides = draft.dependence, tried.holdout.sides
     text = (
         f"No effect of the library explains these drives. Their {cell.channel} error goes with "
@@ -137,7 +138,7 @@ def _words(draft: Draft, tried: Added) -> str:
         f"legs of {tried.holdout.after.leg:g} m). Why it is so, the data cannot know: read the "
         "law, find the physics, give it its name."
     )
-    return textwrap.fill(text, 80, break_on_hyphens=False, break_long_words=False)
+    return filled(text)
 
 
 def _next(arguments: argparse.Namespace, draft: Draft, given: Recordings) -> str:

@@ -8,8 +8,7 @@ import html
 import re
 import textwrap
 
-WIDTH = 80
-"""Columns that printed words are filled to."""
+from werrimbi_odom.report.printed import WIDTH
 
 _WITH_SPREAD = re.compile(r"\(?[-\d.]+ ± [\d.]+\)?(?:e-?\d+)?")
 

@@ -13,9 +13,8 @@ from werrimbi_odom.inference.adding.values import FittedParameter
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.report.numbers import scaled_with_std
-from werrimbi_odom.report.text_table import table
+from werrimbi_odom.report.printed import WIDTH, filled, table
 
-WIDTH = 80
 _HONEST = (0.8, 1.25)  # NEES
 
 
@@ -38,7 +37,7 @@ def _headline(added: Added) -> str:
         text += f" Put right with it, as one set-up: {', '.join(added.also)}."
     if added.objection is not None:
         text += f" Forced, against this objection: {added.objection}."
-    return _filled(text)
+    return filled(text)
 
 
 def _parameters(added: Added) -> str:
@@ -48,7 +47,7 @@ def _parameters(added: Added) -> str:
         told = item.declared.says + remark_told(item)
         lines.append(textwrap.fill(told, WIDTH, initial_indent="    ", subsequent_indent="    "))
     if added.effect.name in CALIBRATED:
-        lines += ["", _filled("It is written as the robot file's own multipliers:")]
+        lines += ["", filled("It is written as the robot file's own multipliers:")]
         for name in MULTIPLIERS:
             before, after = getattr(added.given, name), getattr(added.robot, name)
             lines.append(f"  {name}: {before:.6g} -> {after:.6g}")
@@ -109,7 +108,7 @@ def _remarks(added: Added) -> list[str]:
         )
     else:
         texts.append("The written values are fitted on RUN alone; --holdout only judged them.")
-    return ["\n".join(_filled(text) for text in texts)]
+    return ["\n".join(filled(text) for text in texts)]
 
 
 def _rest(added: Added) -> str:
@@ -148,10 +147,6 @@ def _noise(added: Added) -> str:
 def _mm(metres: float) -> str:
     value = 1e3 * metres
     return f"{value:.2f}" if value < 100.0 else f"{value:.0f}"
-
-
-def _filled(text: str) -> str:
-    return textwrap.fill(text, WIDTH, break_long_words=False, break_on_hyphens=False)
 
 
 def json_of(added: Added) -> dict[str, Any]:

@@ -4,17 +4,19 @@
 
 from __future__ import annotations
 
-import textwrap
-
 from werrimbi_odom.inference.calibration.any_driving import Calibration
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
 from werrimbi_odom.report.numbers import scaled_with_std
-from werrimbi_odom.report.text_table import table
+from werrimbi_odom.report.printed import filled, table
 
-WIDTH = 80
 _MOST = 3  # dependences that are told
-_UNITS = {"left_wheel_noise": "m^0.5", "right_wheel_noise": "m^0.5", "reference_sigma_xy": "m"}
+_UNITS = {
+    "left_wheel_noise": "m^0.5",
+    "right_wheel_noise": "m^0.5",
+    "reference_sigma_xy": "m",
+    "reference_sigma_yaw": "rad",
+}
 
 
 def fit_in_words(result: Calibration) -> str:
@@ -25,7 +27,7 @@ def fit_in_words(result: Calibration) -> str:
         parts.append(f"{left_out} legs on which the reference jumped were left out.")
     if not result.trusted:
         parts.append(
-            _filled(
+            filled(
                 "These values are the best of a model that does not fit, so they have no error "
                 "bars. `werrimbi diagnose` says which physical effect explains the drives, or what "
                 "is set up wrongly: how the reference is mounted, its axes, its clock."
@@ -41,7 +43,7 @@ def _verdict(result: Calibration) -> str:
     lines += [f"- {words}." for words in result.strange]
     strongest = ordered_cells(result.misfit)[:_MOST]
     lines += [f"- {_capital(dependence_words(cell))}." for cell in strongest]
-    return "\n".join(_filled(line) for line in lines)
+    return "\n".join(filled(line) for line in lines)
 
 
 def _values(result: Calibration) -> str:
@@ -52,7 +54,7 @@ def _values(result: Calibration) -> str:
             value += f" ± {item.std:.6f}"
         rows.append([name, f"{item.before:.6f}", value if item.determined else "not determined"])
     for name, noise in result.noises.items():
-        unit = _UNITS.get(name, "rad")
+        unit = _UNITS[name]
         before = getattr(result.fit.robot, name, None)
         value = f"not determined (below {2.0 * noise.std:.0e} {unit})"
         if noise.determined and result.trusted:
@@ -65,13 +67,3 @@ def _values(result: Calibration) -> str:
 
 def _capital(words: str) -> str:
     return words[0].upper() + words[1:]
-
-
-def _filled(text: str) -> str:
-    return textwrap.fill(
-        text,
-        WIDTH,
-        subsequent_indent="  " if text.startswith("- ") else "",
-        break_long_words=False,
-        break_on_hyphens=False,
-    )

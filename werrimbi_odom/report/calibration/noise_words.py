@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-import textwrap
-
 import numpy as np
 
 from werrimbi_odom.inference.calibration.out_and_back import (
@@ -16,9 +14,8 @@ from werrimbi_odom.inference.calibration.out_and_back import (
     pivot_scatter,
 )
 from werrimbi_odom.report.numbers import scaled_with_std
-from werrimbi_odom.report.text_table import table
+from werrimbi_odom.report.printed import filled, table
 
-WIDTH = 80
 PIVOT_TURNS = 10.0
 
 
@@ -41,12 +38,8 @@ def noise_in_words(fit: NoiseFit, distance: float, track: float, *, turn_round: 
         sentences.append(
             f"{ADVISED_RUNS} runs would tell each k to about 15 %; here are {fit.runs}."
         )
-    parts = [_filled(_verdict(fit)), table(title, heads, rows), *map(_filled, sentences)]
+    parts = [filled(_verdict(fit)), table(title, heads, rows), *map(filled, sentences)]
     return "\n\n".join(parts)
-
-
-def _filled(text: str) -> str:
-    return textwrap.fill(text, WIDTH, break_long_words=False, break_on_hyphens=False)
 
 
 def _wheel(side: str, estimate: NoiseEstimate, matched: float) -> list[str]:

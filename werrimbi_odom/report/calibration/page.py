@@ -58,7 +58,7 @@ def on_a_page(figure: go.Figure) -> go.Figure:
 
 def written_table(changes: Mapping[str, tuple[float, float]]) -> str:
     """Parameters before and after, as a plain table."""
-    from werrimbi_odom.report.text_table import table
+    from werrimbi_odom.report.printed import table
 
     if not changes:
         return ""

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import math
-import textwrap
 
 from werrimbi_odom.inference.calibration.squares import (
     ADVISED_RUNS,
@@ -18,10 +17,9 @@ from werrimbi_odom.inference.calibration.umbmark import NORMAL_95, Estimate, Umb
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.numbers import scaled_with_std
-from werrimbi_odom.report.text_table import table
+from werrimbi_odom.report.printed import filled, table
 
 DOUBTFUL_P = 0.01
-WIDTH = 80
 
 
 def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> str:
@@ -35,12 +33,12 @@ def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> str:
         ),
         _angles(result),
         _factors(result, old),
-        _filled(
+        filled(
             "What is written is exact; the paper's equations are of first order. A factor common "
             "to both radii does not show in squares: compare a long straight line with a tape."
         ),
     ]
-    return "\n\n".join([*parts, *(_filled(doubt) for doubt in _doubts(squares, result))])
+    return "\n\n".join([*parts, *(filled(doubt) for doubt in _doubts(squares, result))])
 
 
 def _verdict(squares: Squares, result: Umbmark) -> str:
@@ -48,12 +46,12 @@ def _verdict(squares: Squares, result: Umbmark) -> str:
     base_off, radii_off = _significant(base, 1.0), _significant(ratio, 1.0)
     size = f"E_max,syst is {_mm(result.e_max)} mm on squares of {squares.side:g} m"
     if not (base_off or radii_off):
-        return _filled(
+        return filled(
             f"Base and radii were right, as far as these squares can tell: {size}, no more than "
             "the scatter of the runs explains."
         )
     what = "Base and radii are" if base_off and radii_off else "The base is"
-    lines = [_filled(f"{what if base_off else 'The radii are'} off: {size}.")]
+    lines = [f"{what if base_off else 'The radii are'} off: {size}."]
     if base_off:
         large = base.value > 1.0
         lines.append(
@@ -66,7 +64,7 @@ def _verdict(squares: Squares, result: Umbmark) -> str:
             f"- The {larger} wheel is larger against the other than the file says, by "
             f"{_share(ratio)}: what should be straight bends to the {bend}."
         )
-    return "\n".join(textwrap.fill(line, WIDTH, subsequent_indent="  ") for line in lines)
+    return "\n".join(map(filled, lines))
 
 
 def _centre(sense: str, offsets: Floats) -> list[str]:
@@ -165,7 +163,7 @@ def gained_in_words(
         [f"this robot, {when}, {squares.side:g} m", f"{size:.{1 if size < 10.0 else 0}f} mm"]
     )
     others = table("Others on squares of 4 m", ("", "E_max,syst"), rows)
-    return "\n\n".join([_filled(" ".join(parts)), others])
+    return "\n\n".join([filled(" ".join(parts)), others])
 
 
 def _significant(estimate: Estimate, null: float) -> bool:
@@ -175,10 +173,6 @@ def _significant(estimate: Estimate, null: float) -> bool:
 def _share(factor: Estimate) -> str:
     """How far a factor is from 1."""
     return f"{scaled_with_std(100.0 * abs(factor.value - 1.0), 100.0 * factor.std)} %"
-
-
-def _filled(text: str) -> str:
-    return textwrap.fill(text, WIDTH, break_long_words=False, break_on_hyphens=False)
 
 
 def _mm(length: float) -> str:

@@ -5,14 +5,12 @@
 from __future__ import annotations
 
 import math
-import textwrap
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.comparison.groups import DEPENDS_P, ByVariable
 from werrimbi_odom.inference.comparison.verdict import verdict_of
-from werrimbi_odom.report.text_table import table
+from werrimbi_odom.report.printed import filled, table
 
-WIDTH = 80
 _MOST = 3  # variables with a table of their own
 _NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
 _FIGURES = ("legs", "position", "heading", "NEES", "inside 95 %")
@@ -29,7 +27,7 @@ def tables_of(comparison: Comparison) -> str:
     calm = [item.name.split(" [")[0] for item in comparison.variables if not _depends(item)]
     if calm:
         told = f"The errors are not seen to go with: {', '.join(calm)}."
-        tables.append(textwrap.fill(told, WIDTH))
+        tables.append(filled(told))
     return "\n\n".join(tables)
 
 

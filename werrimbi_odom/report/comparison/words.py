@@ -5,13 +5,11 @@
 from __future__ import annotations
 
 import math
-import textwrap
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
 from werrimbi_odom.inference.comparison.verdict import FEWEST, Depends, Verdict, verdict_of
 from werrimbi_odom.report.comparison.phrases import systematic_told
-
-WIDTH = 80
+from werrimbi_odom.report.printed import filled
 
 NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
 _FEW = 0.6  # of the squared errors, held by a twentieth of the legs
@@ -48,14 +46,7 @@ def words_of(
             paragraphs += _covariance(comparison, verdict)
     paragraphs += _reference(comparison)
     paragraphs.append(_next(verdict, next_step))
-    return "\n".join(_filled(text) for text in paragraphs if text)
-
-
-def _filled(text: str) -> str:
-    hanging = "  " if text.startswith("- ") else ""
-    return textwrap.fill(
-        text, WIDTH, subsequent_indent=hanging, break_long_words=False, break_on_hyphens=False
-    )
+    return "\n".join(filled(text) for text in paragraphs if text)
 
 
 def _headline(comparison: Comparison, verdict: Verdict) -> str:

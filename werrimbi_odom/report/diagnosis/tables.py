@@ -12,7 +12,7 @@ from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.manoeuvres.sight import Sight
 from werrimbi_odom.report.diagnosis.values import values_of
 from werrimbi_odom.report.numbers import length, p_words, with_std
-from werrimbi_odom.report.text_table import table
+from werrimbi_odom.report.printed import table
 
 _RANKED = 8
 _MAPPED = 10

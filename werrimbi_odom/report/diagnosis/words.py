@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, chance
@@ -25,10 +24,9 @@ from werrimbi_odom.report.diagnosis.phrases import (
 )
 from werrimbi_odom.report.diagnosis.values import effect_named
 from werrimbi_odom.report.numbers import chance_words, length, listed
+from werrimbi_odom.report.printed import filled
 
 __all__ = ["NextSteps", "Told", "words_of"]
-
-WIDTH = 80
 
 
 @dataclass(frozen=True)
@@ -60,10 +58,7 @@ def _filled(text: str) -> str:
         return text.rstrip()
     first, _, _ = text.partition(": ")
     head = first in _HEADS or first.startswith("Check ")
-    hanging = "  " if text.startswith("- ") or head else ""
-    return textwrap.fill(
-        text, WIDTH, subsequent_indent=hanging, break_long_words=False, break_on_hyphens=False
-    )
+    return filled(text, hanging=head)
 
 
 _HEADS = ("What it is", "How large", "How sure", "What it costs", "Check it", "Next", "But", "Why")

@@ -5,14 +5,13 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from werrimbi_odom.report.fleet.rows import ERROR, Fleet, Row, believed
 from werrimbi_odom.report.numbers import listed, with_std
+from werrimbi_odom.report.printed import filled
 
-WIDTH = 80
 _GROUPS = 6
 """Different things missing that are counted in the first sentence."""
 _NAMED = 8
@@ -24,16 +23,7 @@ _TOLD = 10
 def words_of(fleet: Fleet) -> str:
     """All sentences, filled to 80 columns."""
     lines = [headline(fleet), *_shared(fleet), *_alone(fleet), *_errors(fleet), *_left(fleet)]
-    return "\n".join(
-        textwrap.fill(
-            line,
-            WIDTH,
-            subsequent_indent="  " if line.startswith("- ") else "",
-            break_long_words=False,
-            break_on_hyphens=False,
-        )
-        for line in lines
-    )
+    return "\n".join(map(filled, lines))
 
 
 def headline(fleet: Fleet) -> str:

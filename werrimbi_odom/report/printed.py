@@ -1,10 +1,25 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A table in plain text, as it is printed; `page_text` makes it one of a page."""
+"""Plain text as it is printed: filled sentences, and tables; `page_text` makes HTML of it."""
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
+
+WIDTH = 80
+"""Columns that printed words are filled to."""
+
+
+def filled(text: str, *, hanging: bool = False) -> str:
+    """A paragraph; what begins with "- " hangs, and others on request."""
+    return textwrap.fill(
+        text,
+        WIDTH,
+        subsequent_indent="  " if hanging or text.startswith("- ") else "",
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
 
 
 def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
