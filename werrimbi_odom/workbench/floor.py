@@ -135,16 +135,12 @@ def leg_told(comparison: Comparison, index: int) -> str:
 def _lines(comparison: Comparison) -> list[tuple[Floats, Floats]]:
     """The measured path of every leg, thinned."""
     legs, paths = comparison.legs, comparison.paths
-    times: dict[int, Floats] = {}
-    for group in comparison.prepared.groups:
-        for index, run in zip(group.index, group.every.runs, strict=True):
-            times[index] = run.measured.time
     total = sum(path.measured.size for path in paths)
     every = max(1, total // _POINTS)
     lines = []
     for run, begin, end in zip(legs.run, legs.start_time, legs.end_time, strict=True):
-        time, measured = times[int(run)], paths[int(run)].measured
-        first, last = np.searchsorted(time, [begin, end])
+        measured = paths[int(run)].measured
+        first, last = np.searchsorted(paths[int(run)].time, [begin, end])
         places = np.unique(np.append(np.arange(first, last + 1, every), last))
         points = measured[places[places < measured.size]]
         points = points[np.isfinite(points)]

@@ -111,7 +111,9 @@ class Job:
             self.ask(given)
         process, receiving = self._process, self._pipe
         try:
-            return self._received(receiving, known, collection)
+            result = self._received(receiving, known, collection)
+            process.kill()  # it has nothing left to do, and would take its time to end
+            return result
         except (EOFError, OSError):  # what it had not read yet makes it a reset, not an end
             if self.cancelled:
                 raise CancelledError from None

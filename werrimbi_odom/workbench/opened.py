@@ -11,12 +11,11 @@ from pathlib import Path
 from werrimbi_odom.files.asked import Judging
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison, judged
-from werrimbi_odom.inference.comparison.judged_legs import Prepared
+from werrimbi_odom.inference.comparison.judged_legs import Prepared, finely
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.holdout import judge_of, known_at_home
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.matching import match_finely
-from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.robot import Robot
 
 Show = Callable[[float, str], None]
@@ -101,10 +100,9 @@ def opened(given: Given) -> Opened:
     """
     robot, judging = given.robot, given.judging
     judge = judge_of(given.runs, given.holdout, robot, **judging)
-    fine = match_finely(judge.fitted_on, robot, judging["leg"], judging["limits"])
     return Opened(
         given,
-        Drives(judge.train, together(fine)),
+        Drives(judge.train, finely(judge.train, judging["limits"])),
         Drives(judge.holdout, judge.fine),
         tuple(run.name for run in judge.kept_back),
     )

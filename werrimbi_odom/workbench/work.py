@@ -12,10 +12,11 @@ import os
 import signal
 from collections.abc import Mapping
 from multiprocessing.connection import Connection
-from typing import Any
+from typing import Any, get_args
 
 from werrimbi_odom.effects.collection import Collection, all_effects
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference.comparison.reference_noise import Measure
 from werrimbi_odom.workbench.crossing import packed, unpacked
 from werrimbi_odom.workbench.opened import Given, Opened, Show, opened
 from werrimbi_odom.workbench.tasks import Diagnose, Open, Task
@@ -34,15 +35,18 @@ def known_before(given: Given) -> Mapping[str, Any]:
 
 def left_there(opened: Opened) -> Mapping[str, Any]:
     """Most of what was cut: whoever compares cuts it himself, and the page does without."""
-    return {
-        "cuts": opened.train.prepared.cuts,
-        "holdout cuts": opened.holdout.prepared.cuts,
-        "fine": opened.train.fine,
-        "holdout fine": opened.holdout.fine,
-    }
+    there: dict[str, Any] = {}
+    for side, drives in (("train", opened.train), ("holdout", opened.holdout)):
+        there |= {f"{side} cuts": drives.prepared.cuts, f"{side} fine": drives.fine}
+        there |= {f"{side} {group.measure}": group.every for group in drives.prepared.groups}
+    return there
 
 
-NOT_SENT: Mapping[str, Any] = {"cuts": {}, "holdout cuts": {}, "fine": None, "holdout fine": None}
+NOT_SENT: Mapping[str, Any] = {
+    f"{side} {what}": {} if what == "cuts" else None
+    for side in ("train", "holdout")
+    for what in ("cuts", "fine", *get_args(Measure))
+}
 """What the page has for `left_there`."""
 
 

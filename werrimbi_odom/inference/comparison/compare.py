@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.groups import ByVariable, Cell, by_variables, cells_of
@@ -28,7 +29,7 @@ from werrimbi_odom.inference.comparison.reference_noise import Residual
 from werrimbi_odom.inference.comparison.systematic import (
     NoiseFactor,
     Systematic,
-    noise_factor,
+    noise_factors,
     systematic_parts,
 )
 from werrimbi_odom.inference.fitting.knobs import Model
@@ -166,19 +167,17 @@ def judged(
         systematic, left = systematic_parts(legs.errors.chosen(~legs.outlier))
         spread = np.full(legs.errors.error.shape, np.nan)
         spread[~legs.outlier] = left
-        motions = {kind: legs.errors.kind == kind for kind in KINDS}
-        lengths.append(
-            OfLength(
-                leg,
-                _figures(legs, spread, np.ones(legs.run.size, dtype=np.bool_)),
-                {kind: _figures(legs, spread, which) for kind, which in motions.items()},
-                systematic,
-            )
-        )
+        groups = [np.ones(legs.run.size, dtype=np.bool_)]
+        groups += [legs.errors.kind == kind for kind in KINDS]
         if leg == prepared.leg:
-            main = legs, spread
+            groups += [legs.run == index for index in range(len(prepared.runs))]
+        whole, *others = _figures(legs, spread, np.array(groups))
+        by_motion = dict(zip(KINDS, others, strict=False))
+        lengths.append(OfLength(leg, whole, by_motion, systematic))
+        if leg == prepared.leg:
+            main = legs, spread, others[len(KINDS) :]
     assert main is not None
-    legs, spread = main
+    legs, spread, of_runs = main
     driven = paths(prepared, model)
     kept = ~legs.outlier
     chosen = legs.errors.chosen(kept)
@@ -186,7 +185,7 @@ def judged(
         prepared,
         model,
         tuple(
-            _run_figures(run, driven[index], legs, spread, index, model.of_run(index))
+            _run_figures(run, driven[index], of_runs[index], model.of_run(index))
             for index, run in enumerate(prepared.runs)
         ),
         tuple(lengths),
@@ -206,7 +205,19 @@ def judged(
     )
 
 
-def _figures(legs: Legs, left: Floats, which: np.ndarray) -> LegFigures:
+def _figures(legs: Legs, left: Floats, groups: NDArray[np.bool_]) -> list[LegFigures]:
+    """Figures of groups of legs, each a row of a mask (g, m)."""
+    errors = legs.errors
+    factors = noise_factors(left, errors.covariance, errors.wheels, groups & ~legs.outlier)
+    return [
+        _figures_of(legs, left, which, factor)
+        for which, factor in zip(groups, factors, strict=True)
+    ]
+
+
+def _figures_of(
+    legs: Legs, left: Floats, which: NDArray[np.bool_], noise: NoiseFactor
+) -> LegFigures:
     kept = which & ~legs.outlier
     every, chosen = legs.errors.chosen(which), legs.errors.chosen(kept)
     figures, whole = statistics(chosen), statistics(every)
@@ -225,13 +236,11 @@ def _figures(legs: Legs, left: Floats, which: np.ndarray) -> LegFigures:
         int((which & legs.outlier).sum()),
         root_mean_square(every.distance),
         float(scatter),
-        noise_factor(spread, chosen.covariance, chosen.wheels),
+        noise,
     )
 
 
-def _run_figures(
-    run: Run, path: Residual, legs: Legs, left: Floats, index: int, robot: Robot
-) -> RunFigures:
+def _run_figures(run: Run, path: Residual, legs: LegFigures, robot: Robot) -> RunFigures:
     off = np.abs(path.measured - path.predicted)
     known = np.flatnonzero(np.isfinite(off))
     turned = np.flatnonzero(np.isfinite(path.measured_yaw))
@@ -247,5 +256,5 @@ def _run_figures(
         float(off[known[-1]]) if known.size else np.nan,
         wrap(float(path.measured_yaw[last] - path.predicted_yaw[last])) if last else np.nan,
         root_mean_square(off),
-        _figures(legs, left, legs.run == index),
+        legs,
     )

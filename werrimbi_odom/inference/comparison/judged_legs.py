@@ -28,7 +28,14 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     residuals_of,
 )
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.matching import QUARTER_TURN, MatchedRun, cut, every_pose
+from werrimbi_odom.inference.fitting.matching import (
+    QUARTER_TURN,
+    MatchedRun,
+    cut,
+    cut_finely,
+    every_pose,
+    match_finely,
+)
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
@@ -80,6 +87,8 @@ class _Group:
     index: tuple[int, ...]
     measure: Measure
     every: Together
+    whole: tuple[bool, ...]
+    """Whether all rows of a run's reference are in `every`."""
     jumps: tuple[Floats, ...]
     noise: ReferenceNoise
     sigma_xy: Floats
@@ -132,11 +141,12 @@ def prepare(
     InputError
         When a run has no usable reference or no ticks.
     """
-    members: dict[Measure, list[tuple[int, MatchedRun]]] = {}
+    members: dict[Measure, list[tuple[int, MatchedRun, bool]]] = {}
     for index, run in enumerate(runs):
         show(0.5 * index / len(runs), f"matching {run.name}")
         alike, measure = measured_alike(run)
-        members.setdefault(measure, []).append((index, every_pose(alike, robot, limits)))
+        every = every_pose(alike, robot, limits)
+        members.setdefault(measure, []).append((index, every, alike is run))
     groups = tuple(
         _group(robot, measure, found, kind, sigma_xy, sigma_yaw)
         for measure, found in members.items()
@@ -158,15 +168,29 @@ def prepare(
     return Prepared(robot, kind, leg, tuple(runs), groups, cuts)
 
 
+def finely(prepared: Prepared, limits: EncoderLimits | None = None) -> Together:
+    """Cut the runs into the short legs of a fit: what `match_finely` does, from what is there."""
+    found: dict[int, MatchedRun] = {}
+    for group in prepared.groups:
+        for index, every, whole in zip(group.index, group.every.runs, group.whole, strict=True):
+            if whole:
+                found[index] = cut_finely(every, prepared.robot, prepared.leg)
+            else:
+                [found[index]] = match_finely(
+                    [prepared.runs[index]], prepared.robot, prepared.leg, limits
+                )
+    return together([found[index] for index in range(len(prepared.runs))])
+
+
 def _group(
     robot: Robot,
     measure: Measure,
-    members: list[tuple[int, MatchedRun]],
+    members: list[tuple[int, MatchedRun, bool]],
     kind: ReferenceKind,
     sigma_xy: float | None,
     sigma_yaw: float | None,
 ) -> _Group:
-    every = together([run for _, run in members])
+    every = together([run for _, run, _ in members])
     plain = Model(robot, tuple({} for _ in members))
     residuals, _ = residuals_of(plain, every, measure)
     estimated = reference_noise(robot, residuals, kind)
@@ -177,9 +201,10 @@ def _group(
         sigma_yaw, [run.sigma_yaw for run in every.runs], estimated[1], USUAL_SIGMA_YAW
     )
     return _Group(
-        tuple(index for index, _ in members),
+        tuple(index for index, _, _ in members),
         measure,
         every,
+        tuple(whole for _, _, whole in members),
         tuple(jumps_of(residual) for residual in residuals),
         ReferenceNoise(position, heading, told, yaw_told),
         of_position,

@@ -44,6 +44,8 @@ _NORMAL = 1.4826  # from median deviation to standard deviation
 class Residual:
     """Measured and predicted path of one run, at every reference pose; arrays of shape (n,)."""
 
+    time: Floats
+    """The reference's stamps [s]."""
     measured: NDArray[np.complex128]
     """x + iy, frame right-handed; NaN where not measured [m]."""
     measured_yaw: Floats
@@ -60,7 +62,8 @@ class Residual:
 def measured_alike(run: Run) -> tuple[Run, Measure]:
     """What most rows of the reference measure, and the run with the other rows left out.
 
-    Positions without headings keep the heading of the first row, where it was measured.
+    Where there are none to leave out it is the run itself. Positions without headings keep the
+    heading of the first row, where it was measured.
     """
     reference = run.reference
     if reference is None:
@@ -68,7 +71,8 @@ def measured_alike(run: Run) -> tuple[Run, Measure]:
     position, yaw = reference.has_position, reference.has_yaw
     both = position & yaw
     if both.sum() >= max(2, 0.5 * max(position.sum(), yaw.sum())):
-        return replace(run, reference=_rows(reference, both)), "pose"
+        whole = bool(both.all())
+        return run if whole else replace(run, reference=_rows(reference, both)), "pose"
     if position.sum() >= max(2, yaw.sum()):
         kept = _rows(reference, position)
         start = np.where(np.arange(kept.yaw.size) == 0, kept.yaw, np.nan)
@@ -112,7 +116,7 @@ def residuals_of(
         poses = right_handed(poses, view)
         given = model.start_yaw(index)
         heading = float(poses[0, 2]) if given is None else given
-        found.append(_residual(poses, relative[own], heading, measure))
+        found.append(_residual(run.measured.time, poses, relative[own], heading, measure))
     return tuple(found), model
 
 
@@ -128,7 +132,9 @@ def _with_headings(model: Model, every: Together, relative: Floats) -> Model:
     return model.turned({}, own)
 
 
-def _residual(poses: Floats, relative: Floats, heading: float, measure: Measure) -> Residual:
+def _residual(
+    time: Floats, poses: Floats, relative: Floats, heading: float, measure: Measure
+) -> Residual:
     predicted, yaw = chained(relative)
     measured = poses[:, 0] + 1j * poses[:, 1]
     begin = 0j if measure == "heading" else measured[0]
@@ -140,6 +146,7 @@ def _residual(poses: Floats, relative: Floats, heading: float, measure: Measure)
     if measure != "position":
         turned = wrap_all(np.diff(poses[:, 2]) - relative[:, 2])
     return Residual(
+        time,
         measured,
         poses[:, 2],
         begin + np.exp(1j * heading) * predicted,

@@ -10,15 +10,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind, Run, Ticks
-from werrimbi_odom.inference.comparison.judged_legs import Prepared, judged_legs, prepare
+from werrimbi_odom.inference.comparison.judged_legs import Prepared, finely, judged_legs, prepare
 from werrimbi_odom.inference.comparison.legs import statistics
 from werrimbi_odom.inference.diagnosis.search import with_own_values
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model, knobs_of
-from werrimbi_odom.inference.fitting.matching import match_finely
-from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
@@ -135,8 +134,7 @@ def judge_of(
         prepare(some, robot, kind, leg=leg, limits=limits, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
         for some in (fitted_on, kept_back)
     )
-    fine = together(match_finely(kept_back, robot, leg, limits))
-    return Judge(robot, kind, fitted_on, kept_back, train, held, fine)
+    return Judge(robot, kind, fitted_on, kept_back, train, held, finely(held, limits))
 
 
 def set_aside(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...]]:

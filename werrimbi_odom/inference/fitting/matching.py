@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +52,24 @@ class Counters:
     first_right: float
     channels: Mapping[str, Floats] = field(default_factory=dict)
     """Extra measured channels at each message."""
+    _curve: list[Any] = field(default_factory=list, repr=False, compare=False)
+    """What `at` has laid through the counts, once somebody asked."""
+
+    def at(self, time: Floats) -> Floats:
+        """Counts at any times, (n, 2): left and right.
+
+        Between two messages the wheels follow a monotone cubic: a straight line would cut the
+        corners of every start and stop, by a millimetre where a robot that brakes at 1 m/s² is read
+        at 10 Hz, while a smoother curve would swing beyond what was counted. Before the first
+        message and after the last the robot stands.
+        """
+        if not self._curve:
+            from scipy.interpolate import PchipInterpolator
+
+            counts = np.stack([self.left, self.right], axis=-1)
+            self._curve.append(PchipInterpolator(self.time, counts))
+        within = np.clip(time, self.time[0], self.time[-1])
+        return np.asarray(self._curve[0](within))
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,6 +139,11 @@ def match_finely(
     """Runs in the short legs of a fit, `leg` [m] being the length that is judged by."""
     turn = QUARTER_TURN / PARTS_OF_A_LEG
     return [match(run, robot, leg / PARTS_OF_A_LEG, limits, turn) for run in runs]
+
+
+def cut_finely(every: MatchedRun, robot: Robot, leg: float) -> MatchedRun:
+    """A run from `every_pose` in the same short legs."""
+    return cut(every, robot, leg / PARTS_OF_A_LEG, QUARTER_TURN / PARTS_OF_A_LEG)
 
 
 def stated(runs: Sequence[MatchedRun], name: str) -> float | None:
@@ -248,7 +272,7 @@ def _nodes(
 ) -> tuple[Floats, Floats, Floats, NDArray[np.intp], Mapping[str, Span[Floats]]]:
     """Nodes at every message and at the times `at`, and the counts between them."""
     time = np.union1d(counters.time, at)
-    left, right = np.diff(_counts_at(counters, time), axis=0).T
+    left, right = np.diff(counters.at(time), axis=0).T
     channels = {}
     for name, values in counters.channels.items():
         known = np.isfinite(values)
@@ -256,21 +280,6 @@ def _nodes(
             there = np.interp(time, counters.time[known], values[known])
             channels[name] = Span(there[:-1], there[1:])
     return time, left, right, np.searchsorted(time, at), channels
-
-
-def _counts_at(counters: Counters, time: Floats) -> Floats:
-    """Counts at any times, (n, 2): left and right.
-
-    Between two messages the wheels follow a monotone cubic: a straight line would cut the corners
-    of every start and stop, by a millimetre where a robot that brakes at 1 m/s² is read at 10 Hz,
-    while a smoother curve would swing beyond what was counted. Before the first message and after
-    the last the robot stands.
-    """
-    from scipy.interpolate import PchipInterpolator
-
-    counts = np.stack([counters.left, counters.right], axis=-1)
-    within = np.clip(time, counters.time[0], counters.time[-1])
-    return np.asarray(PchipInterpolator(counters.time, counts)(within))
 
 
 def _summed(steps: Floats) -> Floats:

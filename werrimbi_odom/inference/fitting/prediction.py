@@ -275,20 +275,29 @@ def _noise_of_legs(
 
     For unit noise of the left wheel, and of the right one; (m, 3, 3) each.
     """
-    steps = runs.inside
-    leg = np.repeat(np.arange(runs.count), runs.end - runs.begin)
-    motion = BodyMotion(*(part[steps] for part in path.motion))
-    left, right = (np.abs(side[steps]) for side in path.travel)
-    none = np.zeros_like(left)
-    noise = noise_of_wheel_variances(np.stack([left, none]), np.stack([none, right]), track)
-    facing = path.yaw[runs.begin][leg] + view.yaw
-    own = piece_covariance(motion, noise, path.yaw[steps] - facing)
+    count = runs.end - runs.begin
+    leg = np.repeat(np.arange(runs.count), count)
+    facing = path.yaw[runs.begin] + view.yaw
     marker = path.position[runs.end] + complex(view.ahead, view.left) * np.exp(
         1j * path.yaw[runs.end]
     )
-    lever = np.exp(-1j * facing) * (marker[leg] - path.position[steps + 1])
-    moved = carried(own, lever.real, lever.imag)
-    starts = np.concatenate([[0], np.cumsum(runs.end - runs.begin)])
-    sums = (np.cumsum(np.pad(entry, ((0, 0), (1, 0))), axis=-1) for entry in moved)
-    found = PoseCovariance(*(np.diff(entry[:, starts], axis=-1) for entry in sums)).matrix()
+    moved = np.empty((6, 2, runs.inside.size + 1))
+    moved[..., 0] = 0.0
+    for begin in range(0, leg.size, _BLOCK):
+        block = slice(begin, begin + _BLOCK)
+        steps, own_leg = runs.inside[block], leg[block]
+        motion = BodyMotion(*(part[steps] for part in path.motion))
+        left, right = (np.abs(side[steps]) for side in path.travel)
+        none = np.zeros_like(left)
+        noise = noise_of_wheel_variances(np.stack([left, none]), np.stack([none, right]), track)
+        own = piece_covariance(motion, noise, path.yaw[steps] - facing[own_leg])
+        lever = np.exp(-1j * facing[own_leg]) * (marker[own_leg] - path.position[steps + 1])
+        moved[..., 1:][..., block] = carried(own, lever.real, lever.imag)
+    sums = np.cumsum(moved, axis=-1)
+    starts = np.concatenate([[0], np.cumsum(count)])
+    found = PoseCovariance(*np.diff(sums[..., starts], axis=-1)).matrix()
     return found[0], found[1]
+
+
+_BLOCK = 8192
+"""Steps at a time: what they take fits in the processor's cache."""

@@ -192,11 +192,11 @@ def middles(comparison: Comparison) -> NDArray[np.complex128]:
     for group in comparison.prepared.groups:
         if group.measure != "heading":
             continue
-        for own, index in enumerate(group.index):
+        for index in group.index:
             mine = legs.run == index
             time = 0.5 * (legs.start_time + legs.end_time)[mine]
-            path = comparison.paths[index].predicted
-            found[mine] = np.interp(time, group.every.runs[own].measured.time, path)
+            path = comparison.paths[index]
+            found[mine] = np.interp(time, path.time, path.predicted)
     return found
 
 
@@ -257,10 +257,9 @@ def covariance_along(comparison: Comparison, index: int) -> Floats:
     robot = comparison.model.of_run(index)
     group = next(item for item in comparison.prepared.groups if index in item.index)
     own = group.index.index(index)
-    time = group.every.runs[own].measured.time
     xy, heading = float(group.sigma_xy[own]), float(group.sigma_yaw[own])
     yaw = float(path.predicted_yaw[0]) - view_of(robot.effects).yaw
-    begin = int(np.clip(np.searchsorted(run.ticks.time, time[0]), 0, run.ticks.time.size - 2))
+    begin = int(np.clip(np.searchsorted(run.ticks.time, path.time[0]), 0, run.ticks.time.size - 2))
     ticks = run.ticks
     driven = trajectory(
         robot,
@@ -272,5 +271,5 @@ def covariance_along(comparison: Comparison, index: int) -> Floats:
         channels={name: values[begin:] for name, values in ticks.channels.items()},
     )
     every = driven.covariance.matrix()[:, :2, :2]
-    rows = np.clip(np.searchsorted(driven.time, time), 0, driven.time.size - 1)
+    rows = np.clip(np.searchsorted(driven.time, path.time), 0, driven.time.size - 1)
     return np.asarray(every[rows])
