@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.files.replacing import replacing
+from werrimbi_odom.report.drawing_program import drawing_program
 from werrimbi_odom.report.page_text import paragraphs, tables
 from werrimbi_odom.report.style import IN_THE_DARK
 
@@ -76,8 +77,6 @@ def write_page(page: Page, path: Path) -> None:
 
 def page_html(page: Page) -> str:
     """The whole page."""
-    from plotly.offline import get_plotlyjs
-
     assets = files("werrimbi_odom.report")
     style = (assets / "page.css").read_text(encoding="utf-8")
     script = (assets / "page.js").read_text(encoding="utf-8")
@@ -127,7 +126,7 @@ def page_html(page: Page) -> str:
 {_made(page.made)}
 </section>
 </main>
-<script>{get_plotlyjs()}</script>
+<script>{drawing_program().read_text(encoding="utf-8")}</script>
 <script type="application/json" id="data">{_embedded(data)}</script>
 <script>
 {script}

@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.replacing import replacing
+from werrimbi_odom.report.drawing_program import drawing_program
 from werrimbi_odom.report.page import Page, write_page
 from werrimbi_odom.report.style import KEPT_HERE
 
@@ -32,9 +34,10 @@ def find_browser() -> str | None:
 def save_page(figure: go.Figure, path: Path) -> None:
     """One self-contained interactive page; opens without a network."""
     path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(path.name + ".part")
-    figure.write_html(temporary, include_plotlyjs=True, full_html=True, config=dict(KEPT_HERE))
-    temporary.replace(path)
+    page = figure.to_html(include_plotlyjs=False, full_html=True, config=dict(KEPT_HERE))
+    program = drawing_program().read_text(encoding="utf-8")
+    with replacing(path) as file:
+        file.write(page.replace("<head>", f"<head><script>{program}</script>", 1))
 
 
 def save_png(figure: go.Figure, path: Path, *, scale: float = 1.5) -> bool:

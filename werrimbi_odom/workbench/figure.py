@@ -7,16 +7,17 @@ It is asked for before the first figure comes, so that it is there by then.
 
 from __future__ import annotations
 
-from importlib.resources import as_file, files
+from importlib.resources import as_file
 from typing import Any
 
 from nicegui import app, ui
 from nicegui.element import Element
 
+from werrimbi_odom.report.drawing_program import drawing_program
 from werrimbi_odom.workbench.html import box
 from werrimbi_odom.workbench.theme import shown
 
-DRAWING = "plotly.min.js"
+_DRAWING = "/plotly.min.js"
 
 
 class _Figure(Element, component="figure.js"):
@@ -29,8 +30,8 @@ class _Figure(Element, component="figure.js"):
 
 def serve_drawing() -> None:
     """Have the drawing program at an address of the server; it never leaves this machine."""
-    with as_file(files("plotly") / "package_data" / DRAWING) as file:
-        app.add_static_file(local_file=file, url_path=f"/{DRAWING}")
+    with as_file(drawing_program()) as file:
+        app.add_static_file(local_file=file, url_path=_DRAWING)
 
 
 def ask_for_drawing(at_once: bool) -> None:
@@ -47,7 +48,7 @@ def ask_for_drawing(at_once: bool) -> None:
         f"""<script>{{
   const ask = () => {{
     const program = document.createElement("script");
-    program.src = "/{DRAWING}";
+    program.src = "{_DRAWING}";
     document.head.append(program);
   }};
   {begin};

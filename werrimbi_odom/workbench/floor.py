@@ -54,9 +54,7 @@ def classes_of(comparison: Comparison) -> NDArray[np.intp]:
 
 def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None) -> go.Figure:
     """The legs on the floor; where `which` is given, those stand out and the rest is faint."""
-    import plotly.graph_objects as go
-
-    figure = go.Figure()
+    figure = empty_floor()
     lines = _lines(comparison)
     grade = classes_of(comparison)
     if which is not None:
@@ -84,11 +82,14 @@ def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None)
             hoverinfo="skip",
         )
     _add_texts(figure, comparison, chosen, grade)
-    return _from_above(figure)
+    return figure
 
 
-def _from_above(figure: go.Figure) -> go.Figure:
-    """Equal scales, to be moved about."""
+def empty_floor() -> go.Figure:
+    """Nothing on it yet: seen from above, equal scales, to be moved about."""
+    import plotly.graph_objects as go
+
+    figure = go.Figure()
     figure.update_xaxes(title="x [m]")
     figure.update_yaxes(title="y [m]", scaleanchor="x", scaleratio=1)
     plain(figure, height=480)

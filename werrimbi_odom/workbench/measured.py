@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The measured paths, as they stand on the page before anything is compared.
 
-A drawing that needs no program: plotly.js takes a second to begin, and comes while this is looked
+A drawing that needs no program: plotly.js takes a while to begin, and comes while this is looked
 at.
 """
 

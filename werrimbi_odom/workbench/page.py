@@ -12,6 +12,7 @@ from nicegui import Client, app, ui
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.workbench.figure import ask_for_drawing
+from werrimbi_odom.workbench.floor import empty_floor
 from werrimbi_odom.workbench.html import box, button, listen, text
 from werrimbi_odom.workbench.opening import Opening
 from werrimbi_odom.workbench.tab import Shared, Tab, new_tab
@@ -76,7 +77,7 @@ async def page(opening: Opening) -> None:
         )
     theme.set_value(bool(dark))
     if opening.shared is None:
-        import plotly.graph_objects  # noqa: F401  # it takes a while: now, while others work
+        empty_floor()  # plotly takes a while to begin: now, while others work
     try:
         shared = await opening.result()
     except InputError as error:
