@@ -5,10 +5,12 @@
 The relay takes a JointState and publishes an Odometry with nothing computed; it is what rclpy and
 DDS cost. "Tick by tick" is the same node with pieces of one message each, so that it does at every
 message what is otherwise done at the end of a piece. All run at the same time, each in a process
-of its own, and hear the same messages from one publisher, so that whatever else the machine does
-weighs on all alike.
+of its own, and are fed in turn, second by second, so that they do not wait for each other and
+whatever else the machine does weighs on all alike.
 
-    python benchmark/node_cost.py [--rate HZ] [--seconds S]
+What a process takes without any message (a timer, discovery) is measured first and taken off.
+
+    python benchmark/node_cost.py [--rate HZ ...] [--seconds S]
 """
 
 from __future__ import annotations
@@ -22,6 +24,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Sequence
 from pathlib import Path
 
 import rclpy
@@ -46,6 +49,13 @@ NODES = {
 """Parameters of each node, beside those of the robot."""
 
 
+_MEET = 60.0
+"""For all nodes to begin and to be found [s]."""
+
+_IDLE = 5.0
+"""Without messages [s]."""
+
+
 def relay() -> None:
     """The empty relay, as a ROS tutorial would write it."""
     rclpy.init()
@@ -59,7 +69,7 @@ def relay() -> None:
 
     # As deep as the node's, so that both answer the same messages.
     deep = QoSProfile(depth=100, reliability=ReliabilityPolicy.BEST_EFFORT)
-    node.create_subscription(JointState, "joint_states", arrived, deep)
+    node.create_subscription(JointState, "relayed/joint_states", arrived, deep)
     with contextlib.suppress(KeyboardInterrupt):
         rclpy.spin(node)
 
@@ -67,8 +77,10 @@ def relay() -> None:
 def main() -> None:
     """Measure, and print."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--rate", type=float, default=1000.0, help="messages a second")
-    parser.add_argument("--seconds", type=float, default=15.0)
+    parser.add_argument(
+        "--rate", type=int, nargs="+", default=[1000, 100], help="messages a second, in turn"
+    )
+    parser.add_argument("--seconds", type=int, default=15, help="of each node's feeding")
     arguments = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "robot.yaml"
@@ -82,6 +94,7 @@ def main() -> None:
         processes = {}
         for name, extra in NODES.items():
             remap = ["-r", f"odom:={name}", "-r", f"__node:={name}"]
+            remap += ["-r", f"joint_states:={name}/joint_states"]
             given = [word for each in extra for word in ("-p", each)]
             command = [sys.executable, "-m", "werrimbi_odom.ros.odom_node", "--ros-args"]
             command += ["--params-file", str(file), *remap, *given]
@@ -92,15 +105,21 @@ def main() -> None:
         finally:
             for process in processes.values():
                 process.send_signal(signal.SIGINT)
+            time.sleep(2.0)
             for process in processes.values():
-                process.wait(10.0)
+                process.kill()
 
 
-def report(processes: dict[str, subprocess.Popen[bytes]], rate: float, seconds: float) -> None:
-    """Feed all, and print what a message cost each."""
+def report(
+    processes: dict[str, subprocess.Popen[bytes]], rates: Sequence[int], seconds: int
+) -> None:
+    """Feed them in turn, and print what a message cost each."""
     rclpy.init()
     node = Node("feeder")
-    publisher = node.create_publisher(JointState, "joint_states", QoSProfile(depth=1000))
+    publishers = {
+        name: node.create_publisher(JointState, f"{name}/joint_states", QoSProfile(depth=1000))
+        for name in processes
+    }
     heard = dict.fromkeys(processes, 0)
 
     def listener(topic: str) -> None:
@@ -111,19 +130,39 @@ def report(processes: dict[str, subprocess.Popen[bytes]], rate: float, seconds: 
 
     for topic in heard:
         listener(topic)
-    while publisher.get_subscription_count() < len(processes):
+    end = time.perf_counter() + _MEET
+    while any(each.get_subscription_count() == 0 for each in publishers.values()):
+        if time.perf_counter() > end or any(item.poll() is not None for item in processes.values()):
+            sys.exit(f"not all nodes listened within {_MEET:.0f} s; is the machine very busy?")
         rclpy.spin_once(node, timeout_sec=0.05)
-    feed(node, publisher, rate, 1.0)
-    drain(node)
+    for publisher in publishers.values():
+        feed(node, publisher, rates[0])
+        drain(node, 0.3)
     before = {name: cpu_time(process.pid) for name, process in processes.items()}
-    heard.update(dict.fromkeys(processes, 0))
-    count = feed(node, publisher, rate, seconds)
-    drain(node)
-    cost = {
-        name: 1e6 * (cpu_time(process.pid) - before[name]) / max(heard[name], 1)
-        for name, process in processes.items()
+    drain(node, _IDLE)
+    idle = {
+        name: (cpu_time(process.pid) - before[name]) / _IDLE for name, process in processes.items()
     }
-    print(f"{count} JointState messages at {rate:.0f} Hz to all at once")
+    told = ", ".join(f"{name} {1e3 * each:.1f} ms" for name, each in idle.items())
+    print(f"without messages, CPU a second: {told}")
+    for rate in rates:
+        heard.update(dict.fromkeys(processes, 0))
+        spent = dict.fromkeys(processes, 0.0)
+        for _ in range(seconds):
+            for name, publisher in publishers.items():
+                begun, before_it = time.perf_counter(), cpu_time(processes[name].pid)
+                feed(node, publisher, rate)
+                drain(node, 0.3)
+                lasted = time.perf_counter() - begun
+                spent[name] += cpu_time(processes[name].pid) - before_it - idle[name] * lasted
+        tell(rate, rate * seconds, heard, spent)
+    rclpy.try_shutdown()
+
+
+def tell(rate: int, count: int, heard: dict[str, int], spent: dict[str, float]) -> None:
+    """Print what a message cost each, and what of it is ours."""
+    cost = {name: 1e6 * each / max(heard[name], 1) for name, each in spent.items()}
+    print(f"{count} JointState messages at {rate} Hz to each, a second at a time in turn")
     print(f"{'':14} answered  CPU a message  over the relay")
     for name, each in cost.items():
         over = each - cost["relayed"]
@@ -133,16 +172,14 @@ def report(processes: dict[str, subprocess.Popen[bytes]], rate: float, seconds: 
             "not all was answered, so these costs are not of the same work: the machine is busy, "
             "or --rate too high"
         )
-        rclpy.try_shutdown()
         return
     ours = cost["odom_node"] - cost["relayed"]
     print(f"ours: {ours:.0f} us, {ours / cost['relayed']:.0%} of what rclpy and DDS cost")
-    rclpy.try_shutdown()
 
 
-def drain(node: Node) -> None:
+def drain(node: Node, seconds: float) -> None:
     """Listen until all answers have come."""
-    end = time.perf_counter() + 1.0
+    end = time.perf_counter() + seconds
     while time.perf_counter() < end:
         rclpy.spin_once(node, timeout_sec=0.05)
 
@@ -150,13 +187,12 @@ def drain(node: Node) -> None:
 _row = 0
 
 
-def feed(node: Node, publisher: rclpy.publisher.Publisher, rate: float, seconds: float) -> int:
-    """Publish a drive along arcs at a steady rate; returns how many messages."""
+def feed(node: Node, publisher: rclpy.publisher.Publisher, rate: int) -> None:
+    """Publish a drive along arcs for a second, at a steady rate."""
     global _row
     message = JointState(name=["left_wheel_joint", "right_wheel_joint"])
-    count = round(rate * seconds)
     begin = time.perf_counter()
-    for due in range(count):
+    for due in range(rate):
         while time.perf_counter() < begin + due / rate:
             rclpy.spin_once(node, timeout_sec=0.0)
         _row += 1
@@ -165,13 +201,12 @@ def feed(node: Node, publisher: rclpy.publisher.Publisher, rate: float, seconds:
         bend = 0.2 if _row // 1000 % 2 else -0.1
         message.position = [6.0 * _row / rate, 6.0 * _row / rate * (1.0 + bend)]
         publisher.publish(message)
-    return count
 
 
 def cpu_time(process: int) -> float:
-    """User and system time of a process [s]."""
-    fields = Path(f"/proc/{process}/stat").read_text().rpartition(") ")[2].split()
-    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    """Time on a processor, of all threads of a process [s]."""
+    threads = Path(f"/proc/{process}/task").glob("*/schedstat")
+    return 1e-9 * sum(int(thread.read_text().split()[0]) for thread in threads)
 
 
 if __name__ == "__main__":

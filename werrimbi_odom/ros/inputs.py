@@ -141,10 +141,9 @@ class JointStates:
                 f"{len(message.name)} names and {len(positions)} positions",
             )
             return
-        left, right = (
-            side.count([positions[place] for place in places])
-            for side, places in zip(self._sides, self._places, strict=True)
-        )
+        of_left, of_right = self._places
+        left = self._sides[0].count([positions[place] for place in of_left])
+        right = self._sides[1].count([positions[place] for place in of_right])
         if not (abs(left) < COUNTER_LIMIT and abs(right) < COUNTER_LIMIT):
             finite = math.isfinite(left) and math.isfinite(right)
             cause = "position out of range" if finite else "position not finite"

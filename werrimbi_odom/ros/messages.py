@@ -49,6 +49,12 @@ class OdometryMessage:
         self._message = Odometry()
         self._message.header.frame_id = odom_frame
         self._message.child_frame_id = base_frame
+        # Held, because each step from a message to what is in it is a call.
+        self._header = self._message.header
+        self._position = self._message.pose.pose.position
+        self._orientation = self._message.pose.pose.orientation
+        self._linear = self._message.twist.twist.linear
+        self._angular = self._message.twist.twist.angular
         self._pose = self._message.pose.covariance
         self._twist = self._message.twist.covariance
         for place in _OUT_OF_PLANE:
@@ -56,16 +62,12 @@ class OdometryMessage:
 
     def filled(self, stamp: Stamp, estimate: Estimate) -> Odometry:
         """The message for an estimate, valid until the next call."""
-        message = self._message
-        message.header.stamp = stamp
-        pose = message.pose.pose
-        pose.position.x, pose.position.y = estimate.pose.x, estimate.pose.y
-        pose.orientation.z = math.sin(0.5 * estimate.pose.yaw)
-        pose.orientation.w = math.cos(0.5 * estimate.pose.yaw)
-        twist = message.twist.twist
-        twist.linear.x, twist.linear.y, twist.angular.z = estimate.twist
+        self._header.stamp = stamp
+        self._position.x, self._position.y, yaw = estimate.pose
+        self._orientation.z, self._orientation.w = math.sin(0.5 * yaw), math.cos(0.5 * yaw)
+        self._linear.x, self._linear.y, self._angular.z = estimate.twist
         self._fill_covariances(estimate)
-        return message
+        return self._message
 
     def _fill_covariances(self, estimate: Estimate) -> None:
         xx, xy, xyaw, yy, yyaw, yawyaw = estimate.covariance
