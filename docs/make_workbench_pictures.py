@@ -57,8 +57,10 @@ def opening(browser: str, process: subprocess.Popen[str]) -> None:
     from playwright.sync_api import sync_playwright
 
     assert process.stdout is not None
+    held = ["pkill", "-STOP", "-P", str(process.pid), "-f", "spawn_main"]
+    while subprocess.run(held, check=False).returncode != 0:
+        time.sleep(0.01)
     address = process.stdout.readline().split()[0]
-    subprocess.run(["pkill", "-STOP", "-P", str(process.pid)], check=True)
     with sync_playwright() as playwright:
         running = playwright.chromium.launch(executable_path=browser, args=["--no-sandbox"])
         page = running.new_page(viewport=SIZE, color_scheme="light")

@@ -39,10 +39,10 @@ def pages(
     write_diagnosis_page(diagnosis, found["diagnose"])
     write_adding_page(added, found["add"])
     errors = np.random.default_rng(1).normal(0.0, 0.01, (3000, 2))
-    figure = leg_figure(errors, 0.5 * errors, title="Legs", subtitle="before and after")
+    figure = leg_figure(errors, 0.5 * errors)
     numbers = {"wheel_separation_multiplier": (1.0, 1.01)}
     words = "All is well.\n\nFound\n  parameter  before  after\n  k          1       1.01"
-    write_page(calibration_page("Fit", words, "See.", figure, numbers, {}), found["fit"])
+    write_page(calibration_page("Fit", words, "Legs", "See.", figure, numbers, {}), found["fit"])
     return found
 
 

@@ -170,7 +170,7 @@ def test_every_leg_is_counted_and_few_are_drawn() -> None:
 
 def test_a_calibrations_median_is_of_all_legs_though_few_are_drawn() -> None:
     errors = np.random.default_rng(3).normal(0.0, 0.01, (20 * MARKS, 2))
-    figure = leg_figure(errors, 0.5 * errors, title="", subtitle="")
+    figure = leg_figure(errors, 0.5 * errors)
     assert points_and_marks(figure)[1] <= MARKS
     median = 1e3 * np.median(np.hypot(*errors.T))
     assert figure.data[0].name == f"before: median {median:.1f} mm"

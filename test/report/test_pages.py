@@ -20,12 +20,11 @@ from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.report.adding.page import write_adding_page
+from werrimbi_odom.report.calibration.fit_figure import leg_figure
 from werrimbi_odom.report.calibration.page import calibration_page
 from werrimbi_odom.report.comparison.page import write_compare_page
 from werrimbi_odom.report.diagnosis.page import write_diagnosis_page
 from werrimbi_odom.report.page import write_page
-from werrimbi_odom.report.path_figure import PathDrawing
-from werrimbi_odom.report.path_figure import path_figure as bare_path
 
 Look = Callable[..., Visit]
 
@@ -236,14 +235,12 @@ def test_the_effect_added_draws_itself(added: Added, tmp_path: Path, look: Look)
     assert_well_drawn(visit)
 
 
-def test_a_calibration_draws_itself_though_its_figure_was_made_for_paper(
-    tmp_path: Path, look: Look
-) -> None:
-    around = np.linspace(0.0, 6.0, 50)
-    drawing = PathDrawing(np.cos(around), np.sin(around), 1e-4 * np.stack([np.eye(2)] * 50))
+def test_a_calibration_draws_itself(tmp_path: Path, look: Look) -> None:
+    errors = np.random.default_rng(1).normal(0.0, 0.01, (50, 2))
     page = calibration_page(
-        "Calibration", "All is well.", "See.", bare_path(drawing), {"k": (1.0, 1.1)}, {}
-    )
+        "Calibration", "All is well.", "Legs", "See.", leg_figure(errors, 0.5 * errors),
+        {"k": (1.0, 1.1)}, {},
+    )  # fmt: skip
     write_page(page, tmp_path / "page.html")
     visit = look(tmp_path / "page.html", UNDRAWN, FIGURES, FIGURE_PAPER, dark=True)
     assert_well_drawn(visit)

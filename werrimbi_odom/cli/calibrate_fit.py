@@ -69,6 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
         figure,
         title="Calibration by maximum likelihood",
         words=words,
+        heading="Errors of short legs, before and after calibration",
         see="Each mark is a short leg, seen by the robot: the error along, and to its left. After "
         "the calibration the cloud should be smaller and lie about the origin.",
     )
@@ -81,14 +82,9 @@ def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) 
 
     model = result.fit.point.model
     headings = [model.start_yaw(index) for index in range(len(runs))]
-    verdict = "the model explains these drives to their noise"
-    if not result.trusted:
-        verdict = "something else is missing: calibration does not explain these drives"
     return leg_figure(
         errors_of_legs(source.robot, runs, headings),
         errors_of_legs(result.robot, runs, headings),
-        title="Errors of short legs, before and after calibration",
-        subtitle=verdict,
     )
 
 

@@ -76,14 +76,6 @@ def run(arguments: argparse.Namespace) -> int:
         raise InputError(f"{arguments.results}: {error}") from None
     words = noise_in_words(fit, arguments.distance, track, turn_round=arguments.turn_round)
     print(words)
-    figure = noise_figure(
-        errors,
-        fit.data,
-        fit.model,
-        title=f"Noise of the wheels: {fit.runs} runs of {arguments.distance:g} m out and back",
-        subtitle=f"k<sub>L</sub> = {_short(fit.left)} m<sup>½</sup>, "
-        f"k<sub>R</sub> = {_short(fit.right)} m<sup>½</sup>",
-    )
     changes = {
         "left_wheel_noise": float(f"{fit.left.value:.6g}"),
         "right_wheel_noise": float(f"{fit.right.value:.6g}"),
@@ -93,9 +85,10 @@ def run(arguments: argparse.Namespace) -> int:
         source,
         changes,
         _json(fit, arguments.distance),
-        figure,
+        noise_figure(errors, fit.data, fit.model),
         title="Noise of the wheels from drives out and back",
         words=words,
+        heading=f"Noise of the wheels: {fit.runs} runs of {arguments.distance:g} m out and back",
         see="Each mark is a drive out and back. The solid ellipse of the model should be as large "
         "and lie as the dashed one of the drives themselves.",
     )
@@ -128,10 +121,6 @@ def _errors(arguments: argparse.Namespace) -> Floats:
                     f"{errors[row, column]:g} is {unit}"
                 )
     return errors
-
-
-def _short(estimate: NoiseEstimate) -> str:
-    return f"({1e4 * estimate.value:.2f} ± {1e4 * estimate.std:.2f})·10<sup>−4</sup>"
 
 
 def _json(fit: NoiseFit, distance: float) -> dict[str, Any]:

@@ -53,7 +53,6 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Calibrate; 0 on success."""
     from werrimbi_odom.files.robot_file import read_robot_file
-    from werrimbi_odom.inference.calibration.squares import e_max_syst
     from werrimbi_odom.inference.calibration.umbmark import corrected, recomputed, umbmark
     from werrimbi_odom.report.calibration.figures import OffsetCloud, umbmark_figure
     from werrimbi_odom.report.calibration.umbmark_words import found_in_words, gained_in_words
@@ -74,12 +73,9 @@ def run(arguments: argparse.Namespace) -> int:
     print(words)
 
     shown, name = (later, "after") if later else (again, "same runs, corrected")
-    gain = f", {1e3 * e_max_syst(shown):.1f} mm {name}" if shown else ""
     figure = umbmark_figure(
         OffsetCloud("before", squares.cw, squares.ccw),
         OffsetCloud(name, shown.cw, shown.ccw) if shown else None,
-        title=f"UMBmark: squares of {squares.side:g} m",
-        subtitle=f"E<sub>max,syst</sub> {1e3 * result.e_max:.1f} mm before{gain}",
     )
     changes = {name: _rounded(estimate.value) for name, estimate in multipliers.items()}
     write_all(
@@ -90,6 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
         figure,
         title="UMBmark: base and radii from squares",
         words=words,
+        heading=f"UMBmark: squares of {squares.side:g} m",
         see="Where squares ended, clockwise and anticlockwise, measured minus odometry. After the "
         "calibration both clouds should lie about the origin; the circle is the larger offset.",
     )

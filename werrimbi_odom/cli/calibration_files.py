@@ -39,14 +39,17 @@ def write_all(
     *,
     title: str = "Calibration",
     words: str = "",
+    heading: str = "",
     see: str = "",
 ) -> None:
     """The new robot file, then the JSON and the page that were asked for; says what it wrote.
 
     Parameters
     ----------
-    title, words, see
-        Of the page: its heading, what was found, and what to see in the figure.
+    title, words
+        Of the page: its heading, and what was found.
+    heading, see
+        Of the figure: its heading, and what to see in it.
     """
     from werrimbi_odom.files.robot_file import write_robot_file
 
@@ -66,6 +69,6 @@ def write_all(
             if hasattr(source.robot, name)
         }
         made = made_of(arguments)
-        page = calibration_page(title, words, see, figure, before_after, made)
+        page = calibration_page(title, words, heading, see, figure, before_after, made)
         written += save_report(page, arguments.report)
     print(f"\nwritten: {', '.join(str(path) for path in written)}")

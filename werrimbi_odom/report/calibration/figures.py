@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.report.path_figure import ellipse
-from werrimbi_odom.report.style import BLUE, GREY, ORANGE
+from werrimbi_odom.report.style import BLUE, GREY, ORANGE, plain
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -30,9 +30,7 @@ class OffsetCloud:
     ccw: Floats
 
 
-def umbmark_figure(
-    before: OffsetCloud, after: OffsetCloud | None, *, title: str, subtitle: str = ""
-) -> go.Figure:
+def umbmark_figure(before: OffsetCloud, after: OffsetCloud | None) -> go.Figure:
     """Offsets of clockwise and anticlockwise squares with their centres of gravity (figure 3).
 
     Circles of radius E_max,syst go through the further centre of each set. Equal scales.
@@ -56,11 +54,9 @@ def umbmark_figure(
         name="centres of gravity",
         marker={"symbol": "x", "size": 13, "color": GREY},
     )
-    _dress(figure, title, subtitle)
-    figure.update_layout(width=980, height=760)
-    figure.update_xaxes(title="x, along the first leg [mm]")
-    figure.update_yaxes(title="y, to its left [mm]", scaleanchor="x", scaleratio=1)
-    return figure
+    figure.update_xaxes(title="x, along the first leg [mm]", zeroline=True)
+    figure.update_yaxes(title="y, to its left [mm]", zeroline=True, scaleanchor="x", scaleratio=1)
+    return plain(figure, height=760)
 
 
 def _offsets(
@@ -113,9 +109,7 @@ def _circle(figure: go.Figure, cloud: OffsetCloud, dash: str) -> None:
     )
 
 
-def noise_figure(
-    errors: Floats, data: Floats, model: Floats, *, title: str, subtitle: str = ""
-) -> go.Figure:
+def noise_figure(errors: Floats, data: Floats, model: Floats) -> go.Figure:
     """Errors of repeated drives with the 95 % ellipses of data and model (figure 4 a to c).
 
     Parameters
@@ -167,29 +161,14 @@ def noise_figure(
                 col=column,
             )
         (name_x, unit_x), (name_y, unit_y) = axes[across], axes[up]
-        figure.update_xaxes(title=f"e<sub>{name_x}</sub> [{unit_x}]", row=1, col=column)
-        figure.update_yaxes(
-            title=f"e<sub>{name_y}</sub> [{unit_y}]", title_standoff=4, row=1, col=column
+        figure.update_xaxes(
+            title=f"e<sub>{name_x}</sub> [{unit_x}]", zeroline=True, row=1, col=column
         )
-    _dress(figure, title, subtitle)
-    figure.update_layout(
-        width=1320,
-        height=560,
-        legend={"orientation": "h", "x": 0.0, "y": -0.17, "yanchor": "top"},
-    )
-    return figure
-
-
-def _dress(figure: go.Figure, title: str, subtitle: str) -> None:
-    heading = f"<b>{title}</b>"
-    if subtitle:
-        heading += f"<br><span style='font-size:14px'>{subtitle}</span>"
-    figure.update_layout(
-        title={"text": heading, "x": 0.02, "xanchor": "left", "y": 0.96, "yanchor": "top"},
-        template="plotly_white",
-        font={"size": 15},
-        margin={"l": 75, "r": 25, "t": 85, "b": 65},
-        legend={"bordercolor": "#cccccc", "borderwidth": 1},
-    )
-    figure.update_xaxes(zeroline=True, zerolinecolor="#bbbbbb")
-    figure.update_yaxes(zeroline=True, zerolinecolor="#bbbbbb")
+        figure.update_yaxes(
+            title=f"e<sub>{name_y}</sub> [{unit_y}]",
+            title_standoff=4,
+            zeroline=True,
+            row=1,
+            col=column,
+        )
+    return plain(figure, height=560)

@@ -10,13 +10,13 @@ import numpy as np
 
 from werrimbi_odom.report.decimate import MARKS, small, spread_and_extremes
 from werrimbi_odom.report.path_figure import Floats
-from werrimbi_odom.report.style import BLUE, ORANGE, styled
+from werrimbi_odom.report.style import BLUE, ORANGE, plain
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
 
-def leg_figure(before: Floats, after: Floats, *, title: str, subtitle: str) -> go.Figure:
+def leg_figure(before: Floats, after: Floats) -> go.Figure:
     """Measured minus predicted position at the end of each leg, along and sideways.
 
     Parameters
@@ -44,5 +44,5 @@ def leg_figure(before: Floats, after: Floats, *, title: str, subtitle: str) -> g
             hovertemplate=f"{name}<br>along %{{x:.1f}} mm<br>sideways %{{y:.1f}} mm<extra></extra>",
         )
     figure.update_xaxes(title="error along [mm]", zeroline=True)
-    figure.update_yaxes(title="error sideways [mm]", zeroline=True)
-    return styled(figure, title, subtitle, width=900, height=820)
+    figure.update_yaxes(title="error sideways [mm]", zeroline=True, scaleanchor="x", scaleratio=1)
+    return plain(figure, height=820)

@@ -8,7 +8,6 @@ from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.report.page import Page, Shown
-from werrimbi_odom.report.style import plain
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -17,6 +16,7 @@ if TYPE_CHECKING:
 def calibration_page(
     title: str,
     words: str,
+    heading: str,
     see: str,
     figure: go.Figure,
     changes: Mapping[str, tuple[float, float]],
@@ -26,34 +26,18 @@ def calibration_page(
 
     Parameters
     ----------
-    see
-        What to see in the figure.
+    heading, see
+        Of the figure: its heading, and what to see in it.
     changes
         Name of each parameter that was written, before and after.
     """
     return Page(
         title,
         words,
-        [Shown("figure", figure_title(figure) or title, see, {"": on_a_page(figure)})],
+        [Shown("figure", heading, see, {"": figure})],
         written_table(changes),
         made,
     )
-
-
-def figure_title(figure: go.Figure) -> str:
-    """The heading that a figure has of its own, without its marks."""
-    text = figure.layout.title.text or ""
-    return text.split("<br>")[0].replace("<b>", "").replace("</b>", "")
-
-
-def on_a_page(figure: go.Figure) -> go.Figure:
-    """A figure with a heading of its own, as the page wants it: without, and in either theme."""
-    import plotly.graph_objects as go
-
-    found = go.Figure(figure)
-    height = int(found.layout.height or 600)
-    found.update_layout(title=None, width=None, legend={"borderwidth": 0})
-    return plain(found, height=height)
 
 
 def written_table(changes: Mapping[str, tuple[float, float]]) -> str:
