@@ -179,6 +179,9 @@ def noise_factors(
     known = np.isfinite(errors)
     told = known.any(axis=1) & groups.any(axis=0)
     groups = groups[:, told]
+    noisy = np.any(wheels[told] > 0.0, axis=(1, 2))
+    if noisy.size < _FEWEST or not noisy.any():
+        return [UNTOLD] * groups.shape[0]
     sizes, squares = _by_wheels(known[told], errors[told], covariance[told], wheels[told])
     cost = np.zeros((_FACTORS.size, groups.shape[0]))
     for begin in range(0, sizes.shape[0], _BLOCK):
@@ -188,7 +191,6 @@ def noise_factors(
         for square, variance in zip(squares[block].T, variances, strict=True):
             of_leg += square / variance
         cost += of_leg @ groups[:, block].T.astype(np.float64)
-    noisy = np.any(wheels[told] > 0.0, axis=(1, 2))
     return [
         _likeliest(own) if which.sum() >= _FEWEST and noisy[which].any() else UNTOLD
         for own, which in zip(cost.T, groups, strict=True)
