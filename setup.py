@@ -66,7 +66,9 @@ setup(
     description="Wheel odometry that knows how wrong it is, and can tell its user why",
     license="Apache-2.0 AND MIT",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
-    package_data={PACKAGE: ["py.typed", "recordings/**/*", "*/*.css", "*/*.js", "report/plotly_js/*"]},
+    package_data={
+        PACKAGE: ["py.typed", "recordings/**/*", "*/*.css", "*/*.js", "report/plotly_js/*"]
+    },
     data_files=data_files(),
     python_requires=">=3.10",
     install_requires=["numpy>=1.26", "ruamel.yaml>=0.17.21"],
