@@ -30,6 +30,7 @@ from nav_msgs.msg import Odometry
 from rclpy.time import Time
 from std_msgs.msg import Float64
 
+from test.package.launching import launched as launched_by
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.ros.compare_inputs import Clockwork, odometry_of, reference_reader
 from werrimbi_odom.ros.compare_parameters import PARAMETERS
@@ -212,6 +213,26 @@ def test_a_covariance_a_third_of_the_true_sigma_is_said_to_be_too_small(
     assert comparing.figures["nees"][-1].data > 2.0
     assert comparing.figures["coverage"][-1].data < 0.9
     assert "the covariance is too small" in comparing.stop()
+
+
+def test_its_launch_file_hands_it_topics_and_the_kind_of_reference(
+    launch: Any, compare: Any
+) -> None:
+    launched = launch(robot_file())
+    (process,) = launched_by(
+        ROOT,
+        "compare.launch.xml",
+        reference="/vrpn/robot/pose",
+        reference_type="transform_stamped",
+        odom="/wheels",
+    )
+    comparing = compare(launched, *process.arguments)
+    assert comparing.verdict().message == (
+        "nothing to compare: /wheels and /vrpn/robot/pose silent"
+    )
+    (heard,) = launched.node.get_subscriptions_info_by_topic("/vrpn/robot/pose")
+    assert heard.topic_type == "geometry_msgs/msg/TransformStamped"
+    comparing.stop()
 
 
 def test_silence_and_clocks_that_do_not_meet_are_said(launch: Any, compare: Any) -> None:
