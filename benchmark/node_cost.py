@@ -105,9 +105,11 @@ def main() -> None:
         finally:
             for process in processes.values():
                 process.send_signal(signal.SIGINT)
-            time.sleep(2.0)
             for process in processes.values():
-                process.kill()
+                try:
+                    process.wait(10.0)
+                except subprocess.TimeoutExpired:
+                    process.kill()
 
 
 def report(

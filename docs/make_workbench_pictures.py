@@ -59,6 +59,8 @@ def opening(browser: str, process: subprocess.Popen[str]) -> None:
     assert process.stdout is not None
     held = ["pkill", "-STOP", "-P", str(process.pid), "-f", "spawn_main"]
     while subprocess.run(held, check=False).returncode != 0:
+        if process.poll() is not None:
+            sys.exit("the workbench did not start")
         time.sleep(0.01)
     address = process.stdout.readline().split()[0]
     with sync_playwright() as playwright:
