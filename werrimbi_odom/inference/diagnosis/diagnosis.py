@@ -5,7 +5,8 @@
 In each round all effects of the library and all cells of the evidence map are scored at once. Where
 a plain dependence on a measured variable explains far more than any effect can, the library does
 not hold what is missing, and no name is given. Otherwise the best few effects are fitted in full,
-and the best of them is taken if it earns its price and its promise holds on the runs held out.
+and the best of them is taken if it earns its price on the fitted drives, cross-validated. Drives
+that are held out have no part in any of it: they report.
 """
 
 from __future__ import annotations
@@ -13,11 +14,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.diagnosis.candidates import Score
+from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.diagnosis.holdout import judge_of
+from werrimbi_odom.inference.diagnosis.holdout import begin
 from werrimbi_odom.inference.diagnosis.lasting import lasting, lasting_effect
 from werrimbi_odom.inference.diagnosis.ownership import Grasp, grasp_of
 from werrimbi_odom.inference.diagnosis.search import (
@@ -33,7 +34,6 @@ from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.matching import match_finely, stated
 from werrimbi_odom.inference.fitting.together import Together, together
-from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, look_for_mistakes
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
@@ -91,11 +91,8 @@ def diagnose(
         When a run has no usable reference or no ticks, or its headings are in degrees.
     """
     show(0.0, "set-up")
-    set_up = look_for_mistakes([*runs, *holdout], robot, kind, limits)
-    for finding in set_up.findings:
-        if finding.effect == IN_DEGREES:
-            raise InputError(f"{runs[0].path}: {finding.words}")
-    judge = judge_of(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+    begun = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+    judge, set_up = begun.judge, begun.set_up
     laid = together(match_finely(judge.fitted_on, set_up.robot, leg, limits))
     sigma = (
         sigma_xy or stated(laid.runs, "sigma_xy"),
@@ -113,7 +110,7 @@ def diagnose(
         beyond = _beyond_the_library(this, best, laid, kind)
         if best is None or beyond is not None:
             break
-        if not judge.holds(fit.point.model, best.point.model):
+        if not holds_when_cross_validated(laid, fit, best):
             break
         fit = jumps_anew(laid, best, kind, set_up.robot, sigma)
     remaining = (
@@ -125,7 +122,7 @@ def diagnose(
     instead: tuple[Instead, ...] = ()
     if not fit.names and fit.calibrated and beyond is None:
         instead = instead_of_calibration(laid, fit, kind, effects, set_up.robot, sigma)
-    return told(set_up, robot, tuple(rounds), fit, beyond, remaining, judge, laid, kind, instead)
+    return told(begun, robot, tuple(rounds), fit, beyond, remaining, laid, kind, instead)
 
 
 def _best(this: Round, runs: Together, kind: ReferenceKind) -> Fitted | None:

@@ -12,7 +12,8 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.holdout import Errors, Judge, Sides
+from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge, Sides
+from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import RIVAL, Fitted
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
@@ -31,8 +32,9 @@ class Ranked:
     """An effect and what it is worth."""
 
     effect: str
-    p_value: float
-    """Of as much by chance, corrected for the number of effects tried."""
+    p_value: float | None
+    """Of as much by chance, corrected for the number of effects tried; None where nothing was
+    tested: a set-up mistake is found by a search of all set-ups, and has no distribution."""
     train: Sides | None
     """Position error before and after adding it [m]; None where it was not worth a fit."""
     holdout: Sides | None
@@ -50,6 +52,8 @@ class Diagnosis:
     rivals: tuple[str, ...]
     """Effects that these runs cannot tell apart; the named one is among them."""
     set_up: SetUp
+    otherwise: tuple[RecordedOtherwise, ...]
+    """Drives that were recorded otherwise than the fitted ones; left out where others remain."""
     depends_on: tuple[Dependence, ...]
     """What the errors of the robot as given (its set-up put right) depend on."""
     remaining: tuple[Dependence, ...]
@@ -82,18 +86,18 @@ def chance(fit: Fitted, before: Fitted, tried: int) -> float:
 
 
 def told(
-    set_up: SetUp,
+    begun: Begun,
     given: Robot,
     rounds: tuple[Round, ...],
     final: Fitted,
     beyond: Dependence | None,
     remaining: tuple[Dependence, ...],
-    judge: Judge,
     laid: Together,
     kind: ReferenceKind,
     instead: tuple[Instead, ...],
 ) -> Diagnosis:
     """Everything put together."""
+    judge, set_up = begun.judge, begun.set_up
     mistakes = [finding.effect for finding in set_up.findings]
     sizes = [name for name in final.calibrated if final.importance[name] > 2.0 * final.price_of_one]
     effects = sorted([*final.names, *sizes], key=lambda name: -final.importance[name])
@@ -120,6 +124,7 @@ def told(
         tuple(_ranking(found, set_up, rounds, final, judge, start)),
         rivals,
         set_up,
+        begun.otherwise,
         rounds[0].dependences,
         remaining,
         given,
@@ -184,7 +189,7 @@ def _ranking(
     ranked: dict[str, Ranked] = {}
     mended = judge.of(Model(set_up.robot, judge.nothing_of_own)) if set_up.findings else start
     for finding in set_up.findings:
-        ranked[finding.effect] = _worth(finding.effect, 0.0, start, mended)
+        ranked[finding.effect] = _worth(finding.effect, None, start, mended)
     before = mended
     for number, this in enumerate(rounds):
         if number > 0:
@@ -205,10 +210,14 @@ def _ranking(
         p_value = min(1.0, chi2_above(score.gain, score.degrees) * rounds[0].number)
         ranked.setdefault(score.candidate.name, Ranked(score.candidate.name, p_value, None, None))
     first = [ranked.pop(name) for name in found if name in ranked]
-    return [*first, *sorted(ranked.values(), key=lambda item: item.p_value)]
+    return [*first, *sorted(ranked.values(), key=_certainty)]
 
 
-def _worth(effect: str, p_value: float, before: Errors, after: Errors) -> Ranked:
+def _certainty(item: Ranked) -> float:
+    return 0.0 if item.p_value is None else item.p_value
+
+
+def _worth(effect: str, p_value: float | None, before: Errors, after: Errors) -> Ranked:
     return Ranked(
         effect,
         p_value,

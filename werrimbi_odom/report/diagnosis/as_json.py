@@ -51,6 +51,15 @@ def json_of(
             }
             for finding in diagnosis.set_up.findings
         ],
+        "recorded_otherwise": [
+            {
+                "run": each.run,
+                "held_out": each.held_out,
+                "effects": list(each.effects),
+                "words": [finding.words for finding in each.findings],
+            }
+            for each in diagnosis.otherwise
+        ],
         "train": _sides(diagnosis.train),
         "holdout": _sides(diagnosis.holdout),
         "remaining": [_cell(cell) for cell in _once(_sure(diagnosis.remaining))],
