@@ -16,6 +16,7 @@ from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge, Side
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import RIVAL, Fitted
+from werrimbi_odom.inference.diagnosis.stability import rivals_in_halves
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding
@@ -51,6 +52,8 @@ class Diagnosis:
     ranking: tuple[Ranked, ...]
     rivals: tuple[str, ...]
     """Effects that these runs cannot tell apart; the named one is among them."""
+    torn: tuple[str, ...]
+    """Those of the rivals that are so because halves of the data disagree."""
     set_up: SetUp
     otherwise: tuple[RecordedOtherwise, ...]
     """Drives that were recorded otherwise than the fitted ones; left out where others remain."""
@@ -103,16 +106,19 @@ def told(
     effects = sorted([*final.names, *sizes], key=lambda name: -final.importance[name])
     found = tuple(dict.fromkeys([*mistakes, *effects]))
     rivals: tuple[str, ...] = ()
+    torn: tuple[str, ...] = ()
     if mistakes:
         twins = _possible_twins(set_up.findings[0])
         rivals = (mistakes[0], *twins) if twins else ()
     elif found:
         rivals = _rivals(found[0], rounds, final, instead)
+        torn = _torn(found[0], rounds, final, laid, kind)
+        rivals = tuple(dict.fromkeys((*(rivals or (found[0],)), *torn))) if torn else rivals
     verdict: Verdict
     if not found:
         verdict = "none" if beyond is None else "unknown"
     elif beyond is not None and not mistakes and len(rounds) == 1:
-        verdict, found, rivals = "unknown", (), ()
+        verdict, found, rivals, torn = "unknown", (), (), ()
     else:
         verdict = "ambiguous" if len(rivals) > 1 else "named"
     start = judge.of(Model(given, judge.nothing_of_own))
@@ -123,6 +129,7 @@ def told(
         found,
         tuple(_ranking(found, set_up, rounds, final, judge, start)),
         rivals,
+        torn,
         set_up,
         begun.otherwise,
         rounds[0].dependences,
@@ -175,6 +182,20 @@ def _rivals(
         named = list(dict.fromkeys([first, *near]))
         return tuple(named) if len(named) > 1 else ()
     return ()
+
+
+def _torn(
+    first: str, rounds: tuple[Round, ...], final: Fitted, laid: Together, kind: ReferenceKind
+) -> tuple[str, ...]:
+    """Effects that halves of the data prefer to the one that was found.
+
+    Of several that were found none is asked: a half that shows more of the one prefers it rightly.
+    """
+    if final.names != (first,):
+        return ()
+    fits = [fit for fit in rounds[0].tried if not fit.at_bound]
+    best = next((fit for fit in fits if fit.names[-1] == first), None)
+    return () if best is None else rivals_in_halves(laid, rounds[0], best, kind)
 
 
 def _ranking(

@@ -61,13 +61,16 @@ class Innovations:
     known: NDArray[np.bool_]
     """Which coordinates were measured and are to be counted, shape (m, 3)."""
 
-    def minus_two_log_likelihood(self) -> Floats:
-        """Of each set of variances, constants left out; shape (g,)."""
+    def cost_of_legs(self) -> Floats:
+        """Minus two log-likelihood of each leg, constants left out; (g, m), zero where unseen."""
         solved = np.linalg.solve(self.covariance, self.value[..., None])[..., 0]
         misfit = np.sum(self.value * solved, axis=-1)
         volume = np.linalg.slogdet(self.covariance)[1]
-        counted = self.known.any(axis=-1)
-        return np.asarray(np.sum((misfit + volume)[:, counted], axis=-1))
+        return np.where(self.known.any(axis=-1), misfit + volume, 0.0)
+
+    def minus_two_log_likelihood(self) -> Floats:
+        """Of each set of variances, constants left out; shape (g,)."""
+        return np.asarray(np.sum(self.cost_of_legs(), axis=-1))
 
     def whitened(self) -> tuple[Floats, Floats]:
         """Innovations of unit variance (m, 3) and their derivatives (m, 3, p), first set."""

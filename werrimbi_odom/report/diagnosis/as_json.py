@@ -36,6 +36,7 @@ def json_of(
             for item in diagnosis.ranking
         ],
         "rivals": list(diagnosis.rivals),
+        "rivals_by_halves": list(diagnosis.torn),
         "depends_on": [_cell(cell) for cell in significant(diagnosis)],
         "next_manoeuvre": None if manoeuvre is None else asdict(manoeuvre),
         "found": [

@@ -126,6 +126,11 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
         if rivals[0] in mistakes(diagnosis)
         else f"Something is missing, but these drives cannot tell which: {which}."
     )
+    if diagnosis.torn:
+        lines.append(
+            f"All drives together speak for {rivals[0]}; halves of them, taken by themselves, for "
+            f"{listed(diagnosis.torn, 'or')}. A verdict that half of the data would change is none."
+        )
     twins = [name for name in rivals[1:] if first is not None and name in first.twins]
     if twins:
         lines.append(
