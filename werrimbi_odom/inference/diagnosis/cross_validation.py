@@ -18,13 +18,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.together import Together
-
-FOLDS = 5
-"""Each model is fitted on four fifths and judged on the rest, five times."""
-
-PARTS = 4
-"""Of a drive in each fold: 20 parts of a drive of a minute are three seconds each, longer than
-errors of neighbouring legs are alike."""
+from werrimbi_odom.inference.rules import FOLD_PARTS, FOLDS
 
 _RANK = 1e-6
 
@@ -62,7 +56,7 @@ def fold_of_leg(runs: Together) -> NDArray[np.intp]:
     """The fold of each leg, (m,): parts of every run, dealt in turn."""
     first = runs.legs[runs.run_of_leg]
     count = np.diff(runs.legs)[runs.run_of_leg]
-    part = (np.arange(runs.count) - first) * FOLDS * PARTS // count
+    part = (np.arange(runs.count) - first) * FOLDS * FOLD_PARTS // count
     return np.asarray((part + runs.run_of_leg) % FOLDS, dtype=np.intp)
 
 

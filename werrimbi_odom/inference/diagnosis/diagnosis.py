@@ -34,29 +34,20 @@ from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.matching import match_finely, stated
 from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.rules import (
+    CELLS_ASKED,
+    LAW_SHARE,
+    OWN_LAW_SHARE,
+    RIVAL,
+    ROUNDS,
+    SURE,
+    VERY_SURE,
+)
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
-__all__ = ["Diagnosis", "Ranked", "Verdict", "chance", "diagnose"]
-
-SURE = 1e-3
-"""An effect is believed when chance would show as much in fewer cases than this, all counted."""
-
-VERY_SURE = 1e-5
-"""The same for a dependence that no effect explains: there are hundreds of cells."""
-
-ASKED = 20
-"""Cells of the map, the most certain, of which it is asked whether they last."""
-
-FAR_MORE = 1.3
-"""How many times as much a plain dependence must explain as the best effect, to refute it."""
-
-FAR_MORE_OF_ITS_OWN = 2.0
-"""The same where the effect looks at that variable and acts there: its law may be a bit off."""
-
-ROUNDS = 4
-"""Effects that are looked for, one after the other."""
+__all__ = ["SURE", "VERY_SURE", "Diagnosis", "Ranked", "Verdict", "chance", "diagnose"]
 
 
 def diagnose(
@@ -142,7 +133,11 @@ def _best(this: Round, runs: Together, kind: ReferenceKind) -> Fitted | None:
 def _beyond_the_library(
     this: Round, best: Fitted | None, runs: Together, kind: ReferenceKind
 ) -> Dependence | None:
-    """A dependence that explains far more than the best effect does: no effect is what it is."""
+    """A dependence that explains more than a right law could leave to it: no effect is what it is.
+
+    It competes with the best effect as a model of its own, by the same fall of the cost and the
+    same penalty for each of its numbers.
+    """
     score = next(
         (
             score
@@ -154,19 +149,20 @@ def _beyond_the_library(
     certain = [cell for cell in this.dependences if cell.p_value < VERY_SURE]
     if score is not None and best is not None:
         grasp = _grasp(score, runs, this.before.point.model)
-        data = runs.data
-        explained = max(_fall(score.gain, data), this.before.cost - best.cost)
+        data, penalty = runs.data, this.before.price_of_one
+        fall = max(_fall(score.gain, data), this.before.cost - best.cost)
+        worth = fall - (best.price - this.before.price)
 
-        def far_more(cell: Dependence) -> bool:
+        def more_than_a_law_leaves(cell: Dependence) -> bool:
             own = cell.channel in grasp.channels and bool(
                 grasp.fields & set(cell.variable.looks_at)
             )
-            factor = FAR_MORE_OF_ITS_OWN if own else FAR_MORE
-            return _fall(cell.gain - 2 * cell.degrees, data) > factor * explained + 15.0
+            share = OWN_LAW_SHARE if own else LAW_SHARE
+            return share * (_fall(cell.gain, data) - penalty * cell.degrees) > worth + RIVAL
 
-        certain = [cell for cell in certain if far_more(cell)]
+        certain = [cell for cell in certain if more_than_a_law_leaves(cell)]
     knobs = (*CALIBRATION, *this.before.knobs)
-    found = lasting(runs, this.before.point, kind, knobs, certain[:ASKED])
+    found = lasting(runs, this.before.point, kind, knobs, certain[:CELLS_ASKED])
     return next((cell for cell, p_value in found if p_value < SURE), None)
 
 

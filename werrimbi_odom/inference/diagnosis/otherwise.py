@@ -18,18 +18,11 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.judged_legs import Prepared, judged_legs
 from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.rules import GROSS, OWN_GAIN
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
-
-GROSS = 3.0
-"""Times the median error of the fitted drives, beyond which a drive is looked at by itself. A
-manoeuvre that shows an effect errs more than others by as much, so this alone is no finding."""
-
-OWN_GAIN = 3.0
-"""Times by which its own set-up must lower a drive's typical error: twice the 1.5 that a session
-must show, because one drive is less than a session."""
 
 
 @dataclass(frozen=True)

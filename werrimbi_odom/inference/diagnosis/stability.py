@@ -16,13 +16,11 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.diagnosis.search import Round
-from werrimbi_odom.inference.diagnosis.selection import RIVAL, Fitted
+from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.design import unexpected
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import HALF_PARTS, RIVAL
 from werrimbi_odom.model.pose import Floats
-
-PARTS = 10
-"""Of a drive, that go to odd and even halves in turn."""
 
 
 def rivals_in_halves(
@@ -57,6 +55,6 @@ def halves(runs: Together) -> Iterator[NDArray[np.bool_]]:
     first = runs.legs[runs.run_of_leg]
     count = np.diff(runs.legs)[runs.run_of_leg]
     number = np.arange(runs.count) - first
-    for half in ((number * PARTS // count) % 2 == 0, 2 * number < count):
+    for half in ((number * HALF_PARTS // count) % 2 == 0, 2 * number < count):
         yield half
         yield ~half

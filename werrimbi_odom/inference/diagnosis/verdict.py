@@ -15,17 +15,15 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge, Sides
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
-from werrimbi_odom.inference.diagnosis.selection import RIVAL, Fitted
+from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.stability import rivals_in_halves
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import CALIBRATION_WORTH, RIVAL, SIMPLER
 from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding
 from werrimbi_odom.model.robot import Robot
 
 Verdict = Literal["none", "named", "ambiguous", "unknown"]
-
-SIMPLER = 3.0
-"""By how much an effect must cost less than the calibration that it would replace."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +100,11 @@ def told(
     """Everything put together."""
     judge, set_up = begun.judge, begun.set_up
     mistakes = [finding.effect for finding in set_up.findings]
-    sizes = [name for name in final.calibrated if final.importance[name] > 2.0 * final.price_of_one]
+    sizes = [
+        name
+        for name in final.calibrated
+        if final.importance[name] > CALIBRATION_WORTH * final.price_of_one
+    ]
     effects = sorted([*final.names, *sizes], key=lambda name: -final.importance[name])
     found = tuple(dict.fromkeys([*mistakes, *effects]))
     rivals: tuple[str, ...] = ()
