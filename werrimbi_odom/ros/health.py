@@ -16,6 +16,7 @@ from werrimbi_odom.model.encoder import EncoderTally
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
 
+_REFUSALS = ("refused: ", "refused set_pose: ", "not learnt from: ")
 _WORTH_A_WARNING = ("resets", "jumps", "implausible", "clock jumps", "out of order", "gaps")
 
 
@@ -43,6 +44,7 @@ class Health:
         self._heard_at = [-float("inf")] * len(topics)
         self._refused: Counter[str] = Counter()
         self._refused_poses: Counter[str] = Counter()
+        self._not_learnt: Counter[str] = Counter()
         self._lost = 0
         self._before: dict[str, int] = {}
         self._reported_at = time.monotonic()
@@ -59,6 +61,10 @@ class Health:
     def refuse_pose(self, cause: str, detail: str) -> None:
         """Note that a message on set_pose could not be used."""
         self._note(self._refused_poses, f"set_pose refused: {cause}", cause, detail)
+
+    def refuse_to_learn(self, cause: str, detail: str) -> None:
+        """Note that a message of the topic that is learnt from could not be used."""
+        self._note(self._not_learnt, f"not learnt from: {cause}", cause, detail)
 
     def lose(self, event: Any) -> None:
         """Note that DDS has lost input messages."""
@@ -126,6 +132,7 @@ class Health:
             **{f"refused: {cause}": n for cause, n in self._refused.items()},
             "refused set_pose": self._refused_poses.total(),
             **{f"refused set_pose: {cause}": n for cause, n in self._refused_poses.items()},
+            **{f"not learnt from: {cause}": n for cause, n in self._not_learnt.items()},
         }
 
     def _verdict(self, now: float, new: Mapping[str, int]) -> tuple[bytes, str]:
@@ -145,7 +152,7 @@ class Health:
         refusals = [
             f"{key.removeprefix('refused: ')} ({n})"
             for key, n in new.items()
-            if n > 0 and key.startswith(("refused: ", "refused set_pose: "))
+            if n > 0 and key.startswith(_REFUSALS)
         ]
         events = [f"{key} ({new[key]})" for key in _WORTH_A_WARNING if new[key] > 0]
         happened = ", ".join(refusals + events)
