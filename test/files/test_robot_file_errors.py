@@ -53,6 +53,23 @@ def complaint(path: Path, text: str | bytes) -> str:
         ),
         (_with("5: 1.0"), ", line 7: unknown parameter 5"),
         (
+            GOOD.replace("0.35", "1.0e-300"),
+            ", line 3: wheel_separation times wheel_separation_multiplier must be from 1e-09 to "
+            "1e+09 m, it is 1e-300 m",
+        ),
+        (
+            _with("wheel_separation_multiplier: 1.0e+10"),
+            ", line 7: wheel_separation times wheel_separation_multiplier must be from",
+        ),
+        (
+            GOOD.replace(
+                "right_ticks_per_revolution: 2000.0", "right_ticks_per_revolution: 5e-324"
+            ),
+            ", line 6: travel for one count (wheel_radius times right_wheel_radius_multiplier "
+            "times 2 pi over right_ticks_per_revolution) must be from 1e-15 to 1e+09 m, it is inf",
+        ),
+        (_with("left_wheel_noise: 1.0e160"), ", line 7: left_wheel_noise must be at most 1000"),
+        (
             GOOD.replace("0.05", "-0.05"),
             ", line 4: wheel_radius must be a number greater than 0 (m), not -0.05",
         ),
