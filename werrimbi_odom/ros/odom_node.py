@@ -30,6 +30,7 @@ from visualization_msgs.msg import MarkerArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.ros import inputs, parameters
+from werrimbi_odom.ros.graph import crowds, namesakes
 from werrimbi_odom.ros.health import Health
 from werrimbi_odom.ros.learning import learning_of, told
 from werrimbi_odom.ros.markers import PieceTrail
@@ -201,7 +202,14 @@ class OdomNode(Node):  # type: ignore[misc]
     def _publish_diagnostics(self) -> None:
         name = f"{full_name(self)}: wheel encoders"
         effects = told(self._settings.effects, self._learning)
-        status = self._health.report(name, self._tracker.tally, self._input.tally(), effects)
+        status = self._health.report(
+            name,
+            self._tracker.tally,
+            self._input.tally(),
+            effects,
+            crowds(self, self._topics),
+            namesakes(self),
+        )
         if status.level != self._level:
             self._level = status.level
             # Two lines, because rclpy knows a logging call by its line and its severity.
