@@ -1,10 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Who else is there: more publishers on a topic than one, and other nodes of our name."""
+"""Who we are, and who else is there: publishers on a topic, other nodes of our name."""
 
 from __future__ import annotations
 
 from rclpy.node import Node
+
+
+def full_name(node: Node) -> str:
+    """Name with namespace, as the diagnostics of several robots need it to be told apart."""
+    return str(node.get_fully_qualified_name().lstrip("/"))
 
 
 def crowds(node: Node, topics: tuple[str, ...]) -> dict[str, str]:

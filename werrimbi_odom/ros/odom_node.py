@@ -30,7 +30,7 @@ from visualization_msgs.msg import MarkerArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.ros import inputs, parameters
-from werrimbi_odom.ros.graph import crowds, namesakes
+from werrimbi_odom.ros.graph import crowds, full_name, namesakes
 from werrimbi_odom.ros.health import Health
 from werrimbi_odom.ros.learning import learning_of, told
 from werrimbi_odom.ros.markers import PieceTrail
@@ -254,11 +254,6 @@ class OdomNode(Node):  # type: ignore[misc]
             f"{values['input_type']} on {' and '.join(self._topics)}, odometry on "
             f"{self._odometry.topic_name} from {self._frame} to {values['base_frame_id']}"
         )
-
-
-def full_name(node: Node) -> str:
-    """Name with namespace, as the diagnostics of several robots need it to be told apart."""
-    return str(node.get_fully_qualified_name().lstrip("/"))
 
 
 def _transform_sender(node: Node) -> SendTransform:
