@@ -52,6 +52,13 @@ def complaint(path: Path, text: str | bytes) -> str:
             "the nearest known one is wheel_separation_multiplier",
         ),
         (_with("5: 1.0"), ", line 7: unknown parameter 5"),
+        *(
+            (GOOD.replace("0.05", number), f", line 4: ROS reads {number} otherwise than YAML does")
+            for number in ("0100", "-0100", "089", "1_0", "1_0.5", "1_e3", "0o17", "0b11", "0x1_F")
+        ),
+        (_slipping("{creep: 0_1}"), ", line 8: ROS reads 0_1 otherwise"),
+        (GOOD.replace("0.05", '!!int "010"'), ", line 4: ROS reads 010 otherwise"),
+        ("%YAML 1.1\n---\n" + GOOD, ", line 2: leave out %YAML"),
         (
             GOOD.replace("0.35", "1.0e-300"),
             ", line 3: wheel_separation times wheel_separation_multiplier must be from 1e-09 to "
