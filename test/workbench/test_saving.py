@@ -13,9 +13,8 @@ import pytest
 
 from test.workbench.session import ROBOT
 from werrimbi_odom.effects import find
-from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
-from werrimbi_odom.workbench.saving import Target, beside, refuse, saved, text_of
+from werrimbi_odom.workbench.saving import Target, beside, saved, text_of
 from werrimbi_odom.workbench.steps import Session, begun
 
 
@@ -75,13 +74,3 @@ def test_force_is_for_the_first_tab_alone(source: RobotFile, tmp_path: Path) -> 
     first = saved(source, session(source), target)
     second = saved(source, session(source), target, taken=set(first.saved))
     assert list(second.saved) == [tmp_path / "mine_2.yaml"]
-
-
-def test_an_out_that_cannot_be_is_refused_before_any_work(tmp_path: Path) -> None:
-    there = tmp_path / "there.yaml"
-    there.write_text("")
-    for out, word in ((tmp_path, "folder"), (there, "--force"), (tmp_path / "no" / "a", "folder")):
-        with pytest.raises(InputError, match=word):
-            refuse(out, force=False)
-    refuse(there, force=True)
-    refuse(tmp_path / "new.yaml", force=False)

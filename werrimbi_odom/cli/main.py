@@ -12,6 +12,8 @@ from importlib import import_module, metadata
 from types import ModuleType
 from typing import NoReturn
 
+from werrimbi_odom.cli.outputs import refuse_files
+from werrimbi_odom.cli.packages import EXTRAS, lacking, refuse_lacking
 from werrimbi_odom.errors import InputError
 
 VERBS = (
@@ -55,6 +57,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     try:
         arguments = _parser(words).parse_args(words)
         verb = f"werrimbi {arguments.verb}"
+        refuse_lacking(arguments)
+        refuse_files(arguments)
         code = int(_module(arguments.verb).run(arguments))
         sys.stdout.flush()  # here, where a broken pipe is still caught
         return code
@@ -68,6 +72,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         return NO_READER
     except InputError as error:
         problem = str(error)
+    except ModuleNotFoundError as missing:
+        if (missing.name or "").partition(".")[0] not in EXTRAS:
+            raise
+        problem = lacking(missing.name or "", verb)
     except MemoryError:
         problem = "this needs more memory than there is; cut the run into several"
     except OSError as error:

@@ -9,7 +9,6 @@ from collections.abc import Collection
 from dataclasses import dataclass
 from pathlib import Path
 
-from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.parameters import PARAMETERS
 from werrimbi_odom.files.robot_file import PARAMETER_KEY, RobotFile, write_robot_file
 from werrimbi_odom.files.yaml_edit import edited
@@ -99,19 +98,3 @@ def changed_lines(before: str, after: str) -> list[tuple[str, str]]:
     """Lines of the new file with "+" (new), "-" (gone) or " " (as before) before each."""
     lines = difflib.ndiff(before.splitlines(), after.splitlines())
     return [(line[0], line[2:]) for line in lines if line[0] in "+- "]
-
-
-def refuse(out: Path, force: bool) -> None:
-    """Before any work: an --out that cannot be written.
-
-    Raises
-    ------
-    InputError
-        When it is a folder, exists, or lies in no folder.
-    """
-    if out.is_dir():
-        raise InputError(f"--out {out} is a folder; give a file name in it")
-    if out.exists() and not force:
-        raise InputError(f"{out} exists; --force overwrites it, another --out keeps it")
-    if not out.parent.is_dir():
-        raise InputError(f"--out {out}: there is no folder {out.parent}")
