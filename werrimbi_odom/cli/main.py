@@ -55,15 +55,18 @@ def main(argv: Sequence[str] | None = None) -> int:
     words = sys.argv[1:] if argv is None else list(argv)
     verb = "werrimbi"
     try:
-        arguments = _parser(words).parse_args(words)
+        try:
+            arguments = _parser(words).parse_args(words)
+        except SystemExit as end:  # argparse ends --help and bad usage so
+            return end.code if isinstance(end.code, int) else BAD_INPUT
         verb = f"werrimbi {arguments.verb}"
         refuse_lacking(arguments)
         refuse_files(arguments)
         code = int(_module(arguments.verb).run(arguments))
         sys.stdout.flush()  # here, where a broken pipe is still caught
         return code
-    except SystemExit as end:  # argparse ends --help and bad usage so
-        return end.code if isinstance(end.code, int) else BAD_INPUT
+    except SystemExit as end:  # nothing of ours ends so; what was asked for has not been done
+        problem = f"code that it ran ended it (SystemExit: {end.code})"
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
