@@ -148,15 +148,7 @@ def write_robot_file(
         robot_of({**source.values, **wanted})
     except ValueError as error:
         raise InputError(str(error)) from error
-    for name in source.given:
-        if find(name).kind == "float":  # the node's parameters are typed: 2000 is no double
-            wanted.setdefault(name, source.values[name])
-    order = tuple(item.name for item in PARAMETERS)
-    place = (source.node, PARAMETER_KEY)
-    text = edited(source.text, place, wanted, order)
-    if effects is not None:
-        _check(effects)
-        text = with_effects(text, place, effects)
+    text = new_text(source, wanted, effects)
     held = source.effects if effects is None else tuple(effects)
     written = _read_back(text, out, source, held)
     if (
@@ -168,6 +160,30 @@ def write_robot_file(
     with replacing(out) as file:
         file.write(text)
     return written
+
+
+def new_text(
+    source: RobotFile,
+    changes: Mapping[str, Value],
+    effects: Sequence[AppliedEffect] | None = None,
+) -> str:
+    """The text that `write_robot_file` writes, for who wants to read it before.
+
+    Raises
+    ------
+    InputError
+        When a change is not a value of its parameter, or an effect's of its.
+    """
+    wanted = {name: find(name).checked(value) for name, value in changes.items()}
+    for name in source.given:
+        if find(name).kind == "float":  # the node's parameters are typed: 2000 is no double
+            wanted.setdefault(name, source.values[name])
+    place = (source.node, PARAMETER_KEY)
+    text = edited(source.text, place, wanted, tuple(item.name for item in PARAMETERS))
+    if effects is None:
+        return text
+    _check(effects)
+    return with_effects(text, place, effects)
 
 
 def _check(effects: Sequence[AppliedEffect]) -> None:

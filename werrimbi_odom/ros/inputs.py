@@ -27,6 +27,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Int32, Int64, Int64MultiArray
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.pairing import Pairing
 from werrimbi_odom.files.parameters import Value, robot_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros.health import Health
@@ -172,27 +173,19 @@ class JointStates:
 
 
 class Pair:
-    """Two topics, one for each wheel, paired by arrival (std_msgs/Int32 or Int64).
-
-    A count is paired with the nearest of the other wheel within the window: with the one that
-    waits, or, when the next one comes closer than that did, with this. So a pairing that began one
-    message off, after a lost one, mends itself. What finds no partner is dropped, and its motion is
-    in the next one.
-    """
+    """Two topics, a wheel each (std_msgs/Int32 or Int64), paired by arrival; see `Pairing`."""
 
     def __init__(self, wiring: Wiring, message_type: type) -> None:
         self._take, self._health = wiring.take, wiring.health
         self._stamps = ArrivalStamps(wiring.node)
-        self._window = int(1e9 * float(wiring.values["pairing_window"]))  # type: ignore[arg-type]
-        self._newest = [_Count(), _Count()]
-        self._unpaired = 0
-        self._earlier = 0
+        window = float(wiring.values["pairing_window"])  # type: ignore[arg-type]
+        self._pairing = Pairing(int(1e9 * window))
         for side, topic in enumerate(topics_of(wiring.values)):
             _subscribe(wiring, message_type, topic, self._listener(side))
 
     def tally(self) -> dict[str, int]:
         """Counts that found no partner, and those that came before theirs."""
-        return {"unpaired": self._unpaired, "earlier of a pair": self._earlier}
+        return {"unpaired": self._pairing.unpaired, "earlier of a pair": self._pairing.earlier}
 
     def _listener(self, side: int) -> Callable[[Any, Info], None]:
         def arrived(message: Any, info: Info) -> None:
@@ -202,30 +195,9 @@ class Pair:
 
     def _arrived(self, side: int, value: int, info: Info) -> None:
         self._health.hear(side, info)
-        self._unpaired += self._newest[side].waits
-        count = self._newest[side] = _Count(value, arrival_of(info))
-        other = self._newest[1 - side]
-        apart = abs(count.arrival - other.arrival)
-        if apart <= self._window and apart < other.apart:
-            self._earlier += other.waits
-            count.apart = other.apart = apart
-            left, right = self._newest
-            self._take(self._stamps.of(info), left.value, right.value)
-
-
-@dataclass(slots=True)
-class _Count:
-    """A count of one wheel, and how far in time its partner was."""
-
-    value: int = 0
-    arrival: int = -(10**18)
-    """[ns]"""
-    apart: float = math.inf
-    """[ns]; infinite while it has none."""
-
-    @property
-    def waits(self) -> bool:
-        return self.apart == math.inf and self.arrival > 0
+        pair = self._pairing.take(side, value, arrival_of(info))
+        if pair is not None:
+            self._take(self._stamps.of(info), *pair)
 
 
 class Ticks:
