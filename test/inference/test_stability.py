@@ -13,8 +13,8 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
 from werrimbi_odom.inference.diagnosis.stability import halves, rivals_in_halves
-from werrimbi_odom.inference.fitting.matching import match_finely
 from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.robot import Robot
 
 GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)

@@ -81,3 +81,25 @@ that are put aside: a quarter, from both halves of the drive."""
 
 SET_ASIDE_ROWS = 80
 """Poses that a drive must have for it, ten a stretch; else whole drives are put aside."""
+
+# ------------------------------------------------------------------------- gaps of a recording
+
+GAP_INTERVALS = 10.0
+"""Times the usual interval, from which on a silence is a gap.
+
+Of messages that come at random with a steady mean one interval in 1000 is as long (an exponential
+variable is above ten medians with a chance of 2^-10); of those that come at a rate none is.
+"""
+
+GAP_WAYS = 5.0
+"""Times the usual way of an interval, that must have been gone in a gap.
+
+A localisation that speaks every quarter of a metre is silent for as long as the robot stands, and
+its next interval is as long a way as any: that is its habit, no gap.
+"""
+
+GAP_LEG = 0.25
+"""Share of a leg that must have been gone in a gap: less makes no leg longer than others are."""
+
+GAP_FEWEST = 20
+"""Intervals with travel in them, below which nobody knows what is usual: poses taken by hand."""

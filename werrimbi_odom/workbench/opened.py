@@ -103,7 +103,7 @@ def opened(given: Given) -> Opened:
     judge = judge_of(runs, holdout, robot, **judging)
     return Opened(
         given,
-        Drives(judge.train, finely(judge.train, judging["limits"])),
+        Drives(judge.train, finely(judge.train)),
         Drives(judge.holdout, judge.fine),
         tuple(run.name for run in judge.kept_back),
     )

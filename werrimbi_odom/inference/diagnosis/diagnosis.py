@@ -32,8 +32,8 @@ from werrimbi_odom.inference.diagnosis.search import (
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, chance, told
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
-from werrimbi_odom.inference.fitting.matching import match_finely, stated
 from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.legs.cutting import match_finely, stated
 from werrimbi_odom.inference.rules import (
     CELLS_ASKED,
     LAW_SHARE,

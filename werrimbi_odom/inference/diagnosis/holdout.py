@@ -173,7 +173,7 @@ def judge_of(
         prepare(some, robot, kind, leg=leg, limits=limits, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
         for some in (fitted_on, kept_back)
     )
-    return Judge(robot, kind, fitted_on, kept_back, train, held, finely(held, limits))
+    return Judge(robot, kind, fitted_on, kept_back, train, held, finely(held))
 
 
 def set_aside(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...]]:
