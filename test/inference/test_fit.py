@@ -130,8 +130,8 @@ def test_an_incremental_reference_calibrates_too() -> None:
     for run in runs:
         reference = run.reference
         drift = np.cumsum(1e-3 * random.standard_normal((2, reference.time.size)), axis=1)
-        reference.x += drift[0]
-        reference.y += drift[1]
+        reference.x[:] += drift[0]
+        reference.y[:] += drift[1]
     matched = [match(run, NOMINAL, 0.25) for run in runs]
     fit = fit_model(matched, start_point(matched, NOMINAL), "incremental")
     for index, knob in enumerate(fit.free):
@@ -149,8 +149,8 @@ def test_a_missing_effect_shows_as_a_dependence() -> None:
     """The reference measures a point 3 cm to the left of the axle's middle: turns displace it."""
     runs = runs_of(2)
     for run in runs:
-        run.reference.x -= 0.03 * np.sin(run.reference.yaw)
-        run.reference.y += 0.03 * np.cos(run.reference.yaw)
+        run.reference.x[:] -= 0.03 * np.sin(run.reference.yaw)
+        run.reference.y[:] += 0.03 * np.cos(run.reference.yaw)
     matched = [match(run, NOMINAL, 0.25) for run in runs]
     fit = fit_model(matched, start_point(matched, NOMINAL))
     strongest = dependences(together(matched), fit.point, "absolute", CALIBRATION)[0]

@@ -93,6 +93,9 @@ class Run:
     """What the reader chose or left out, in words for the user."""
     held_poses: int = 0
     """Poses of the reference that were left out, see `held.without_held_poses`."""
+    taken_out: tuple[tuple[float, float], ...] = ()
+    """Stretches of the reference that were put aside on purpose, from and to [s]: legs end there,
+    and begin anew."""
 
 
 def counts_of(values: Floats) -> Counts:

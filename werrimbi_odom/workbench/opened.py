@@ -13,7 +13,8 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison, judged
 from werrimbi_odom.inference.comparison.judged_legs import Prepared, finely
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
-from werrimbi_odom.inference.diagnosis.holdout import judge_of, known_at_home, set_aside
+from werrimbi_odom.inference.diagnosis.holdout import judge_of, known_at_home
+from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.robot import Robot

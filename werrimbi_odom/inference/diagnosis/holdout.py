@@ -7,14 +7,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import ReferenceKind, Run, Ticks
+from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.judged_legs import Prepared, finely, judged_legs, prepare
 from werrimbi_odom.inference.comparison.legs import statistics
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise, recorded_otherwise
 from werrimbi_odom.inference.diagnosis.search import with_own_values
+from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model, knobs_of
@@ -22,9 +21,6 @@ from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUp, look_for_mistakes
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
-
-SHARE = 0.25
-"""Of the runs, or of a single one, that is put aside where no held-out runs were given."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -174,37 +170,6 @@ def judge_of(
         for some in (fitted_on, kept_back)
     )
     return Judge(robot, kind, fitted_on, kept_back, train, held, finely(held))
-
-
-def set_aside(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...]]:
-    """Some of the runs for judging; of a single run its last part."""
-    if len(runs) > 1:
-        count = max(1, round(SHARE * len(runs)))
-        every = len(runs) / count
-        kept = {int((number + 0.5) * every) for number in range(count)}
-        return (
-            tuple(run for index, run in enumerate(runs) if index not in kept),
-            tuple(run for index, run in enumerate(runs) if index in kept),
-        )
-    run = runs[0]
-    time = run.ticks.time
-    at = float(time[0] + (1.0 - SHARE) * (time[-1] - time[0]))
-    return (_part(run, -np.inf, at),), (_part(run, at, np.inf),)
-
-
-def _part(run: Run, begin: float, end: float) -> Run:
-    ticks, reference = run.ticks, run.reference
-    which = (ticks.time >= begin) & (ticks.time < end)
-    cut = Ticks(
-        ticks.time[which],
-        ticks.left[which],
-        ticks.right[which],
-        {name: values[which] for name, values in ticks.channels.items()},
-    )
-    if reference is None:
-        return replace(run, ticks=cut)
-    there = (reference.time >= begin) & (reference.time < end)
-    return replace(run, ticks=cut, reference=reference.chosen(there))
 
 
 def _figures(prepared: Prepared, model: Model) -> tuple[float, float, float]:

@@ -242,7 +242,7 @@ def record_of(
         run.name,
         counters,
         measured,
-        touched(measured.time, [(part.begin, part.end) for part in found]),
+        touched(measured.time, [*((part.begin, part.end) for part in found), *run.taken_out]),
         found,
         _typical(reference.sigma_xy),
         _typical(reference.sigma_yaw),
@@ -259,7 +259,8 @@ def _silences(
     parts.append(("the ticks are", counters.time[inside], way[inside]))
     found = []
     for who, time, gone in parts:
-        for index in np.flatnonzero(gaps_in(time, gone)).tolist():
+        unheard = gaps_in(time, gone) & ~touched(time, run.taken_out)
+        for index in np.flatnonzero(unheard).tolist():
             begin, end = float(time[index]), float(time[index + 1])
             driven = _driven(robot, counters, begin, end)
             found.append(LeftOut(run.path, begin, end, "gap", f"{who} silent while {driven}"))
