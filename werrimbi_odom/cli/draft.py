@@ -130,11 +130,13 @@ def _words(draft: Draft, tried: Added) -> str:
     from werrimbi_odom.report.printed import filled
 
     cell, sides = draft.dependence, tried.holdout.sides
+    alone = tried.noise_alone(tried.holdout)
+    floor = f"noise alone: {1e3 * alone:.2f} mm; " if tried.explained else ""
     text = (
         f"No effect of the library explains these drives. Their {cell.channel} error goes with "
         f"{cell.name}, and a {draft.form} in it explains them best among the simple laws. With it, "
         f"the error of the held-out drives is {1e3 * sides.after:.2f} mm where it was "
-        f"{1e3 * sides.before:.2f} mm (noise alone: {1e3 * tried.holdout.floor:.2f} mm; rms over "
+        f"{1e3 * sides.before:.2f} mm ({floor}rms over "
         f"legs of {tried.holdout.after.leg:g} m). Why it is so, the data cannot know: read the "
         "law, find the physics, give it its name."
     )

@@ -70,6 +70,8 @@ class Start:
     """Effects beyond the given robot's."""
     knobs: tuple[Knob, ...]
     """Of all effects."""
+    gain: float = 0.0
+    """What its score promises, of an effect that begins where that points."""
 
 
 def drives_of(
@@ -94,23 +96,27 @@ def is_of_set_up(effect: Effect, set_up: SetUp) -> bool:
     return any(effect.name in (item.effect, *item.twins) for item in set_up.findings)
 
 
-def with_set_up(effect: Effect, robot: Robot, set_up: SetUp) -> tuple[Robot, tuple[str, ...]]:
-    """The robot with what the search for set-up mistakes found, `effect` among it.
+def with_set_up(
+    effects: Sequence[Effect], robot: Robot, set_up: SetUp
+) -> tuple[Robot, tuple[str, ...]]:
+    """The robot with what the search for set-up mistakes found, some of `effects` among it.
 
     Returns
     -------
     robot, names
-        All findings are put in where the effect is one of them, because one mistake mended alone
-        may leave the robot worse than before (both counters reversed). Else none but factors of
-        the sizes, which belong to the calibration.
+        All findings are put in where one of the effects is one of them, because one mistake mended
+        alone may leave the robot worse than before (both counters reversed). Else none but factors
+        of the sizes, which belong to the calibration.
     """
     found = {item.effect for item in set_up.findings} - {IN_DEGREES}
     mended = set_up.robot
-    if effect.name not in found and is_of_set_up(effect, set_up):
-        twin = next(item.effect for item in set_up.findings if effect.name in item.twins)
-        held = tuple(item for item in mended.effects if item.name != twin)
-        return replace(mended, effects=(effect.using(), *held)), (effect.name,)
-    if effect.name in found:
+    asked = [effect for effect in effects if is_of_set_up(effect, set_up)]
+    for effect in asked:
+        if effect.name not in found:
+            twin = next(item.effect for item in set_up.findings if effect.name in item.twins)
+            held = tuple(item for item in mended.effects if item.name != twin)
+            mended = replace(mended, effects=(effect.using(), *held))
+    if asked:
         held_before = {item.name for item in robot.effects}
         names = [item.name for item in mended.effects if item.name not in held_before]
         return mended, tuple(name for name in names if name not in CALIBRATED)
@@ -131,9 +137,8 @@ def starts(
     for score in _best_shapes(found):
         own = knobs_of_candidate(score.candidate)
         model = put_in(point.model, score)
-        begun.append(
-            Start(replace(point, model=model), (*before.names, effect.name), (*knobs, *own))
-        )
+        names = (*before.names, effect.name)
+        begun.append(Start(replace(point, model=model), names, (*knobs, *own), score.gain))
     return tuple(begun)
 
 

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, chance
@@ -33,8 +34,10 @@ __all__ = ["NextSteps", "Told", "words_of"]
 class NextSteps:
     """Commands for the same robot and drives, as one would type them."""
 
-    add: str = "werrimbi add {effect} --robot R RUN... --out NEW.yaml"
-    """With {effect} where its name goes."""
+    add: Callable[[Sequence[str]], str] = lambda names: (
+        f"werrimbi add {','.join(names)} --robot R RUN... --out NEW.yaml"
+    )
+    """Of the names of effects."""
     draft: str = "werrimbi draft --robot R RUN... --out my_effect"
     diagnose: str = "werrimbi diagnose"
 
@@ -147,8 +150,9 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
         lines.append(
             "No manoeuvre of the library tells them apart in reasonable time; a ruler may."
         )
+    rest = [other for other in diagnosis.found if other not in rivals]
     lines.append("Or, if you know which it is, add it, for example:")
-    lines.append(f"    {steps.add.format(effect=rivals[0])}")
+    lines.append(f"    {steps.add([rivals[0], *rest])}")
     for name in rivals[:3]:
         lines += ruler(effect_named(diagnosis, name), f"Check {name}")
     for other in diagnosis.found[1:]:
@@ -233,11 +237,11 @@ def _next_add(told: Told, name: str, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     if name == IN_DEGREES:
         return ["Next: convert the reference's yaw to radians, and diagnose again."]
-    lines = ["Next: add it to the model, fitted with all calibration:"]
-    lines.append(f"    {steps.add.format(effect=name)}")
-    if len(diagnosis.found) > 1:
-        lines.append("and diagnose again with the new robot file.")
-    return lines
+    it = "it" if len(diagnosis.found) == 1 else "all of it"
+    return [
+        f"Next: add {it} to the model, fitted together with all calibration:",
+        f"    {steps.add(diagnosis.found)}",
+    ]
 
 
 def _not_shown(told: Told) -> list[str]:

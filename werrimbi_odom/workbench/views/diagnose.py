@@ -30,7 +30,7 @@ MOST_ROWS = 12
 """Variables in the map."""
 
 STEPS = NextSteps(
-    add="press Add beside {effect} below",
+    add=lambda names: "press Add below" if len(names) == 1 else "press Add all below",
     draft="werrimbi draft, on the command line",
     diagnose="step 2, Diagnose",
 )
