@@ -110,8 +110,8 @@ def add_effects(
     Raises
     ------
     InputError
-        When a run cannot be used, a channel that an effect looks at was not measured, or the
-        drives do not show at all what one looks at.
+        When a run cannot be used, or is in other units; when a channel that an effect looks at was
+        not measured, or the drives do not show at all what one looks at.
     """
     held = {item.name for item in robot.effects}
     for effect in effects:
@@ -123,6 +123,8 @@ def add_effects(
             )
     show(0.0, "set-up")
     set_up = look_for_mistakes([*runs, *holdout], robot, kind, limits)
+    if set_up.to_convert is not None:
+        raise InputError(f"{runs[0].path}: {set_up.to_convert}")
     judge = judge_of(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
     begun, also = with_set_up(effects, robot, set_up)
     sigma = (sigma_xy or _stated(judge, "xy_told"), sigma_yaw or _stated(judge, "yaw_told"))

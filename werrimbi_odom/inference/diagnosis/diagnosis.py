@@ -33,7 +33,7 @@ from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.matching import match_finely, stated
 from werrimbi_odom.inference.fitting.together import Together, together
-from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, look_for_mistakes
+from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
@@ -88,13 +88,12 @@ def diagnose(
     Raises
     ------
     InputError
-        When a run has no usable reference or no ticks, or its headings are in degrees.
+        When a run has no usable reference or no ticks, or is in degrees or millimetres.
     """
     show(0.0, "set-up")
     set_up = look_for_mistakes([*runs, *holdout], robot, kind, limits)
-    for finding in set_up.findings:
-        if finding.effect == IN_DEGREES:
-            raise InputError(f"{runs[0].path}: {finding.words}")
+    if set_up.to_convert is not None:
+        raise InputError(f"{runs[0].path}: {set_up.to_convert}")
     judge = judge_of(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
     laid = together(match_finely(judge.fitted_on, set_up.robot, leg, limits))
     sigma = (

@@ -31,8 +31,9 @@ class Ranked:
     """An effect and what it is worth."""
 
     effect: str
-    p_value: float
-    """Of as much by chance, corrected for the number of effects tried."""
+    p_value: float | None
+    """Of as much by chance, corrected for the number of effects tried; None: not tested, as set-up
+    mistakes are not."""
     train: Sides | None
     """Position error before and after adding it [m]; None where it was not worth a fit."""
     holdout: Sides | None
@@ -180,18 +181,23 @@ def _ranking(
     judge: Judge,
     start: Errors,
 ) -> list[Ranked]:
-    """All effects, what was found first; an effect's figures are those of its first trial."""
+    """All effects, what was found first, with the figures of the round that took it.
+
+    Those of the others are of their first trial.
+    """
     ranked: dict[str, Ranked] = {}
     mended = judge.of(Model(set_up.robot, judge.nothing_of_own)) if set_up.findings else start
     for finding in set_up.findings:
-        ranked[finding.effect] = _worth(finding.effect, 0.0, start, mended)
+        ranked[finding.effect] = _worth(finding.effect, None, start, mended)
     before = mended
     for number, this in enumerate(rounds):
         if number > 0:
             before = judge.of(this.before.point.model)
         for fit in this.tried:
             name = fit.names[-1]
-            if name not in ranked:
+            # What was taken is told as it stood when it was taken, not at an earlier trial.
+            taken = final.names[number : number + 1] == (name,)
+            if name not in ranked or taken:
                 p_value = chance(fit, this.before, this.number)
                 ranked[name] = _worth(name, p_value, before, judge.of(fit.point.model))
     calibrated = judge.of(rounds[0].before.point.model)
@@ -205,10 +211,10 @@ def _ranking(
         p_value = min(1.0, chi2_above(score.gain, score.degrees) * rounds[0].number)
         ranked.setdefault(score.candidate.name, Ranked(score.candidate.name, p_value, None, None))
     first = [ranked.pop(name) for name in found if name in ranked]
-    return [*first, *sorted(ranked.values(), key=lambda item: item.p_value)]
+    return [*first, *sorted(ranked.values(), key=lambda item: item.p_value or 0.0)]
 
 
-def _worth(effect: str, p_value: float, before: Errors, after: Errors) -> Ranked:
+def _worth(effect: str, p_value: float | None, before: Errors, after: Errors) -> Ranked:
     return Ranked(
         effect,
         p_value,

@@ -11,7 +11,7 @@ from typing import Any
 from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.values import FittedParameter
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
-from werrimbi_odom.report.numbers import listed, scaled_with_std
+from werrimbi_odom.report.numbers import listed, quantity, scaled_with_std
 from werrimbi_odom.report.printed import WIDTH, filled, table
 from werrimbi_odom.report.sizes import sizes_words
 
@@ -65,7 +65,7 @@ def value_told(item: FittedParameter) -> str:
     if item.value is None:
         return "another one in each drive"
     std = math.nan if item.std is None else item.std
-    return scaled_with_std(item.value, std, item.declared.unit)
+    return quantity(item.value, std, item.declared.unit)
 
 
 def remark_told(item: FittedParameter) -> str:

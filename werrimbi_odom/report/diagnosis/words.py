@@ -8,19 +8,21 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, chance
-from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES
+from werrimbi_odom.inference.diagnosis.diagnosis import VERY_SURE, Diagnosis
 from werrimbi_odom.report.diagnosis.as_json import significant
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import (
     Told,
     about,
     also,
+    at_bounds,
     cost,
     judged,
     mistakes,
+    one_wheel,
     ruler,
     sizes,
+    sizes_found,
     whole,
 )
 from werrimbi_odom.report.diagnosis.values import effect_named
@@ -64,7 +66,17 @@ def _filled(text: str) -> str:
     return filled(text, hanging=head)
 
 
-_HEADS = ("What it is", "How large", "How sure", "What it costs", "Check it", "Next", "But", "Why")
+_HEADS = (
+    "On the robot",
+    "What it is",
+    "How large",
+    "How sure",
+    "What it costs",
+    "Check it",
+    "Next",
+    "But",
+    "Why",
+)
 
 
 def _none(told: Told, steps: NextSteps) -> list[str]:
@@ -104,16 +116,20 @@ def _named(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     name = diagnosis.effect or ""
     lines = _set_up(diagnosis)
+    things = _things(diagnosis)
     if not lines:
-        lines.append(f"One thing is missing: {name}." if len(diagnosis.found) == 1 else
-                     f"{_count(len(diagnosis.found))} things are missing: "
-                     f"{listed(diagnosis.found)}. The most important one first.")  # fmt: skip
+        lines.append(f"One thing is missing: {things[0]}." if len(things) == 1 else
+                     f"{_count(len(things))} things are missing: "
+                     f"{listed(things)}. The most important one first.")  # fmt: skip
     lines += about(told, name)
     for other in diagnosis.found[1:]:
         if other not in mistakes(diagnosis):
             lines += also(told, other)
+    sizes = sizes_found(diagnosis)
+    if sizes:
+        lines.append(f"On the robot: {sizes}.")
     lines += [*whole(told), *_law(told), *_at_bounds(diagnosis)]
-    lines += _next_add(told, name, steps)
+    lines += _next_add(told, steps)
     return [*lines, *_not_shown(told)]
 
 
@@ -154,7 +170,7 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
     lines.append("Or, if you know which it is, add it, for example:")
     lines.append(f"    {steps.add([rivals[0], *rest])}")
     for name in rivals[:3]:
-        lines += ruler(effect_named(diagnosis, name), f"Check {name}")
+        lines += ruler(diagnosis, effect_named(diagnosis, name), f"Check {name}")
     for other in diagnosis.found[1:]:
         if other not in rivals and other not in mistakes(diagnosis):
             lines += also(told, other)
@@ -192,6 +208,19 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
     return lines
 
 
+def _things(diagnosis: Diagnosis) -> list[str]:
+    """What was found, by name; one wheel that is off is one thing, whatever effects it takes."""
+    side = one_wheel(diagnosis)
+    if side is None:
+        return list(diagnosis.found)
+    radii = [name for name in diagnosis.found if name in _OF_A_WHEEL]
+    told = {radii[0]: f"the size of the {side} wheel ({' with '.join(radii)})", radii[1]: ""}
+    return [words for name in diagnosis.found if (words := told.get(name, name))]
+
+
+_OF_A_WHEEL = ("unequal_wheel_radii", "wheel_radius_scale")
+
+
 def _set_up(diagnosis: Diagnosis) -> list[str]:
     """Set-up mistakes first: nothing else counts while they are there."""
     findings = diagnosis.set_up.findings
@@ -215,28 +244,15 @@ def _law(told: Told) -> list[str]:
 
 
 def _at_bounds(diagnosis: Diagnosis) -> list[str]:
-    """Effects that would help at a value that physics does not allow."""
-    said: dict[str, str] = {}
-    for this in diagnosis.rounds:
-        for fit in this.tried:
-            name = fit.names[-1]
-            helps = fit.total < this.before.total and chance(fit, this.before, this.number) < SURE
-            wild = [knob for knob in fit.at_bound if knob.startswith(f"{name}.")]
-            if helps and wild and name not in diagnosis.found:
-                value = fit.point.model.robot.effects[-1].values[wild[0].rpartition(".")[2]]
-                said.setdefault(name, f"{wild[0].rpartition('.')[2]} = {value:g}")
     return [
-        f"But: {name} would lower the error too, only with {value}, beyond what physics allows: it "
-        "is not that effect. Look how the reference is made; one that was integrated from the same "
-        "counters errs so."
-        for name, value in said.items()
+        f"But: {name} would lower the error too, only with {value}, the limit of what physics "
+        "allows: it is not that effect."
+        for name, value in at_bounds(diagnosis).items()
     ]
 
 
-def _next_add(told: Told, name: str, steps: NextSteps) -> list[str]:
+def _next_add(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
-    if name == IN_DEGREES:
-        return ["Next: convert the reference's yaw to radians, and diagnose again."]
     it = "it" if len(diagnosis.found) == 1 else "all of it"
     return [
         f"Next: add {it} to the model, fitted together with all calibration:",
