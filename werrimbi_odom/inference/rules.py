@@ -19,3 +19,17 @@ that the effect is no more than that law's rest: half, as both then explain the 
 WORTH_FITTING = 30.0
 """What the linear score of a draft may lack of the best one's and still be fitted in full: a fit
 gains or loses a few units against its score, where a law is not a line in its numbers."""
+
+LASTS = 1e-3
+"""How often the disagreement of the parts of the drives may show as much as what is told to be left
+beside all that was found: as for an effect. A few kicks at a few places do not last."""
+
+LEFT_ASKED = 5
+"""Dependences of which it is asked whether they last: one of the first does, or none is told."""
+
+MOST_FITTED = 3
+"""Drafts that are fitted in full, each for a second or two: the answer is there while one waits."""
+
+NEIGHBOUR = 1.6
+"""Widths of a floor's cell within which another cell is its neighbour: corners touch at 1.4, and
+steps are seldom in the very middle of their cell."""

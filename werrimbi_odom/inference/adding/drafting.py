@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,12 +23,13 @@ from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.draft_laws import Form, Seen, forms_of, spot_form
 from werrimbi_odom.inference.adding.draft_source import name_of, source_of
-from werrimbi_odom.inference.adding.start import Drives, starts
-from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.adding.start import Drives, scored, start_at
+from werrimbi_odom.inference.diagnosis.candidates import Score
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, fall_of_cost
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
 from werrimbi_odom.inference.diagnosis.selection import RIVAL, Fitted
-from werrimbi_odom.inference.diagnosis.variables import Variable, floor_cells, variables_of
-from werrimbi_odom.inference.fitting.prediction import path_of
+from werrimbi_odom.inference.diagnosis.variables import Variable, variables_of
+from werrimbi_odom.inference.rules import MOST_FITTED, WORTH_FITTING
 from werrimbi_odom.model.effect import Effect
 
 BELIEVED = 1e-3
@@ -111,11 +112,11 @@ def draft_effect(
         for cell in cells
         for seen, form in _forms(diagnosis, cell, variables[cell.variable.name])
     ]
-    for number, (cell, seen, form) in enumerate(plans):
-        show(number / (len(plans) + 1), f"{cell.name}: {form.kind}")
-        option = _fitted(diagnosis, drives, cell, seen, form)
-        if option is not None:
-            options.append(option)
+    show(0.0, "the forms of a law")
+    worth = _worth_fitting(diagnosis, drives, plans)
+    for number, plan in enumerate(worth):
+        show((number + 1) / (len(worth) + 2), f"{plan.cell.name}: {plan.form.kind}")
+        options.append(_fitted(diagnosis, drives, plan))
     if not options:
         names = ", ".join(dict.fromkeys(cell.name for cell in cells))
         raise InputError(f"no law can be drafted that is a line, step or curve in {names}")
@@ -154,7 +155,7 @@ def _forms(
 ) -> Iterator[tuple[Seen, Form]]:
     if variable.form == "place":
         if cell.amount.channel in ("left", "right", "along"):
-            yield Seen("position", "m", lambda side: ""), _spot(diagnosis, cell, variable)
+            yield Seen("position", "m", lambda side: ""), _spot(diagnosis, cell)
         return
     seen = _seen(variable)
     if seen is None:
@@ -207,38 +208,61 @@ def _angle_of(side: str) -> Callable[[str], str]:
     return lambda _: f"drive.{side}_angle"
 
 
-def _spot(diagnosis: Diagnosis, cell: Dependence, variable: Variable) -> Form:
-    """A circle around the floor's cell that the errors point at most."""
-    cells = floor_cells(variable.left, variable.right)
-    path = np.abs(path_of(diagnosis.final.point.model, diagnosis.runs).motion.along)
-    driven = cells.T @ path
-    weight = np.abs(cell.coefficients) * np.sqrt(driven)
-    chosen = int(np.argmax(weight))
-    inside = cells[:, chosen] > 0.5
-    x, y = float(np.mean(variable.left[inside])), float(np.mean(variable.right[inside]))
+def _spot(diagnosis: Diagnosis, cell: Dependence) -> Form:
+    """A circle around the place on the floor that the errors point at."""
+    x, y = place_of(cell)
     offsets = (-0.2, 0.0, 0.2)
     places = [(x + dx, y + dy) for dx, dy in zip(offsets, offsets, strict=True)]
-    size = _round(float(cell.coefficients[chosen]))
+    size = _round(float(cell.coefficients[np.argmax(np.abs(cell.coefficients))]))
     half = 0.5 * diagnosis.given.track
     return spot_form(places, (0.2, 0.35, 0.6), size, half)
 
 
-def _fitted(
-    diagnosis: Diagnosis, drives: Drives, cell: Dependence, seen: Seen, form: Form
-) -> _Option | None:
-    """A draft of one form, fitted; None where it breaks a law or shows nothing."""
-    source = _written(diagnosis, cell, seen, form)
-    effect = loaded(source)
-    if not keeps_laws(effect):
-        return None
+@dataclass(frozen=True)
+class _Plan:
+    """A form that may be fitted, at the best of its shapes."""
+
+    cell: Dependence
+    seen: Seen
+    form: Form
+    effect: Effect
+    source: str
+    score: Score
+    excess: float
+    """By how much it should cost less than it takes, its numbers paid for."""
+
+
+def _worth_fitting(
+    diagnosis: Diagnosis, drives: Drives, plans: Sequence[tuple[Dependence, Seen, Form]]
+) -> list[_Plan]:
+    """The few forms that may be the best after a fit, by their scores: one pass of the filter.
+
+    Forms that are lines in their numbers score what they will gain; the law of a shape that is
+    fitted too (an edge, a spot) gains a little more.
+    """
+    base, data = diagnosis.final, diagnosis.runs.data
+    found = []
+    for cell, seen, form in plans:
+        source = _written(diagnosis, cell, seen, form)
+        effect = loaded(source)
+        score = max(
+            scored(drives, base, [effect], base.knobs), key=lambda each: each.gain, default=None
+        )
+        if score is not None:
+            fall = fall_of_cost(score.gain, data)
+            excess = fall - base.price_of_one * form.numbers
+            found.append(_Plan(cell, seen, form, effect, source, score, excess))
+    found.sort(key=lambda plan: -plan.excess)
+    near = [plan for plan in found if plan.excess > found[0].excess - WORTH_FITTING]
+    return [plan for plan in near[:MOST_FITTED] if keeps_laws(plan.effect)]
+
+
+def _fitted(diagnosis: Diagnosis, drives: Drives, plan: _Plan) -> _Option:
+    """A draft of one form, fitted from where its score points."""
     base = diagnosis.final
-    fits = [
-        drives.fit(start.point, start.names, start.knobs, diagnosis.given)
-        for start in starts(drives, base, effect, base.knobs)
-    ]
-    if not fits:
-        return None
-    return _Option(cell, seen, form, effect, source, min(fits, key=lambda fit: fit.total))
+    start = start_at(base, plan.score, base.knobs)
+    fit = drives.fit(start.point, start.names, start.knobs, diagnosis.given)
+    return _Option(plan.cell, plan.seen, plan.form, plan.effect, plan.source, fit)
 
 
 def _written(diagnosis: Diagnosis, cell: Dependence, seen: Seen, form: Form) -> str:

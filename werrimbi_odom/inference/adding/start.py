@@ -129,17 +129,25 @@ def starts(
     drives: Drives, before: Fitted, effect: Effect, knobs: Sequence[Knob]
 ) -> tuple[Start, ...]:
     """Where fits of an effect begin: at its score's values, for the best of its shapes."""
-    runs, point = drives.laid, before.point
+    found = scored(drives, before, [effect], knobs)
+    return tuple(start_at(before, score, knobs) for score in _best_shapes(found))
+
+
+def scored(
+    drives: Drives, before: Fitted, effects: Sequence[Effect], knobs: Sequence[Knob]
+) -> tuple[Score, ...]:
+    """What effects would explain beside a model, to first order: each shape of each effect."""
+    runs = drives.laid
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
-    tried = candidates([effect], (), channels, len(runs.runs))
-    found = scores(runs, point, drives.kind, (*CALIBRATION, *knobs), tried)
-    begun = []
-    for score in _best_shapes(found):
-        own = knobs_of_candidate(score.candidate)
-        model = put_in(point.model, score)
-        names = (*before.names, effect.name)
-        begun.append(Start(replace(point, model=model), names, (*knobs, *own), score.gain))
-    return tuple(begun)
+    tried = candidates(effects, (), channels, len(runs.runs))
+    return scores(runs, before.point, drives.kind, (*CALIBRATION, *knobs), tried)
+
+
+def start_at(before: Fitted, score: Score, knobs: Sequence[Knob]) -> Start:
+    """A fit that begins where a score points."""
+    own = knobs_of_candidate(score.candidate)
+    point = replace(before.point, model=put_in(before.point.model, score))
+    return Start(point, (*before.names, score.candidate.name), (*knobs, *own), score.gain)
 
 
 def _best_shapes(found: Sequence[Score]) -> list[Score]:

@@ -12,11 +12,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.diagnosis.candidates import Score
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
+from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.holdout import judge_of
 from werrimbi_odom.inference.diagnosis.lasting import lasting, lasting_effect
 from werrimbi_odom.inference.diagnosis.ownership import Grasp, grasp_of
@@ -103,14 +105,17 @@ def diagnose(
     show(0.1, "calibration")
     fit = first_fit(laid, set_up.robot, kind, sigma)
     rounds: list[Round] = []
-    beyond = None
+    beyond = misfit = None
     for number in range(ROUNDS):
         show(0.2 + 0.7 * number / ROUNDS, f"effects, round {number + 1}")
         this = search_round(laid, fit, kind, effects, set_up.robot, sigma)
         rounds.append(this)
         best = _best(this, laid, kind)
         beyond = _beyond_the_library(this, best, laid, kind)
-        if best is None or beyond is not None:
+        misfit = misfit_of_held_law(this, best, beyond, laid, kind)
+        if misfit is not None:
+            beyond = None
+        if best is None or beyond is not None or misfit is not None:
             break
         if not judge.holds(fit.point.model, best.point.model):
             break
@@ -124,7 +129,11 @@ def diagnose(
     instead: tuple[Instead, ...] = ()
     if not fit.names and fit.calibrated and beyond is None:
         instead = instead_of_calibration(laid, fit, kind, effects, set_up.robot, sigma)
-    return told(set_up, robot, tuple(rounds), fit, beyond, remaining, judge, laid, kind, instead)
+    if misfit is None and beyond is None and (fit.names or fit.calibrated):
+        certain = [cell for cell in remaining if cell.p_value < VERY_SURE]
+        misfit = misfit_of_found(fit, certain, laid, kind)
+    found = told(set_up, robot, tuple(rounds), fit, beyond, remaining, judge, laid, kind, instead)
+    return replace(found, misfit=misfit)
 
 
 def _best(this: Round, runs: Together, kind: ReferenceKind) -> Fitted | None:
@@ -157,14 +166,14 @@ def _beyond_the_library(
     if score is not None and best is not None:
         grasp = _grasp(score, runs, this.before.point.model)
         data = runs.data
-        explained = max(_fall(score.gain, data), this.before.cost - best.cost)
+        explained = max(fall_of_cost(score.gain, data), this.before.cost - best.cost)
 
         def far_more(cell: Dependence) -> bool:
             own = cell.channel in grasp.channels and bool(
                 grasp.fields & set(cell.variable.looks_at)
             )
             factor = FAR_MORE_OF_ITS_OWN if own else FAR_MORE
-            return _fall(cell.gain - 2 * cell.degrees, data) > factor * explained + 15.0
+            return fall_of_cost(cell.gain - 2 * cell.degrees, data) > factor * explained + 15.0
 
         certain = [cell for cell in certain if far_more(cell)]
     knobs = (*CALIBRATION, *this.before.knobs)
@@ -172,7 +181,7 @@ def _beyond_the_library(
     return next((cell for cell, p_value in found if p_value < SURE), None)
 
 
-def _fall(gain: float, data: int) -> float:
+def fall_of_cost(gain: float, data: int) -> float:
     """What the cost falls by when squared innovations fall by `gain`: the noise shrinks as well."""
     return -data * math.log1p(-min(max(gain / data, 0.0), 0.999))
 

@@ -12,6 +12,7 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Errors, Judge, Sides
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import RIVAL, Fitted
@@ -68,6 +69,8 @@ class Diagnosis:
     """Median position error on the held-out runs, outliers and all [m]."""
     headings: Sides
     """Heading error on the held-out runs [rad]: a reference of headings alone is judged by it."""
+    misfit: Misfit | None = None
+    """What is left because a law's form is not quite nature's, or beside everything found."""
 
     @property
     def robot(self) -> Robot:

@@ -82,14 +82,16 @@ _HEADS = (
 def _none(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     hidden = [sight for sight in told.sights if sight.hidden]
-    wanders = any(cell.p_value < VERY_SURE for cell in diagnosis.depends_on)
+    misfit = diagnosis.misfit is not None
+    wanders = not misfit and any(cell.p_value < VERY_SURE for cell in diagnosis.depends_on)
     lines = [
         "Nothing is missing that these drives could show"
-        + ("." if wanders else ": the model explains them to their noise.")
+        + ("." if wanders or misfit else ": the model explains them to their noise."),
+        *_law(told),
     ]
     errors = diagnosis.holdout.after
     if math.isfinite(errors):
-        like = "" if wanders else ", and they look like noise"
+        like = "" if wanders or misfit else ", and they look like noise"
         lines.append(f"Its errors on {judged(told)} are {length(errors)}{like}.")
     if wanders:
         lines.append(
@@ -233,13 +235,17 @@ def _set_up(diagnosis: Diagnosis) -> list[str]:
 
 
 def _law(told: Told) -> list[str]:
-    """What is left once everything found is put in."""
-    left = [cell for cell in told.diagnosis.remaining if cell.p_value < VERY_SURE]
-    if not left:
+    """What is left once everything found is put in, or of a law that the robot file holds."""
+    misfit = told.diagnosis.misfit
+    if misfit is None:
         return []
+    cell = f"{dependence_words(misfit.cell)} ({chance_words(misfit.cell.p_value)})"
+    if misfit.effect is None:
+        return [f"But: something is left. With everything found put in, {cell}."]
+    share = "" if misfit.share is None else f", {100.0 * misfit.share:.2g} % of what it explains,"
     return [
-        f"But: the law does not fit fully. With everything found put in, "
-        f"{dependence_words(left[0])} ({chance_words(left[0].p_value)})."
+        f"But: the law of {misfit.effect} does not fit fully. What it leaves{share} is in what it "
+        f"looks at: {cell}. That is a matter of the law's form, and no other effect."
     ]
 
 
