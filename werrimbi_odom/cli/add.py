@@ -8,8 +8,9 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from werrimbi_odom.cli.commands import command
 from werrimbi_odom.cli.json_file import write_json
-from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
+from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings, refuse_place
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
@@ -101,8 +102,7 @@ def _refused(arguments: argparse.Namespace, added: Added) -> str:
 def _refuse_out(arguments: argparse.Namespace) -> None:
     """Before any work: an --out that cannot be written."""
     out: Path = arguments.out
-    if out.is_dir():
-        raise InputError(f"--out {out} is a folder; give a file name in it")
+    refuse_place("out", out)
     if out.exists() and not arguments.force:
         raise InputError(f"{out} exists; --force overwrites it, another --out keeps it")
     if out in (arguments.json, arguments.report):
@@ -141,6 +141,4 @@ def _write(arguments: argparse.Namespace, given: Recordings, added: Added) -> li
 
 def _next(arguments: argparse.Namespace) -> str:
     """The command that looks for more in the same drives, to be pasted."""
-    from werrimbi_odom.cli.commands import command
-
     return command(["diagnose"], arguments, robot=arguments.out)

@@ -8,6 +8,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from werrimbi_odom.cli.commands import command
 from werrimbi_odom.cli.diagnose_fleet import add_fleet_arguments, refuse_mixing, run_fleet
 from werrimbi_odom.cli.json_file import write_json
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
@@ -75,7 +76,6 @@ def _ask_for_robot_and_runs(arguments: argparse.Namespace) -> None:
 
 def _steps(arguments: argparse.Namespace) -> NextSteps:
     """The commands that follow, for the same files."""
-    from werrimbi_odom.cli.commands import command
     from werrimbi_odom.report.diagnosis.words import NextSteps
 
     new = Path(arguments.robot)

@@ -7,6 +7,7 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -176,10 +177,7 @@ def refuse_outputs(arguments: argparse.Namespace, inputs: Iterable[Path]) -> Non
         out: Path | None = getattr(arguments, name, None)
         if out is None:
             continue
-        if out.is_dir():
-            raise InputError(f"--{name} {out} is a folder; give a file name in it")
-        if not out.parent.is_dir():
-            raise InputError(f"--{name} {out}: there is no folder {out.parent}")
+        refuse_place(name, out)
         if name == "report":
             from werrimbi_odom.report.save import refuse_report
 
@@ -187,6 +185,36 @@ def refuse_outputs(arguments: argparse.Namespace, inputs: Iterable[Path]) -> Non
         if place_of(out) in taken:
             raise InputError(f"--{name} {out} would overwrite what is read, or written, already")
         taken.add(place_of(out))
+
+
+def refuse_place(option: str, out: Path) -> None:
+    """A file that could not be written is refused before any work.
+
+    Raises
+    ------
+    InputError
+        When it is a folder, or lies in none that one may write into.
+    """
+    if out.is_dir():
+        raise InputError(f"--{option} {out} is a folder; give a file name in it")
+    if not out.parent.is_dir():
+        raise InputError(f"--{option} {out}: there is no folder {out.parent}")
+    refuse_folder(option, out, out.parent)
+
+
+def refuse_folder(option: str, out: Path, folder: Path) -> None:
+    """Whether one may write into a folder is found by doing so: permissions do not tell all.
+
+    Raises
+    ------
+    InputError
+        When nothing can be written there.
+    """
+    try:
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise InputError(f"--{option} {out}: {error.strerror} ({folder})") from error
 
 
 def _positive(text: str) -> float:

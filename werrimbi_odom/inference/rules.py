@@ -33,3 +33,6 @@ MOST_FITTED = 3
 NEIGHBOUR = 1.6
 """Widths of a floor's cell within which another cell is its neighbour: corners touch at 1.4, and
 steps are seldom in the very middle of their cell."""
+
+STILL = 0.02
+"""Standard deviations that a step of a fit must move something by, to be worth another one."""

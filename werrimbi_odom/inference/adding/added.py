@@ -14,6 +14,7 @@ from werrimbi_odom.inference.comparison.judged_legs import Legs
 from werrimbi_odom.inference.comparison.legs import LegStatistics, statistics
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
 from werrimbi_odom.inference.set_up.mistakes import SetUp
@@ -90,6 +91,8 @@ class Added:
     and what the covariance promises is noise."""
     remaining: tuple[Dependence, ...]
     """What the errors still depend on beyond chance."""
+    misfit: Misfit | None
+    """The law that does not fit fully, where that is what is left."""
     set_up: SetUp
     per_run: tuple[str, ...]
     """Parameters that each run has anew; the file leaves them out."""

@@ -35,6 +35,7 @@ from werrimbi_odom.inference.comparison.legs import statistics
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.diagnosis import chance
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
+from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found
 from werrimbi_odom.inference.diagnosis.holdout import Judge, at_home, judge_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, sizes_needed, with_sizes
@@ -172,6 +173,7 @@ def add_effects(
         noises=noises,
         explained=explained,
         remaining=remaining,
+        misfit=misfit_of_found(fit, remaining, drives.laid, kind),
         set_up=set_up,
         per_run=per_run,
         chances=chances,

@@ -25,10 +25,11 @@ from werrimbi_odom.inference.adding.draft_laws import Form, Seen, forms_of, spot
 from werrimbi_odom.inference.adding.draft_source import name_of, source_of
 from werrimbi_odom.inference.adding.start import Drives, scored, start_at
 from werrimbi_odom.inference.diagnosis.candidates import Score
-from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, fall_of_cost
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
 from werrimbi_odom.inference.diagnosis.selection import RIVAL, Fitted
 from werrimbi_odom.inference.diagnosis.variables import Variable, variables_of
+from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.rules import MOST_FITTED, WORTH_FITTING
 from werrimbi_odom.model.effect import Effect
 
@@ -113,10 +114,19 @@ def draft_effect(
         for seen, form in _forms(diagnosis, cell, variables[cell.variable.name])
     ]
     show(0.0, "the forms of a law")
-    worth = _worth_fitting(diagnosis, drives, plans)
-    for number, plan in enumerate(worth):
-        show((number + 1) / (len(worth) + 2), f"{plan.cell.name}: {plan.form.kind}")
+    drafted = [_plan(diagnosis, *plan) for plan in plans]
+    ordered = _by_score(diagnosis, drives, drafted, final.point.variances)
+    for number in range(MOST_FITTED):
+        ordered = [plan for plan in ordered if plan.excess > ordered[0].excess - WORTH_FITTING]
+        waiting = [plan for plan in ordered if all(plan.effect is not o.effect for o in options)]
+        plan = next((plan for plan in waiting if keeps_laws(plan.effect)), None)
+        if plan is None:
+            break
+        show((number + 1) / (MOST_FITTED + 2), f"{plan.cell.name}: {plan.form.kind}")
         options.append(_fitted(diagnosis, drives, plan))
+        if number == 0:
+            # Without the law the wheels' noise had to stand for it, and hid what tells forms apart.
+            ordered = _by_score(diagnosis, drives, drafted, options[0].fit.point.variances)
     if not options:
         names = ", ".join(dict.fromkeys(cell.name for cell in cells))
         raise InputError(f"no law can be drafted that is a line, step or curve in {names}")
@@ -220,48 +230,47 @@ def _spot(diagnosis: Diagnosis, cell: Dependence) -> Form:
 
 @dataclass(frozen=True)
 class _Plan:
-    """A form that may be fitted, at the best of its shapes."""
+    """A form that may be fitted."""
 
     cell: Dependence
     seen: Seen
     form: Form
     effect: Effect
     source: str
-    score: Score
-    excess: float
+    score: Score | None = None
+    """Of the best of its shapes; None before it is scored."""
+    excess: float = -math.inf
     """By how much it should cost less than it takes, its numbers paid for."""
 
 
-def _worth_fitting(
-    diagnosis: Diagnosis, drives: Drives, plans: Sequence[tuple[Dependence, Seen, Form]]
-) -> list[_Plan]:
-    """The few forms that may be the best after a fit, by their scores: one pass of the filter.
+def _plan(diagnosis: Diagnosis, cell: Dependence, seen: Seen, form: Form) -> _Plan:
+    source = _written(diagnosis, cell, seen, form)
+    return _Plan(cell, seen, form, loaded(source), source)
 
-    Forms that are lines in their numbers score what they will gain; the law of a shape that is
-    fitted too (an edge, a spot) gains a little more.
-    """
-    base, data = diagnosis.final, diagnosis.runs.data
+
+def _by_score(
+    diagnosis: Diagnosis, drives: Drives, plans: Sequence[_Plan], noise: Variances
+) -> list[_Plan]:
+    """The forms that the drives show anything of, the most promising first, all without a fit."""
+    base = diagnosis.final
+    before = replace(base, point=replace(base.point, variances=noise))
     found = []
-    for cell, seen, form in plans:
-        source = _written(diagnosis, cell, seen, form)
-        effect = loaded(source)
-        score = max(
-            scored(drives, base, [effect], base.knobs), key=lambda each: each.gain, default=None
-        )
-        if score is not None:
-            fall = fall_of_cost(score.gain, data)
-            excess = fall - base.price_of_one * form.numbers
-            found.append(_Plan(cell, seen, form, effect, source, score, excess))
-    found.sort(key=lambda plan: -plan.excess)
-    near = [plan for plan in found if plan.excess > found[0].excess - WORTH_FITTING]
-    return [plan for plan in near[:MOST_FITTED] if keeps_laws(plan.effect)]
+    for plan in plans:
+        scores = scored(drives, before, [plan.effect], base.knobs)
+        if scores:
+            best = max(scores, key=lambda each: each.gain)
+            paid = base.price_of_one * plan.form.numbers
+            found.append(replace(plan, score=best, excess=best.gain - paid))
+    return sorted(found, key=lambda plan: -plan.excess)
 
 
 def _fitted(diagnosis: Diagnosis, drives: Drives, plan: _Plan) -> _Option:
     """A draft of one form, fitted from where its score points."""
     base = diagnosis.final
+    assert plan.score is not None
     start = start_at(base, plan.score, base.knobs)
-    fit = drives.fit(start.point, start.names, start.knobs, diagnosis.given)
+    # One round tells the forms apart; whoever adds the draft fits it to the end.
+    fit = drives.fit(start.point, start.names, start.knobs, diagnosis.given, rounds=1)
     return _Option(plan.cell, plan.seen, plan.form, plan.effect, plan.source, fit)
 
 

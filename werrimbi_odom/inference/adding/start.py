@@ -55,10 +55,17 @@ class Drives:
         return with_own_values(self.laid, point, self.kind)
 
     def fit(
-        self, point: Point, names: Sequence[str], knobs: Sequence[Knob], given: Robot
+        self,
+        point: Point,
+        names: Sequence[str],
+        knobs: Sequence[Knob],
+        given: Robot,
+        rounds: int = 3,
     ) -> Fitted:
         """Fit calibration, noise and `knobs`."""
-        return fitted(self.laid, point, self.kind, names, knobs, given, rounds=3, sigma=self.sigma)
+        return fitted(
+            self.laid, point, self.kind, names, knobs, given, rounds=rounds, sigma=self.sigma
+        )
 
 
 @dataclass(frozen=True, slots=True)

@@ -166,14 +166,14 @@ def _beyond_the_library(
     if score is not None and best is not None:
         grasp = _grasp(score, runs, this.before.point.model)
         data = runs.data
-        explained = max(fall_of_cost(score.gain, data), this.before.cost - best.cost)
+        explained = max(_fall(score.gain, data), this.before.cost - best.cost)
 
         def far_more(cell: Dependence) -> bool:
             own = cell.channel in grasp.channels and bool(
                 grasp.fields & set(cell.variable.looks_at)
             )
             factor = FAR_MORE_OF_ITS_OWN if own else FAR_MORE
-            return fall_of_cost(cell.gain - 2 * cell.degrees, data) > factor * explained + 15.0
+            return _fall(cell.gain - 2 * cell.degrees, data) > factor * explained + 15.0
 
         certain = [cell for cell in certain if far_more(cell)]
     knobs = (*CALIBRATION, *this.before.knobs)
@@ -181,7 +181,7 @@ def _beyond_the_library(
     return next((cell for cell, p_value in found if p_value < SURE), None)
 
 
-def fall_of_cost(gain: float, data: int) -> float:
+def _fall(gain: float, data: int) -> float:
     """What the cost falls by when squared innovations fall by `gain`: the noise shrinks as well."""
     return -data * math.log1p(-min(max(gain / data, 0.0), 0.999))
 

@@ -29,6 +29,7 @@ from werrimbi_odom.inference.fitting.knobs import (
     shared_of,
 )
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import STILL
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -118,6 +119,8 @@ def with_sizes(
         away = away + step[: sizes.free]
         others = free @ np.where(np.arange(step.size) < sizes.free, 0.0, step)
         point = replace(point, model=moved(point.model, design, others))
+        if np.max(np.abs(step) * np.where(np.isfinite(size), size, 0.0), initial=0.0) < STILL:
+            break
     robot = changed(point.model.robot, _sized(given, sizes, away))
     point = replace(point, model=Model(robot, point.model.own))
     cost = float(Costs(runs, point, kind)(point.variances)[0])

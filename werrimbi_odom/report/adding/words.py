@@ -140,7 +140,14 @@ def _rest(added: Added) -> str:
             f"Nothing more is seen in the errors of the fitted drives; those of the held-out ones "
             f"are {math.sqrt(nees):.1f} times what the covariance says (NEES {nees:.2f})."
         )
-    first = added.remaining[0]
+    first = added.remaining[0] if added.misfit is None else added.misfit.cell
+    if added.misfit is not None and added.misfit.effect is not None:
+        share = 100.0 * (added.misfit.share or 0.0)
+        return (
+            f"The law of {added.misfit.effect} does not fit fully: what is left of the "
+            f"{first.channel} error goes with {first.name}, {share:.2g} % of what the law explains "
+            f"(NEES {nees:.2f}, honest is 1)."
+        )
     return (
         f"Something is still missing: the {first.channel} error goes with {first.name} "
         f"(p = {first.p_value:.0e}; NEES {nees:.2f}, honest is 1)."
