@@ -20,9 +20,11 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.diagnosis.candidates import of_each_run, unexplained
 from werrimbi_odom.inference.diagnosis.variables import (
+    CELL,
     CONSTANT,
     Form,
     Variable,
+    floor_cells,
     functions_of,
     variables_of,
 )
@@ -30,6 +32,7 @@ from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import DrivenPath, path_of, predict_all
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import NEIGHBOUR
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.view import View
@@ -90,6 +93,26 @@ class Dependence:
     def name(self) -> str:
         """What it goes with: the variable, or where it depends on none, what it is per."""
         return self.amount.per if self.variable.name == CONSTANT else self.variable.name
+
+
+def place_of(cell: Dependence) -> tuple[float, float]:
+    """Where on the floor most of an error is, in the reference's frame [m].
+
+    The floor's cell of the most certain error, and its neighbours with an error of the same sign:
+    the middle of them all, each by its certainty. That is finer than a cell is wide.
+    """
+    x, y = cell.variable.left, cell.variable.right
+    cells = floor_cells(x, y)
+    steps = cells.sum(axis=0)
+    middle = np.stack([cells.T @ x, cells.T @ y], axis=-1) / steps[:, None]
+    certain = cell.coefficients**2 * steps
+    first = int(np.argmax(certain))
+    area = np.ptp(x) * np.ptp(y) / steps.size
+    near = np.hypot(*(middle - middle[first]).T) < NEIGHBOUR * max(np.sqrt(area), CELL)
+    same = np.sign(cell.coefficients) == np.sign(cell.coefficients[first])
+    weight = certain * (near & same)
+    px, py = weight @ middle / weight.sum()
+    return float(px), float(py)
 
 
 def dependences(

@@ -18,7 +18,7 @@ from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model, knobs_of
 from werrimbi_odom.inference.fitting.together import Together
-from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUp, look_for_mistakes
+from werrimbi_odom.inference.set_up.mistakes import SetUp, look_for_mistakes
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
@@ -131,14 +131,13 @@ def begin(
     Raises
     ------
     InputError
-        When a run has no usable reference or no ticks, or its headings are in degrees.
+        When a run has no usable reference or no ticks, or is in degrees or millimetres.
     """
 
     def split(kept: Sequence[Run], held: Sequence[Run]) -> tuple[SetUp, Judge]:
         set_up = look_for_mistakes(kept, robot, kind, limits)
-        for finding in set_up.findings:
-            if finding.effect == IN_DEGREES:
-                raise InputError(f"{kept[0].path}: {finding.words}")
+        if set_up.to_convert is not None:
+            raise InputError(f"{kept[0].path}: {set_up.to_convert}")
         return set_up, judge_of(kept, held, robot, kind, leg, limits, sigma_xy, sigma_yaw)
 
     fitted, held = (tuple(runs), tuple(holdout)) if holdout else set_aside(runs)

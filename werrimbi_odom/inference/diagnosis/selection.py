@@ -120,7 +120,7 @@ def fitted(
     covariance = covariance_of(design)
     total, rise, kept = weighed[0]
     rises = {chosen: item for _, item, chosen in weighed}
-    importance = {name: _rise_without(name, design, covariance, result.point) for name in names}
+    importance = {name: rise_without(name, design, covariance, result.point) for name in names}
     for name in kept:
         without = tuple(other for other in kept if other != name)
         importance[name] = (rises[without] - rise) / scatter
@@ -198,7 +198,7 @@ def calibration_deviation(robot: Robot, given: Robot) -> Floats:
     return np.array([base, right - left, 0.5 * (left + right)])
 
 
-def _rise_without(name: str, design: Design, covariance: Floats, point: Point) -> float:
+def rise_without(name: str, design: Design, covariance: Floats, point: Point) -> float:
     """How much the cost rises when an effect is taken out, by the curvature at the fit."""
     chosen, away = [], []
     for index, (knob, run) in enumerate(design.columns):

@@ -12,6 +12,7 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge, Sides
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
@@ -72,6 +73,8 @@ class Diagnosis:
     """Median position error on the held-out runs, outliers and all [m]."""
     headings: Sides
     """Heading error on the held-out runs [rad]: a reference of headings alone is judged by it."""
+    misfit: Misfit | None = None
+    """What is left because a law's form is not quite nature's, or beside everything found."""
 
     @property
     def robot(self) -> Robot:
@@ -208,7 +211,10 @@ def _ranking(
     judge: Judge,
     start: Errors,
 ) -> list[Ranked]:
-    """All effects, what was found first; an effect's figures are those of its first trial."""
+    """All effects, what was found first, with the figures of the round that took it.
+
+    Those of the others are of their first trial.
+    """
     ranked: dict[str, Ranked] = {}
     mended = judge.of(Model(set_up.robot, judge.nothing_of_own)) if set_up.findings else start
     for finding in set_up.findings:
@@ -219,7 +225,9 @@ def _ranking(
             before = judge.of(this.before.point.model)
         for fit in this.tried:
             name = fit.names[-1]
-            if name not in ranked:
+            # What was taken is told as it stood when it was taken, not at an earlier trial.
+            taken = final.names[number : number + 1] == (name,)
+            if name not in ranked or taken:
                 p_value = chance(fit, this.before, this.number)
                 ranked[name] = _worth(name, p_value, before, judge.of(fit.point.model))
     calibrated = judge.of(rounds[0].before.point.model)

@@ -64,6 +64,13 @@ def json_of(
         "train": _sides(diagnosis.train),
         "holdout": _sides(diagnosis.holdout),
         "remaining": [_cell(cell) for cell in _once(_sure(diagnosis.remaining))],
+        "misfit": None
+        if diagnosis.misfit is None
+        else {
+            "effect": diagnosis.misfit.effect,
+            "share": diagnosis.misfit.share,
+            **_cell(diagnosis.misfit.cell),
+        },
         "could_have_been_seen": [{**asdict(sight), "hidden": sight.hidden} for sight in sights],
     }
 
