@@ -45,18 +45,18 @@ class Extent:
 
 
 EVERYTHING = Extent(ALL, survive=100, smallest=8, gaps=200, margins=24)
-PART_OF_IT = Extent(SAMPLE, survive=10, smallest=1, gaps=24, margins=3)
+PART_OF_IT = Extent(SAMPLE, survive=12, smallest=1, gaps=40, margins=3)
 
 SECONDS = {
-    "make": 7.0,
-    "judge": 26.0,
-    "survive": 5.5,
+    "make": 6.5,
+    "judge": 17.0,
+    "survive": 4.5,
     "coverage": 3.0,
-    "smallest": 55.0,
-    "gaps": 5.5,
-    "margins": 5.5,
+    "smallest": 42.0,
+    "gaps": 4.5,
+    "margins": 4.5,
 }
-"""Of one core, for a task of each part; measured on the present plan."""
+"""Of one idle core, for a task of each part."""
 
 
 @dataclass(frozen=True)

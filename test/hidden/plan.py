@@ -50,6 +50,9 @@ FAMILIES = (
 )
 """Effects of one family are not hidden together: they have much of their signature in common."""
 
+ALONE = tuple((name,) for name in EFFECTS if not any(name in family for family in FAMILIES))
+"""Effects that are like no other."""
+
 
 @dataclass(frozen=True, kw_only=True)
 class Sizes:
@@ -83,8 +86,8 @@ class Sizes:
 ALL = Sizes()
 
 SAMPLE = Sizes(
-    effects=2,
-    clean=8,
+    effects=3,
+    clean=12,
     outsiders=1,
     calibration=1,
     mistakes=1,
@@ -151,9 +154,10 @@ def calibration(start: int, sizes: Sizes) -> list[HiddenSet]:
 def pairs(start: int, sizes: Sizes) -> list[HiddenSet]:
     """Two effects of distinct families; a few with calibration. Of fewer, the first."""
     chance = drawn(start + 4000, "pairs")
+    families = (*FAMILIES, *ALONE)
     exotic = [
         family
-        for family in (tuple(n for n in names if n not in CALIBRATION) for names in FAMILIES)
+        for family in (tuple(n for n in names if n not in CALIBRATION) for names in families)
         if family
     ]
     found = []
@@ -164,7 +168,7 @@ def pairs(start: int, sizes: Sizes) -> list[HiddenSet]:
     beside = []
     for seed in range(start + 4020, start + 4020 + ALL.pairs_with_calibration):
         size = str(chance.choice(CALIBRATION))
-        others = [family for family in FAMILIES if size not in family and family[0] != size]
+        others = [family for family in families if size not in family and family[0] != size]
         other = others[int(chance.integers(len(others)))]
         name = str(chance.choice([name for name in other if name not in CALIBRATION] or other))
         beside.append(HiddenSet("pair", (size, name), seed))

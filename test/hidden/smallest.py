@@ -23,6 +23,7 @@ from test.hidden.judged import is_right, judgement
 from test.hidden.plan import EFFECTS
 from test.hidden.sets import HiddenSet, make
 from test.hidden.tables import Table
+from test.hidden.true_values import values_of
 from test.hidden.work import Line
 from werrimbi_odom.simulation import hide
 from werrimbi_odom.simulation.hidden import find
@@ -40,11 +41,12 @@ SETUP = "short"
 
 
 def tasks(start: int, seeds: int) -> dict[str, tuple[str, int]]:
-    """Each effect in some sessions."""
+    """Each effect in some sessions, where its parameters are known to both sides."""
     return {
         f"{name} {start + 8000 + seed}": (name, start + 8000 + seed)
         for seed in range(seeds)
         for name in EFFECTS
+        if values_of(name, asdict(hide(name, seed=0).peculiarity))
     }
 
 

@@ -16,12 +16,14 @@ from scipy.stats import binom
 pytest.importorskip("mujoco", reason="hidden sets need the physics engine (pip install mujoco)")
 
 from test.hidden import coverage, fisher, history, margins, plan, smallest, survive, work
-from test.hidden.follow import commands, typed
+from test.hidden.follow import commands, follow, typed
 from test.hidden.intervals import clopper_pearson
 from test.hidden.judged import Judged
 from test.hidden.rest import at_the_truth, without_detour
+from test.hidden.rules import RULES
 from test.hidden.sets import HiddenSet
 from test.hidden.tables import Table
+from test.hidden.true_values import multipliers_of, values_of
 
 LINE = Judged(
     name="own-castor_kick-1",
@@ -263,9 +265,6 @@ def test_another_split_holds_out_as_many_other_drives(folder: Path) -> None:
 
 
 def test_every_deciding_number_can_be_perturbed_and_comes_back() -> None:
-    import werrimbi_odom.cli.diagnose
-    import werrimbi_odom.fleet.one  # noqa: F401
-
     before = margins.constants()
     assert len(before) > 5
     for name, value in before.items():
@@ -375,6 +374,70 @@ def test_a_state_of_the_code_has_one_line_and_others_stay(tmp_path: Path) -> Non
     assert table.rows[0][2] == "`two`", "the newest first"
 
 
+def test_rules_have_short_names_of_their_own() -> None:
+    assert len({rule.short for rule in RULES}) == len(RULES)
+
+
 def test_a_line_of_the_results_is_what_was_judged() -> None:
     assert Judged.of(json.loads(json.dumps(LINE.line()))) == LINE
     assert HiddenSet("effect", ("castor_kick",), 1).name == LINE.name
+
+
+def test_true_parameters_are_those_that_the_library_knows_within_its_bounds() -> None:
+    from dataclasses import asdict
+
+    from werrimbi_odom.effects import find
+    from werrimbi_odom.simulation import hide
+
+    for name in plan.EFFECTS:
+        hidden = hide(name, seed=3)
+        values = values_of(name, asdict(hidden.peculiarity))
+        assert values, f"nobody knows what {name} is in the library's words"
+        effect = find(name)
+        for key, value in values.items():
+            low, high = effect.parameters[key].bounds
+            assert low <= value <= high
+        away = [key for key, value in values.items() if value != effect.parameters[key].null]
+        assert away, f"{name} as it is hidden is none at all to the library"
+    assert values_of("cable_pull", {"rate": 0.01}) == {}
+
+
+def test_true_multipliers_turn_counts_into_the_true_way() -> None:
+    robot = {
+        "wheel_separation": 0.4,
+        "left_wheel_radius": 0.05,
+        "right_wheel_radius": 0.05,
+        "nominal": {"wheel_separation": 0.4, "wheel_radius": 0.05},
+    }
+    ratio = {"effect": "unequal_wheel_radii", "parameters": {"ratio": 1.01}}
+    base = {"effect": "track_width", "parameters": {"multiplier": 1.02}}
+    truth = {
+        "robot_before_hiding": robot,
+        "hidden": [ratio, base],
+        "entered": [["wheel_radius", 2.0]],
+    }
+    found = multipliers_of(truth)
+    left, right = found["left_wheel_radius_multiplier"], found["right_wheel_radius_multiplier"]
+    assert right / left == pytest.approx(1.01)
+    assert 0.5 * (left + right) == pytest.approx(0.5), "the radius was entered twice as large"
+    assert found["wheel_separation_multiplier"] == pytest.approx(1.02)
+
+
+def test_a_command_that_ends_with_an_error_ends_the_walk_where_it_began(folder: Path) -> None:
+    before = Path.cwd()
+    told = follow(folder)
+    assert told.ended == "refused"
+    assert told.error.startswith("werrimbi diagnose: ")
+    assert (told.verdicts, told.added, told.first) == ([], [], {})
+    assert Path.cwd() == before
+
+
+def test_a_crash_of_the_tool_is_a_finding_and_not_the_end(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(words: object) -> None:
+        raise ZeroDivisionError("float division by zero")
+
+    monkeypatch.setattr("test.hidden.follow.run", broken)
+    told = follow(folder)
+    assert (told.ended, told.error) == ("crashed", "ZeroDivisionError: float division by zero")

@@ -8,6 +8,9 @@ import math
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from werrimbi_odom.effects import find
+from werrimbi_odom.effects.library import LIBRARY
+
 Given = Mapping[str, Any]
 
 _VALUES: dict[str, Callable[[Given], dict[str, float]]] = {
@@ -50,13 +53,22 @@ _VALUES: dict[str, Callable[[Given], dict[str, float]]] = {
 def values_of(effect: str, peculiarity: Given) -> dict[str, float]:
     """Parameters of a library effect that say what the engine did; empty where nobody knows.
 
+    Where nothing is written here, those that are called the same on both sides.
+
     Parameters
     ----------
     peculiarity
         As truth.json has it under `parameters`.
     """
-    known = _VALUES.get(effect)
-    return {name: float(value) for name, value in known(peculiarity).items()} if known else {}
+    if effect in _VALUES:
+        return {name: float(value) for name, value in _VALUES[effect](peculiarity).items()}
+    if effect not in {known.name for known in LIBRARY}:
+        return {}
+    return {
+        name: float(peculiarity[name])
+        for name in find(effect).parameters
+        if isinstance(peculiarity.get(name), (int, float))
+    }
 
 
 def multipliers_of(truth: Given) -> dict[str, float]:
