@@ -139,12 +139,15 @@ def _own(name: str, part: Work) -> dict[str, Line]:
     return {key: line for key, line in kept(results_of(name)).items() if key in part.tasks}
 
 
-def pictures(wanted: Sequence[HiddenSet], there: Mapping[str, Work]) -> list[tuple[str, str]]:
-    """Drawn to docs/pictures."""
+def pictures(
+    wanted: Sequence[HiddenSet], there: Mapping[str, Work], folder: Path
+) -> list[tuple[str, str]]:
+    """Drawn to a folder."""
     lines = judged_lines(wanted)
     scores = coverage.scores(lines, wanted, _own("coverage", there["coverage"]))
     found = smallest.ratios(_own("smallest", there["smallest"]))
-    return draw(scores, found, *margins.sureness(lines), ROOT / "docs" / "pictures")
+    sure = margins.constants().get("SURE", 1e-3)
+    return draw(scores, found, *margins.sureness(lines), sure, folder)
 
 
 def extent_wanted(whole: bool) -> Extent:
@@ -203,10 +206,13 @@ def write(
     if not whole or not lines:
         return
     entry = history.entry_of(lines, mark(), start)
-    entries = history.append(entry, docs.with_name("evidence_history.jsonl"))
+    kept_in = docs.with_name("evidence_history.jsonl")
+    # A line of the history is for good: not before every set is judged that the engine could make.
+    complete = len(lines) == sum(each.path.exists() for each in wanted)
+    entries = history.append(entry, kept_in) if complete else history.read(kept_in)
     text = page(
         [*made, history.table(entries)],
-        pictures(wanted, there),
+        pictures(wanted, there, docs.parent / "pictures"),
         how=" --all" if len(wanted) == len(plan.plan(start, ALL)) else "",
         judged=len(lines),
         planned=len(wanted),

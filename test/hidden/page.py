@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -49,9 +50,24 @@ def page(
 
 
 def draw(
-    found: Scores, ratios: dict[str, float], true: list[float], false: list[float], place: Path
+    found: Scores,
+    ratios: dict[str, float],
+    true: list[float],
+    false: list[float],
+    sure: float,
+    place: Path,
 ) -> list[tuple[str, str]]:
-    """The pictures that can be drawn; none without a browser."""
+    """The pictures that can be drawn; none without a browser.
+
+    Parameters
+    ----------
+    ratios
+        By effect: the size that is named over the smallest that could be seen.
+    true, false
+        Minus log10 of p-values, of what is hidden and of the likeliest where nothing is.
+    sure : float
+        The p-value below which the diagnosis believes.
+    """
     import plotly.graph_objects as go
 
     from werrimbi_odom.report.save import save_png
@@ -59,10 +75,11 @@ def draw(
 
     made = []
 
-    def save(figure: go.Figure, name: str, title: str, x: str, y: str) -> None:
-        styled(figure, title, "", width=900, height=520)
+    def save(figure: go.Figure, name: str, title: str, x: str, y: str, height: int = 520) -> None:
+        styled(figure, title, "", width=900, height=height)
+        figure.update_layout(legend={"y": -0.22}, barmode="group")
         figure.update_xaxes(title=x)
-        figure.update_yaxes(title=y, scaleanchor=None, scaleratio=None)
+        figure.update_yaxes(title=y, scaleanchor=None, scaleratio=None, automargin=True)
         if save_png(figure, place / name):
             made.append((name, title))
 
@@ -72,8 +89,7 @@ def draw(
         figure = go.Figure(go.Bar(x=values, y=names, orientation="h", marker_color=BLUE))
         figure.add_vline(x=1.0, line={"color": GREY, "dash": "dash"})
         title = "Size named in 95 of 100 cases, over the smallest that could be seen at all"
-        figure.update_layout(margin={"l": 220})
-        save(figure, "evidence_smallest.png", title, "ratio", "")
+        save(figure, "evidence_smallest.png", title, "ratio", "", 200 + 24 * len(names))
     if sum(ranks(found, "add")):
         figure = go.Figure()
         for verb, colour in (("add", BLUE), ("calibrate fit", ORANGE)):
@@ -94,11 +110,11 @@ def draw(
                 x=[min(value, 60.0) for value in values],
                 name=name,
                 marker_color=colour,
-                opacity=0.7,
                 xbins={"start": 0.0, "end": 61.0, "size": 1.0},
             )
-        figure.add_vline(x=3.0, line={"color": GREY, "dash": "dash"})
-        figure.update_layout(barmode="overlay")
-        title = "How sure: minus log10 of the stated chance (60: or more); believed from 3 on"
+        figure.add_vline(x=-math.log10(sure), line={"color": GREY, "dash": "dash"})
+        title = (
+            "How sure: minus log10 of the stated chance (60: or more); believed right of the line"
+        )
         save(figure, "evidence_sureness.png", title, "- log10 p", "sets")
     return made

@@ -19,9 +19,11 @@ from test.hidden import coverage, fisher, history, margins, plan, smallest, surv
 from test.hidden.follow import commands, follow, typed
 from test.hidden.intervals import clopper_pearson
 from test.hidden.judged import Judged
+from test.hidden.page import page
 from test.hidden.rest import at_the_truth, without_detour
 from test.hidden.rules import RULES
 from test.hidden.sets import HiddenSet
+from test.hidden.table import tables
 from test.hidden.tables import Table
 from test.hidden.true_values import multipliers_of, values_of
 
@@ -284,7 +286,9 @@ def test_a_whole_number_moves_by_one_at_least_and_stays_above_none() -> None:
 def test_sureness_parts_what_is_hidden_from_what_is_likeliest_where_nothing_is() -> None:
     p_values = [["castor_kick", 1e-9], ["left_backlash", 1e-2], ["track_width", None]]
     lines = [other(p_values=p_values), other(hidden=[], strengths=[], p_values=p_values[1:])]
-    assert margins.sureness(lines) == ([pytest.approx(9.0)], [pytest.approx(2.0)])
+    true, false = margins.sureness(lines)
+    assert true == pytest.approx([9.0])
+    assert false == pytest.approx([2.0])
 
 
 # ------------------------------------------------------------------ how small
@@ -376,6 +380,26 @@ def test_a_state_of_the_code_has_one_line_and_others_stay(tmp_path: Path) -> Non
 
 def test_rules_have_short_names_of_their_own() -> None:
     assert len({rule.short for rule in RULES}) == len(RULES)
+
+
+def test_the_page_holds_every_rule_with_its_interval_and_what_went_astray() -> None:
+    lost = other(name="own-castor_kick-2", ended="refused", error="no | help", steps=[])
+    text = page(
+        tables([LINE, lost]),
+        [("evidence_ranks.png", "Ranks")],
+        how="",
+        judged=2,
+        planned=3,
+        commit="abc",
+        digest="def",
+        fresh=True,
+    )
+    assert "2 of 3 sets judged" in text
+    low, high = clopper_pearson(1, 2)
+    interval = f"{100 * low:.1f} to {100 * high:.1f} %"
+    assert f"| the printed commands, followed, come to rest | 1 of 2 | 50.0% | {interval}" in text
+    assert "| `own-castor_kick-2` | named castor_kick → none | refused | no / help |" in text
+    assert "![Ranks](pictures/evidence_ranks.png)" in text
 
 
 def test_a_line_of_the_results_is_what_was_judged() -> None:
