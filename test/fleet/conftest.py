@@ -11,6 +11,8 @@ from typing import Any
 
 import pytest
 
+pytest.importorskip("mujoco", reason="the fleet is simulated (pip install mujoco)")
+
 from werrimbi_odom.simulation import (
     TrueRobot,
     free,
