@@ -26,7 +26,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Int64, Int64MultiArray
 from std_srvs.srv import Trigger
 
-from test.ros.conftest import free_domain
+from werrimbi_odom.ros.domain import free_domain
 from werrimbi_odom.ros.odom_node import OdomNode
 from werrimbi_odom.ros.parameters import CHANGEABLE
 
