@@ -100,7 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
         seen = shown(driven, view_of(robot_file.robot.effects))
         figures = figures_of(recorded, start, driven, seen, learnt)
         _write(arguments, recorded, driven, figures, show)
-    remark(robot_file)
+    remark(robot_file, *(f"{recorded.path}: {words}" for words in recorded.damage))
     print_figures(f"{recorded.name}: wheel odometry of {arguments.robot}", list(figures.rows()))
     written = [arguments.out, *([arguments.json] if arguments.json else [])]
     print(f"written: {', '.join(map(str, written))}")

@@ -101,7 +101,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     """
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.files.asked import Asked, read, refuse_twice
-    from werrimbi_odom.files.held import words_about_held
+    from werrimbi_odom.files.judgeable import words_about
 
     holdout = tuple(getattr(arguments, "holdout", None) or ())
     asked = Asked(arguments.robot, tuple(arguments.runs), holdout, how_of(arguments))
@@ -110,8 +110,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     collection = read_effects(arguments)
     with share_done("reading") as show:
         found = read(asked, collection, show)
-    warning = words_about_held((*found.runs, *found.holdout))
-    remark(found.source, *([] if warning is None else [warning]))
+    remark(found.source, *words_about((*found.runs, *found.holdout)))
     return found
 
 

@@ -24,6 +24,11 @@ class Topic(NamedTuple):
     messages: int
 
 
+def topic_in_words(topic: Topic) -> str:
+    """Its name and its type."""
+    return f"{topic.name} ({topic.kind})"
+
+
 class Message(NamedTuple):
     """A message of a bag."""
 
