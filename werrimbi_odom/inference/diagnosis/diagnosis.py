@@ -19,7 +19,6 @@ from werrimbi_odom.inference.diagnosis.candidates import Score
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.holdout import judge_of
 from werrimbi_odom.inference.diagnosis.lasting import lasting, lasting_effect
-from werrimbi_odom.inference.diagnosis.ownership import Grasp, grasp_of
 from werrimbi_odom.inference.diagnosis.search import (
     Instead,
     Round,
@@ -29,6 +28,7 @@ from werrimbi_odom.inference.diagnosis.search import (
     search_round,
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.support import Support, support_of
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, chance, told
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.matching import match_finely, stated
@@ -156,13 +156,13 @@ def _beyond_the_library(
     )
     certain = [cell for cell in this.dependences if cell.p_value < VERY_SURE]
     if score is not None and best is not None:
-        grasp = _grasp(score, runs, this.before.point.model)
+        support = _support(score, runs, this.before.point.model)
         data = runs.data
         explained = max(_fall(score.gain, data), this.before.cost - best.cost)
 
         def far_more(cell: Dependence) -> bool:
-            own = cell.channel in grasp.channels and bool(
-                grasp.fields & set(cell.variable.looks_at)
+            own = cell.channel in support.outputs and bool(
+                support.inputs & set(cell.variable.looks_at)
             )
             factor = FAR_MORE_OF_ITS_OWN if own else FAR_MORE
             return _fall(cell.gain - 2 * cell.degrees, data) > factor * explained + 15.0
@@ -178,5 +178,5 @@ def _fall(gain: float, data: int) -> float:
     return -data * math.log1p(-min(max(gain / data, 0.0), 0.999))
 
 
-def _grasp(score: Score, runs: Together, model: Model) -> Grasp:
-    return grasp_of(score.candidate, runs.drive(model.robot))
+def _support(score: Score, runs: Together, model: Model) -> Support:
+    return support_of(score.candidate, runs.drive(model.robot))
