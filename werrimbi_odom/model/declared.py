@@ -7,7 +7,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Literal, get_args
 
 from werrimbi_odom.model.pose import wrap
 
@@ -96,28 +95,28 @@ class Twin:
         return {name: factor * values[own] for name, (own, factor) in self.values.items()}
 
 
-Drawing = Literal[
-    "backlash",
-    "castor",
-    "eccentric",
-    "late",
-    "lever_arm",
-    "lost_counts",
-    "mirrored",
-    "radius",
-    "shrinking",
-    "sideways",
-    "slip_ahead",
-    "slip_outwards",
-    "slope",
-    "swapped",
-    "track",
-    "two_bases",
-    "unequal",
-    "wrong_sign",
-    "yaw_offset",
-]
-"""Names of the drawings that the reports have."""
+DRAWINGS: Mapping[str, int] = {
+    "backlash": 1,
+    "castor": 0,
+    "eccentric": 1,
+    "late": 2,
+    "lever_arm": 0,
+    "lost_counts": 1,
+    "mirrored": 0,
+    "radius": 0,
+    "shrinking": 0,
+    "sideways": 0,
+    "slip_ahead": 0,
+    "slip_outwards": 0,
+    "slope": 0,
+    "swapped": 0,
+    "track": 0,
+    "two_bases": 0,
+    "unequal": 0,
+    "wrong_sign": 1,
+    "yaw_offset": 0,
+}
+"""Drawings that the reports have, and how many labels each asks for: a side, or two signals."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -127,27 +126,30 @@ class Sketch:
     Parameters
     ----------
     drawing : str
-        One of `Drawing`.
+        One of `DRAWINGS`.
     says : str
         What it shows, for those who do not see it.
     caption : str
         Below it.
     labels : tuple of str
-        What the drawing asks for: a side, the names of two signals.
+        What the drawing asks for: a side ("left", "right"), the names of two signals.
 
     Raises
     ------
     ValueError
-        For a drawing that there is not.
+        For a drawing that there is not, or labels that it does not ask for.
     """
 
-    drawing: Drawing
+    drawing: str
     says: str
     caption: str
     labels: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        if self.drawing not in get_args(Drawing):
+        if self.drawing not in DRAWINGS:
+            raise ValueError(f"there is no drawing {self.drawing}; there are {', '.join(DRAWINGS)}")
+        if len(self.labels) != DRAWINGS[self.drawing]:
             raise ValueError(
-                f"there is no drawing {self.drawing}; there are {', '.join(get_args(Drawing))}"
+                f"the drawing {self.drawing} asks for {DRAWINGS[self.drawing]} labels, not for "
+                f"{len(self.labels)}"
             )

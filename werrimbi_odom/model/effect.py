@@ -37,6 +37,7 @@ __all__ = [
     "Twin",
     "after_body_effects",
     "after_wheel_effects",
+    "always_twins",
     "body_effect",
     "reference_effect",
     "twin_of",
@@ -267,6 +268,11 @@ def twin_of(one: Effect, other: Effect) -> Twin | None:
     found = [twin for twin in one.indistinguishable_from if twin.name == other.name]
     found += [twin for twin in other.indistinguishable_from if twin.name == one.name]
     return max(found, key=lambda twin: bool(twin.do), default=None)
+
+
+def always_twins(one: Effect, other: Effect) -> bool:
+    """Whether no drive can tell them apart, whatever the reference measures."""
+    return other.name in one.twins or one.name in other.twins
 
 
 def after_wheel_effects(

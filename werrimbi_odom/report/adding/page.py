@@ -53,17 +53,15 @@ def adding_page(added: Added, made: Mapping[str, str]) -> Page:
             {"": held_out_legs_figure(added)},
         ),
     ]
-    card = effect_card(name)
-    if card:
-        shown.append(
-            Shown(
-                "physics",
-                "What was added",
-                "The physics, what it does to the data, and how to check it on the robot.",
-                html=f'<div class="cards">{card}</div>',
-                main=False,
-            )
+    shown.append(
+        Shown(
+            "physics",
+            "What was added",
+            "The physics, what it does to the data, and how to check it on the robot.",
+            html=f'<div class="cards">{effect_card(added.effect)}</div>',
+            main=False,
         )
+    )
     if added.remaining:
         shown.append(
             Shown(

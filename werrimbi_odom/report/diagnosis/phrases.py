@@ -11,11 +11,12 @@ from dataclasses import dataclass
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
 from werrimbi_odom.inference.manoeuvres.sight import Sight
 from werrimbi_odom.inference.set_up.mistakes import SetUpFinding
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.report.diagnosis.values import Value, effect_named, ranked_of, values_of
+from werrimbi_odom.report.diagnosis.values import Value, ranked_of, values_of
 from werrimbi_odom.report.numbers import chance_words, length, with_std
 
 

@@ -8,7 +8,9 @@ import math
 from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, chance
+from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES
+from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.diagnosis.as_json import significant
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import (
@@ -22,7 +24,6 @@ from werrimbi_odom.report.diagnosis.phrases import (
     sizes,
     whole,
 )
-from werrimbi_odom.report.diagnosis.values import effect_named
 from werrimbi_odom.report.numbers import chance_words, length, listed
 from werrimbi_odom.report.printed import filled
 
@@ -125,7 +126,8 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
         if rivals[0] in mistakes(diagnosis)
         else f"Something is missing, but these drives cannot tell which: {which}."
     )
-    twins = [name for name in rivals[1:] if first is not None and name in first.twins]
+    others = [effect_named(diagnosis, name) for name in rivals[1:]]
+    twins = [each.name for each in others if each and first and always_twins(first, each)]
     if twins:
         lines.append(
             f"To the reference {listed([rivals[0], *twins])} are one and the same, on any drive."
