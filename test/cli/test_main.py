@@ -107,7 +107,7 @@ def stand_in(monkeypatch: pytest.MonkeyPatch, error: BaseException | None) -> No
         (OSError(28, "No space left on device"), 2, "werrimbi odom: [Errno 28] No space left"),
         (MemoryError(), 2, "werrimbi odom: this needs more memory than there is"),
         (KeyboardInterrupt(), 130, ""),
-        (SystemExit(3), 3, ""),
+        (SystemExit(0), 2, "werrimbi odom: code that it ran ended it (SystemExit: 0)"),
     ],
 )
 def test_how_a_verb_may_end(

@@ -80,6 +80,16 @@ def test_a_bag_cannot_name_files_outside_itself(bag: Path, tmp_path: Path, escap
     refused(bag, "cannot be read as a bag")
 
 
+@pytest.mark.parametrize("link", [False, True])
+def test_a_file_that_is_named_a_thousand_times_is_not_read_so_often(bag: Path, link: bool) -> None:
+    names = [f"more_{n}.mcap" if link else "square_bag.mcap" for n in range(1000)]
+    for name in names if link else ():
+        (bag / name).symlink_to(bag / "square_bag.mcap")
+    listed = "".join(f"  - {name}\n" for name in names)
+    metadata(bag, "  - square_bag.mcap\n", f"  - square_bag.mcap\n{listed}")
+    refused(bag, "more than once")
+
+
 @pytest.mark.parametrize(
     "tag", ["!!python/object/apply:os.system [touch pwned]", "!!python/name:os.system"]
 )

@@ -128,6 +128,20 @@ def test_two_topics_are_paired_as_the_node_pairs_them(
     assert "left out: 2 messages without a partner in time" in run.notes
 
 
+def test_a_pairing_that_began_one_message_off_mends_itself(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """At 50 Hz, the right count 4 ms after the left one; the first left count is lost."""
+    entries = []
+    for n in range(100):
+        if n:
+            entries.append(("/left_ticks", 20 * n * MS, ros.count(10 * n)))
+        entries.append(("/right_ticks", (20 * n + 4) * MS, ros.count(10 * n)))
+    run = read_run(ros.write(tmp_path / "bag", entries), robot("input_type: int32_pair"))
+    apart = run.ticks.left - run.ticks.right
+    assert apart[1:].tolist() == [0] * 99, "of the first alone the partner was lost"
+
+
 def test_an_int32_wraps_at_32_bits_whatever_the_file_says(
     tmp_path: Path, ros: Any, robot: Any
 ) -> None:

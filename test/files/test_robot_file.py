@@ -180,6 +180,7 @@ def test_in_place_with_force_keeps_mode_and_link(commented: RobotFile, tmp_path:
     ("changes", "out", "words"),
     [
         ({"wheel_radius": -1.0}, "new.yaml", "wheel_radius must be a number greater than 0"),
+        ({"wheel_radius": 1e22}, "new.yaml", "wheel_radius times left_wheel_radius_multiplier"),
         ({"wheel_radus": 1.0}, "new.yaml", "the nearest known one is wheel_radius"),
         ({}, "nowhere/new.yaml", "No such file or directory"),
         ({}, ".", "is a folder"),
@@ -199,7 +200,7 @@ def test_written_files_are_read_by_yaml_1_1(commented: RobotFile, tmp_path: Path
     out = tmp_path / "new.yaml"
     changes: dict[str, Value] = {
         "left_wheel_noise": 1e-5,
-        "wheel_radius": 1e22,
+        "piece_path_tolerance": 1e22,
         "odom_frame_id": "yes",
         "base_frame_id": "12",
         "left_wheel_names": ("no", "a b", "null", "3.5", "c"),
@@ -237,9 +238,19 @@ def test_written_files_are_read_by_a_real_node(
         assert type(found[name]) is (list if isinstance(value, tuple) else type(value)), name
 
 
+# What a robot can have together; the others may be anything.
+SIZES = {
+    **{item.name: (1e-2, 1e2) for item in PARAMETERS if "wheel_" in item.name},
+    **{item.name: (1.0, 1e9) for item in PARAMETERS if "_per_revolution" in item.name},
+    **{item.name: (0.0, 1e3) for item in PARAMETERS if "_noise" in item.name},
+}
+
+
 def _values(item: Parameter) -> st.SearchStrategy[Value]:
     if item.choices:
         return st.sampled_from([int(c) if item.kind == "integer" else c for c in item.choices])
+    if item.kind == "float" and item.name in SIZES:
+        return st.floats(*SIZES[item.name])
     if item.kind == "float":
         low = item.minimum if item.minimum is not None else item.above
         return st.floats(low, 1e300, exclude_min=item.above is not None)

@@ -52,6 +52,30 @@ def complaint(path: Path, text: str | bytes) -> str:
             "the nearest known one is wheel_separation_multiplier",
         ),
         (_with("5: 1.0"), ", line 7: unknown parameter 5"),
+        *(
+            (GOOD.replace("0.05", number), f", line 4: ROS reads {number} otherwise than YAML does")
+            for number in ("0100", "-0100", "089", "1_0", "1_0.5", "1_e3", "0o17", "0b11", "0x1_F")
+        ),
+        (_slipping("{creep: 0_1}"), ", line 8: ROS reads 0_1 otherwise"),
+        (GOOD.replace("0.05", '!!int "010"'), ", line 4: ROS reads 010 otherwise"),
+        ("%YAML 1.1\n---\n" + GOOD, ", line 2: leave out %YAML"),
+        (
+            GOOD.replace("0.35", "1.0e-300"),
+            ", line 3: wheel_separation times wheel_separation_multiplier must be from 1e-09 to "
+            "1e+09 m, it is 1e-300 m",
+        ),
+        (
+            _with("wheel_separation_multiplier: 1.0e+10"),
+            ", line 7: wheel_separation times wheel_separation_multiplier must be from",
+        ),
+        (
+            GOOD.replace(
+                "right_ticks_per_revolution: 2000.0", "right_ticks_per_revolution: 5e-324"
+            ),
+            ", line 6: travel for one count (wheel_radius times right_wheel_radius_multiplier "
+            "times 2 pi over right_ticks_per_revolution) must be from 1e-15 to 1e+09 m, it is inf",
+        ),
+        (_with("left_wheel_noise: 1.0e160"), ", line 7: left_wheel_noise must be at most 1000"),
         (
             GOOD.replace("0.05", "-0.05"),
             ", line 4: wheel_radius must be a number greater than 0 (m), not -0.05",

@@ -21,9 +21,9 @@ from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
-from werrimbi_odom.inference.fitting.matching import match
 from werrimbi_odom.inference.fitting.prediction import legs_shown, path_of, predict, predict_all
 from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

@@ -23,9 +23,9 @@ from werrimbi_odom.inference.diagnosis.evidence import dependences
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
-from werrimbi_odom.inference.fitting.matching import match
 from werrimbi_odom.inference.fitting.noise import NOISES, noise_estimates
 from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.robot import Robot
 
 NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0)

@@ -18,8 +18,8 @@ from werrimbi_odom.inference.diagnosis.evidence import dependences
 from werrimbi_odom.inference.diagnosis.lasting import lasting
 from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
-from werrimbi_odom.inference.fitting.matching import match_finely
 from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.robot import Robot
 
 TRUE = WhiteNoiseRobot()

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from test.model.drives import ROBOT
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.fitting.matching import MatchedRun, every_pose
+from werrimbi_odom.inference.legs.cutting import MatchedRun, every_pose, record_of
 from werrimbi_odom.model.pose import Floats
 
 
@@ -21,7 +21,8 @@ def matched(time: Floats, counts: Floats, seen: Floats) -> MatchedRun:
     """Both wheels alike, and a reference whose poses do not matter here."""
     nowhere = np.zeros(seen.size)
     ticks = Ticks(time, counts, counts, {})
-    return every_pose(Run("run", Path("run"), ticks, Reference(seen, *[nowhere] * 3)), ROBOT)
+    run = Run("run", Path("run"), ticks, Reference(seen, *[nowhere] * 3))
+    return every_pose(record_of(run, ROBOT))
 
 
 def travelled(run: MatchedRun) -> Floats:

@@ -28,7 +28,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.legs import leg_errors, statistics
-from werrimbi_odom.inference.fitting.matching import match
+from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding, look_for_mistakes
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot

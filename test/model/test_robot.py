@@ -66,6 +66,31 @@ def test_the_order_of_the_covariance_is_one_of_two() -> None:
         replace(ROBOT, covariance_order="second")
 
 
+@pytest.mark.parametrize(
+    ("changes", "said"),
+    [
+        (
+            {"wheel_separation": 1e-300},
+            "wheel_separation times wheel_separation_multiplier must be",
+        ),
+        ({"wheel_separation": 1e300}, "wheel_separation times wheel_separation_multiplier must be"),
+        ({"wheel_separation": 1e-5, "wheel_separation_multiplier": 1e-5}, "wheel_separation times"),
+        ({"wheel_separation_multiplier": 5e-324}, "wheel_separation times"),
+        ({"wheel_radius": 1e155}, "wheel_radius times left_wheel_radius_multiplier must be from"),
+        ({"right_wheel_radius_multiplier": 1e308}, "wheel_radius times right_wheel_radius_mult"),
+        (
+            {"left_ticks_per_revolution": 5e-324},
+            "travel for one count .* left_ticks_per_revolution",
+        ),
+        ({"right_ticks_per_revolution": 1e300}, "travel for one count .* must be from 1e-15 to"),
+        ({"left_wheel_noise": 1e160}, "left_wheel_noise must be at most 1000 m"),
+    ],
+)
+def test_what_values_make_together_is_of_this_world(changes: dict[str, float], said: str) -> None:
+    with pytest.raises(ValueError, match=f"^{said}"):
+        replace(ROBOT, **changes)
+
+
 def test_the_track_and_the_counts_carry_the_calibration() -> None:
     robot = replace(
         ROBOT,

@@ -31,6 +31,7 @@ BAD = {
     "too_few": (NAMES, [0.0], "wrong array length"),
     "too_many": (NAMES, [0.0, 0.0, 0.0], "wrong array length"),
     "empty": (NAMES, [], "empty position"),
+    "twice": (["left_wheel_joint", *NAMES], [0.0, 100.0, 50.0], "joint left_wheel_joint twice"),
 }
 
 

@@ -257,7 +257,7 @@ def test_silence_and_clocks_that_do_not_meet_are_said(launch: Any, compare: Any)
     time.sleep(0.2)
     told = {item.key: item.value for item in comparing.verdict().values}
     assert told["reference refused: pose not finite"] == "1"
-    assert told["reference refused: no orientation"] == "1"
+    assert told["reference refused: orientation not a rotation"] == "1"
     comparing.stop()
 
 
@@ -265,6 +265,7 @@ def test_what_is_given_wrongly_is_refused_in_one_line(launch: Any, compare: Any)
     launched = launch(robot_file())
     for wrong, said in (
         ({"windw": 30}, "unknown parameter windw: did you mean window?"),
+        ({"reference_sigma_xy": 1e200}, "reference_sigma_xy must be a number of at most 1e+06"),
         ({"leg": -1.0}, "leg must be a number greater than 0 (m), not -1.0"),
         ({"reference_type": "laser"}, "reference_type must be one of pose_stamped, "),
     ):

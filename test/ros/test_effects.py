@@ -222,4 +222,7 @@ def test_an_imu_without_a_gyro_is_refused(launch: Any, robot: dict[str, Any]) ->
     message = Imu()
     message.angular_velocity_covariance[0] = -1.0
     node.send(Imu, "imu", message)
-    node.until(lambda: "the Imu on imu measures none" in node.stderr(), "refusal")
+    node.until(
+        lambda: "not learnt from: no angular velocity: the Imu measures none" in node.stderr(),
+        "refusal",
+    )

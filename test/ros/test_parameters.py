@@ -204,6 +204,13 @@ def test_the_table_is_declared_with_words_and_ranges(node: Any, robot: Robot) ->
         ("left_ticks_per_revolution", 100.0, "read-only parameter: left_ticks_per_revolution"),
         ("odom_frame_id", "map", "read-only parameter: odom_frame_id"),
         ("wheel_with", 1.0, "undeclared parameter"),
+        ("wheel_separation", 1e-160, "wheel_separation times wheel_separation_multiplier must be"),
+        ("wheel_separation", 1e-300, "wheel_separation times wheel_separation_multiplier must be"),
+        ("wheel_separation", 5e-324, "must be from 1e-09 to 1e+09 m, it is 4.94066e-324 m"),
+        ("wheel_radius", 1e155, "wheel_radius times left_wheel_radius_multiplier must be"),
+        ("wheel_radius", 1e300, "wheel_radius times left_wheel_radius_multiplier must be"),
+        ("left_wheel_noise", 1e160, "left_wheel_noise must be at most 1000"),
+        ("left_wheel_radius_multiplier", 1e308, "must be from 1e-09 to 1e+09 m"),
     ],
 )
 def test_a_change_is_refused_with_its_reason(
@@ -212,6 +219,8 @@ def test_a_change_is_refused_with_its_reason(
     result = node.set_parameters(**{name: value})
     assert not result.successful
     assert reason in result.reason
+    message = node.drive([(20, 10), (20, 11)])
+    assert np.isfinite(message.pose.covariance).all()
 
 
 def test_a_change_moves_nothing_that_was_driven(node: Any, robot: Robot) -> None:

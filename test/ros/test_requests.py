@@ -62,6 +62,8 @@ def test_set_pose_goes_on_from_there(node: Any) -> None:
 
 INDEFINITE = np.diag([0.01, -0.01, 0.01])
 LOPSIDED = COVARIANCE + np.array([[0, 0.01, 0], [0, 0, 0], [0, 0, 0]])
+HIDDEN_NEGATIVE = np.diag([1e6, 1.0, -1e-4])  # small beside the largest entry, but not to a heading
+HIDDEN_TOO_CLOSE = np.array([[1e10, 0.0, 0.0], [0.0, 1.0, 2.0], [0.0, 2.0, 1.0]])
 TOO_CLOSE = np.array([[0.01, 0.02, 0.0], [0.02, 0.01, 0.0], [0.0, 0.0, 0.01]])
 
 REFUSED = {
@@ -77,6 +79,13 @@ REFUSED = {
     "asymmetric": (pose_message(LOPSIDED), "covariance not symmetric"),
     "negative": (pose_message(INDEFINITE), "covariance not positive semi-definite"),
     "indefinite": (pose_message(TOO_CLOSE), "covariance not positive semi-definite"),
+    "beside_a_large_one": (
+        pose_message(HIDDEN_NEGATIVE),
+        "covariance not positive semi-definite",
+    ),
+    "correlation_of_2": (pose_message(HIDDEN_TOO_CLOSE), "covariance not positive semi-definite"),
+    "long_quaternion": (pose_message(qz=1e200, qw=0.0), "orientation not a rotation"),
+    "long_tilted": (pose_message(qx=1e200, qz=0.0, qw=0.0), "orientation not a rotation"),
 }
 REFUSED["frame"][0].header.frame_id = "map"
 # Half of what set_pose keeps for a busy node: more at once and DDS may rightly drop the oldest.

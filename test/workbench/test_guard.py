@@ -68,8 +68,42 @@ def test_others_are_not(kind: str, headers: list[tuple[str, str]]) -> None:
     assert not heard(kind, *headers)
 
 
-def test_another_site_may_link_to_the_page_but_not_post_to_it() -> None:
-    cross = [("host", HERE), ("sec-fetch-site", "cross-site")]
-    assert heard("http", *cross)
-    assert not heard("http", *cross, method="POST")
-    assert not heard("websocket", *cross)
+LINK = [("sec-fetch-mode", "navigate"), ("sec-fetch-dest", "document")]
+
+
+@pytest.mark.parametrize("site", ["cross-site", "same-site"])
+def test_another_site_may_link_to_the_page_and_nothing_else(site: str) -> None:
+    """Another port of this machine is of the same site."""
+    other = [("host", HERE), ("sec-fetch-site", site)]
+    assert heard("http", *other, *LINK)
+    assert not heard("http", *other, *LINK, method="POST")
+    assert not heard("websocket", *other, *LINK)
+    script = [("sec-fetch-mode", "no-cors"), ("sec-fetch-dest", "script")]
+    frame = [("sec-fetch-mode", "navigate"), ("sec-fetch-dest", "iframe")]
+    for more in (script, frame, []):
+        assert not heard("http", *other, *more)
+    assert heard("http", ("host", HERE), ("sec-fetch-site", "same-origin"), *script)
+    assert heard("http", ("host", HERE), ("sec-fetch-site", "none"), *LINK)
+
+
+def test_what_asks_for_a_socket_and_is_none_does_not_reach_it() -> None:
+    asked = [("host", HERE), ("connection", "close"), ("upgrade", "websocket")]
+    assert not heard("http", *asked)
+    assert heard("websocket", *asked)
+
+
+def test_no_page_may_hold_it_in_a_frame() -> None:
+    sent: list[Any] = []
+
+    async def application(scope: Any, receive: Any, send: Any) -> None:
+        await send({"type": "http.response.start", "status": 200, "headers": [(b"a", b"b")]})
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    scope = {"type": "http", "headers": [(b"host", HERE.encode())], "method": "GET", "path": "/"}
+    awaited(guarded(application, PORT)(scope, send, send))
+    told = dict(sent[0]["headers"])
+    assert told[b"x-frame-options"] == b"DENY"
+    assert told[b"content-security-policy"] == b"frame-ancestors 'none'"
+    assert told[b"a"] == b"b"

@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 from urllib.parse import urlsplit
 
 import pytest
@@ -175,6 +176,29 @@ def test_no_figure_offers_to_be_uploaded(looked: Looked) -> None:
     assert not [title for title in buttons if re.search("share|upload|cloud|edit", title, re.I)]
 
 
+def test_a_page_of_another_server_here_cannot_hold_it_in_a_frame(
+    served: Served, browser: Any, tmp_path: Path
+) -> None:
+    (tmp_path / "index.html").write_text(f'<iframe src="{served.address}"></iframe>')
+    other = subprocess.Popen(
+        [sys.executable, "-u", "-m", "http.server", "--bind", "127.0.0.1", "0"],
+        cwd=tmp_path, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True,
+    )  # fmt: skip
+    try:
+        assert other.stdout is not None
+        port = re.search(r"port (\d+)", other.stdout.readline())
+        assert port is not None
+        page = browser.new_page()
+        page.goto(f"http://127.0.0.1:{port[1]}/")
+        page.wait_for_timeout(2000)
+        assert len(page.frames) == 2
+        assert page.frames[1].locator("[data-key]").count() == 0
+        page.close()
+    finally:
+        other.kill()
+        other.communicate()
+
+
 def test_another_name_or_another_site_is_refused(served: Served) -> None:
     place = urlsplit(served.address)
     assert place.hostname == "127.0.0.1"
@@ -204,6 +228,8 @@ def test_another_name_or_another_site_is_refused(served: Served) -> None:
     assert asked(socket, Host=own, Origin=f"http://{own}", **upgrade) == 101
     assert asked(socket, Host=own, Origin="http://evil.example", **upgrade) == 403
     assert asked(socket, Host="evil.example", **upgrade) == 403
+    assert asked(socket, Host=own, **{**upgrade, "Connection": "close"}) == 403
+    assert asked("/", Host=own, Sec_Fetch_Site="same-site", Sec_Fetch_Dest="iframe") == 403
 
 
 def test_a_port_that_is_taken_and_an_out_that_exists_are_one_line(served: Served) -> None:
@@ -212,7 +238,7 @@ def test_a_port_that_is_taken_and_an_out_that_exists_are_one_line(served: Served
     for words, said in (
         (["--port", str(port)], "--port 0 takes a free one"),
         (["--port", "x"], "is no port"),
-        (["--out", str(robot)], "--force overwrites it"),
+        (["--out", str(run / "ticks.csv"), "--force"], "would overwrite"),
     ):
         end = subprocess.run(
             [sys.executable, "-m", "werrimbi_odom.cli.main", "workbench",

@@ -81,7 +81,7 @@ def test_a_diagnosis_belongs_to_its_step(two: Session) -> None:
 
 def test_saved_is_said_of_the_step_that_the_file_holds(two: Session) -> None:
     file = Path("robot_new.yaml")
-    kept = two.written(file)
+    kept = two.written(file, "its text")
     assert kept.is_saved
     assert not kept.undone().is_saved
     assert kept.undone().redone().is_saved

@@ -52,7 +52,6 @@ def run(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.inference.adding.adding import add_effect
     from werrimbi_odom.report.adding.words import words_of
 
-    _refuse_out(arguments)
     given = read_recordings(arguments)
     effect = given.collection.find(arguments.effect)
     with share_done("fitting") as show:
@@ -71,17 +70,6 @@ def run(arguments: argparse.Namespace) -> int:
     print(f"\nwritten: {', '.join(map(str, written))}")
     print(f"Is more missing?  {_next(arguments)}")
     return 0
-
-
-def _refuse_out(arguments: argparse.Namespace) -> None:
-    """Before any work: an --out that cannot be written."""
-    out: Path = arguments.out
-    if out.is_dir():
-        raise InputError(f"--out {out} is a folder; give a file name in it")
-    if out.exists() and not arguments.force:
-        raise InputError(f"{out} exists; --force overwrites it, another --out keeps it")
-    if out in (arguments.json, arguments.report):
-        raise InputError(f"--out {out} is given as another output too")
 
 
 def _write(arguments: argparse.Namespace, given: Recordings, added: Added) -> list[Path]:

@@ -6,9 +6,6 @@ from __future__ import annotations
 
 import argparse
 from importlib import import_module
-from importlib.util import find_spec
-
-from werrimbi_odom.errors import InputError
 
 HELP = "better numbers for the robot file, with error bars"
 
@@ -23,9 +20,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the three ways of calibrating and their options."""
     kinds = parser.add_subparsers(dest="kind", metavar="KIND", required=True)
     for kind, says in KINDS.items():
-        if find_spec(_module(kind)) is not None:
-            below = kinds.add_parser(kind, help=says, allow_abbrev=False)
-            import_module(_module(kind)).add_arguments(below)
+        below = kinds.add_parser(kind, help=says, allow_abbrev=False)
+        import_module(_module(kind)).add_arguments(below)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -34,14 +30,9 @@ def run(arguments: argparse.Namespace) -> int:
     Raises
     ------
     InputError
-        When something given cannot be used, or a package is not installed.
+        When something given cannot be used.
     """
-    try:
-        return int(import_module(_module(arguments.kind)).run(arguments))
-    except ModuleNotFoundError as missing:
-        raise InputError(
-            f"calibrate needs the Python package {missing.name}: pip install 'werrimbi_odom[tools]'"
-        ) from missing
+    return int(import_module(_module(arguments.kind)).run(arguments))
 
 
 def _module(kind: str) -> str:

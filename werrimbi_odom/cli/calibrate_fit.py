@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from werrimbi_odom.files.robot_file import RobotFile
     from werrimbi_odom.inference.calibration.any_driving import Calibration
-    from werrimbi_odom.inference.fitting.matching import MatchedRun
+    from werrimbi_odom.inference.legs.cutting import MatchedRun
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -37,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Calibrate; 0 on success."""
     from werrimbi_odom.inference.calibration.any_driving import calibrate
-    from werrimbi_odom.inference.fitting.matching import match, match_finely, stated
+    from werrimbi_odom.inference.legs.cutting import match, match_finely, stated
     from werrimbi_odom.report.calibration.fit_words import fit_in_words
 
     given = read_recordings(arguments)

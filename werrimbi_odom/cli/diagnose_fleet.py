@@ -8,14 +8,13 @@ import argparse
 import shutil
 import sys
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import closing
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.cli.json_file import write_json
-from werrimbi_odom.cli.recordings import how_of, read_effects, refuse_outputs
+from werrimbi_odom.cli.recordings import how_of, read_effects
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
@@ -90,7 +89,6 @@ def run_fleet(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.fleet.one import Task, failed
 
     members = members_of(arguments.fleet)
-    refuse_outputs(arguments, _inputs(arguments, members))
     read_effects(arguments)  # a mistake in them is no robot's
     how = how_of(arguments)
     tasks = [Task(each.name, Asked(each.robot, each.runs, each.holdout, how)) for each in members]
@@ -120,10 +118,6 @@ def run_fleet(arguments: argparse.Namespace) -> int:
 
 def _spread(arguments: argparse.Namespace, tasks: Sequence[Task]) -> Generator[Row, None, None]:
     """Rows as they come."""
-    if find_spec("threadpoolctl") is None:
-        raise InputError(
-            "--fleet needs the Python package threadpoolctl: pip install 'werrimbi_odom[tools]'"
-        )
     if arguments.scheduler is not None:
         from werrimbi_odom.fleet.cluster import on_cluster
 
@@ -188,12 +182,6 @@ def _write(arguments: argparse.Namespace, fleet: Fleet) -> list[Path]:
         made = {"fleet": str(arguments.fleet), **made_of(arguments)}
         written += write_fleet_page(fleet, arguments.report, made)
     return written
-
-
-def _inputs(arguments: argparse.Namespace, members: Sequence[Member]) -> Iterator[Path]:
-    yield from arguments.effects
-    for member in members:
-        yield from (member.robot, *member.runs, *member.holdout)
 
 
 def _count(text: str) -> int:

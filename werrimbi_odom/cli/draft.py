@@ -53,7 +53,6 @@ def run(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.inference.adding.drafting import draft_effect
     from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 
-    _refuse_out(arguments)
     given = read_recordings(arguments)
     known = given.collection.effects
     with share_done("diagnosing") as show:
@@ -89,14 +88,6 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"         {', '.join(map(str, pages))}")
     print(_next(arguments, draft, given))
     return 0
-
-
-def _refuse_out(arguments: argparse.Namespace) -> None:
-    out: Path = arguments.out
-    if out.exists() and not out.is_dir():
-        raise InputError(f"--out {out} is a file; give a folder")
-    if out.is_dir() and any(out.iterdir()) and not arguments.force:
-        raise InputError(f"{out} is not empty; --force writes into it, another --out keeps it")
 
 
 def _known(diagnosis: Diagnosis, arguments: argparse.Namespace) -> str:

@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import os
 import sys
 from collections.abc import Sequence
@@ -12,6 +13,8 @@ from importlib import import_module, metadata
 from types import ModuleType
 from typing import NoReturn
 
+from werrimbi_odom.cli.outputs import refuse_files
+from werrimbi_odom.cli.packages import EXTRAS, lacking, refuse_lacking
 from werrimbi_odom.errors import InputError
 
 VERBS = (
@@ -51,15 +54,24 @@ def main(argv: Sequence[str] | None = None) -> int:
     # more than they work, the longer the busier the machine (the workbench, with its browser).
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
     words = sys.argv[1:] if argv is None else list(argv)
+    for stream in (sys.stdout, sys.stderr):
+        # A path need not be text, nor a terminal know every sign: such ones are spelt.
+        if isinstance(stream, io.TextIOWrapper) and stream.errors == "strict":
+            stream.reconfigure(errors="backslashreplace")
     verb = "werrimbi"
     try:
-        arguments = _parser(words).parse_args(words)
+        try:
+            arguments = _parser(words).parse_args(words)
+        except SystemExit as end:  # argparse ends --help and bad usage so
+            return end.code if isinstance(end.code, int) else BAD_INPUT
         verb = f"werrimbi {arguments.verb}"
+        refuse_lacking(arguments)
+        refuse_files(arguments)
         code = int(_module(arguments.verb).run(arguments))
         sys.stdout.flush()  # here, where a broken pipe is still caught
         return code
-    except SystemExit as end:  # argparse ends --help and bad usage so
-        return end.code if isinstance(end.code, int) else BAD_INPUT
+    except SystemExit as end:  # nothing of ours ends so; what was asked for has not been done
+        problem = f"code that it ran ended it (SystemExit: {end.code})"
     except KeyboardInterrupt:
         return INTERRUPTED
     except BrokenPipeError:
@@ -68,6 +80,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         return NO_READER
     except InputError as error:
         problem = str(error)
+    except ModuleNotFoundError as missing:
+        if (missing.name or "").partition(".")[0] not in EXTRAS:
+            raise
+        problem = lacking(missing.name or "", verb)
     except MemoryError:
         problem = "this needs more memory than there is; cut the run into several"
     except OSError as error:

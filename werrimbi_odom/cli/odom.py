@@ -92,7 +92,6 @@ def run(arguments: argparse.Namespace) -> int:
             reference_topic=arguments.reference_topic,
             progress=lambda share: show(0.5 * share, "reading"),
         )
-        _refuse_own_inputs(arguments, recorded)
         show(0.5, "reckoning")
         robot_file, learnt = _usable(recorded, lambda: with_learnt_phases(recorded, robot_file))
         start = _usable(recorded, lambda: start_of(recorded, robot_file))
@@ -208,20 +207,3 @@ def _half_open(yaw: Floats) -> Floats:
 
     wrapped = wrap_all(yaw)
     return np.minimum(np.where(wrapped <= -np.pi, wrapped + 2.0 * np.pi, wrapped), np.pi)
-
-
-def _refuse_own_inputs(arguments: argparse.Namespace, recorded: Run) -> None:
-    """An existing --out is replaced, so it must not be what was just read."""
-    read = [arguments.robot, recorded.path, *arguments.effects]
-    for names in ("ticks.csv", "reference.csv", "metadata.yaml", "*.mcap", "*.db3"):
-        read += recorded.path.glob(names)
-    for name in ("out", "json"):
-        path = getattr(arguments, name)
-        if path is None or not path.exists():
-            continue
-        if path.is_dir():
-            raise InputError(f"--{name} {path} is a folder; give a file name in it")
-        if any(path.samefile(each) for each in read):
-            raise InputError(f"--{name} {path} would overwrite what it is made from")
-    if arguments.json is not None and arguments.json.resolve() == arguments.out.resolve():
-        raise InputError(f"--out and --json are the same file, {arguments.out}")

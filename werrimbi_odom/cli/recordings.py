@@ -7,11 +7,8 @@ from __future__ import annotations
 import argparse
 import math
 import sys
-from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
-
-from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
@@ -99,7 +96,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     Raises
     ------
     InputError
-        When something cannot be used, a run is given twice, or an output would overwrite an input.
+        When something cannot be used, or a run is given twice.
     """
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.files.asked import Asked, read, refuse_twice
@@ -109,7 +106,6 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     asked = Asked(arguments.robot, tuple(arguments.runs), holdout, how_of(arguments))
     paths = [*asked.runs, *asked.holdout]
     refuse_twice(paths)
-    refuse_outputs(arguments, [arguments.robot, *paths, *arguments.effects])
     collection = read_effects(arguments)
     with share_done("reading") as show:
         found = read(asked, collection, show)
@@ -148,45 +144,6 @@ def read_effects(arguments: argparse.Namespace) -> Collection:
     for warning in collection.warnings:
         print(f"warning: {warning}", file=sys.stderr)
     return collection
-
-
-def refuse_outputs(arguments: argparse.Namespace, inputs: Iterable[Path]) -> None:
-    """What could not be written at the end of long work is said at its beginning.
-
-    Parameters
-    ----------
-    inputs
-        Files that are read, and folders of which all files may be.
-
-    Raises
-    ------
-    InputError
-        When --json or --report is a folder or lies in none, is one of the inputs, both are the
-        same, or `refuse_report` refuses the report.
-    """
-    from werrimbi_odom.files.asked import place_of
-
-    read: list[Path] = []
-    for path in inputs:
-        read.append(path)
-        if path.is_dir():
-            read += path.iterdir()
-    taken = {place_of(path) for path in read}
-    for name in ("json", "report"):
-        out: Path | None = getattr(arguments, name, None)
-        if out is None:
-            continue
-        if out.is_dir():
-            raise InputError(f"--{name} {out} is a folder; give a file name in it")
-        if not out.parent.is_dir():
-            raise InputError(f"--{name} {out}: there is no folder {out.parent}")
-        if name == "report":
-            from werrimbi_odom.report.save import refuse_report
-
-            refuse_report(out)
-        if place_of(out) in taken:
-            raise InputError(f"--{name} {out} would overwrite what is read, or written, already")
-        taken.add(place_of(out))
 
 
 def _positive(text: str) -> float:

@@ -67,12 +67,7 @@ def run(arguments: argparse.Namespace) -> int:
     InputError
         When an effect does not exist or the folder cannot be written.
     """
-    try:
-        from werrimbi_odom import simulation
-    except ModuleNotFoundError as missing:
-        raise InputError(
-            f"simulate needs the Python package {missing.name}: pip install {missing.name}"
-        ) from missing
+    from werrimbi_odom import simulation
 
     if arguments.list:
         for entry in simulation.CATALOGUE:
@@ -151,10 +146,6 @@ def _new_folder(out: Path) -> Iterator[Path]:
     """A folder beside `out` to fill; it becomes `out` when all went well, and vanishes if not."""
     target = out.absolute()
     try:
-        if out.exists() and not out.is_dir():
-            raise InputError(f"{out} is a file; --out wants a new or empty folder")
-        if out.is_dir() and any(out.iterdir()):
-            raise InputError(f"{out} is not empty; --out wants a new or empty folder")
         target.parent.mkdir(parents=True, exist_ok=True)
         folder = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
     except OSError as error:

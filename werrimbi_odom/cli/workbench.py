@@ -7,13 +7,11 @@ from __future__ import annotations
 import argparse
 import os
 import tempfile
-from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.cli.json_file import write_json
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
-from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
     from werrimbi_odom.files.asked import Recordings
@@ -54,10 +52,6 @@ def run(arguments: argparse.Namespace) -> int:
     InputError
         When something cannot be used, or the port is taken.
     """
-    if find_spec("nicegui") is None:
-        raise InputError(
-            "the workbench needs NiceGUI, which is not installed: pip install 'nicegui>=3.18'"
-        )
     from werrimbi_odom.workbench.job import Job
     from werrimbi_odom.workbench.tasks import Open
 
@@ -67,11 +61,8 @@ def run(arguments: argparse.Namespace) -> int:
     os.environ["NICEGUI_STORAGE_PATH"] = str(Path(tempfile.gettempdir()) / ".werrimbi_none")
     os.environ.pop("NICEGUI_REDIS_URL", None)
     try:
-        from werrimbi_odom.workbench.saving import refuse
         from werrimbi_odom.workbench.server import listening, serve
 
-        if arguments.out is not None:
-            refuse(arguments.out, arguments.force)
         at = listening(arguments.port)
         opening = _opening(job, arguments, read_recordings(arguments))
     except BaseException:

@@ -17,6 +17,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import NamedTuple
 
+from werrimbi_odom.effects.guarded import guarded, line_of, words_of
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.effect import Effect
@@ -72,8 +73,10 @@ def all_effects(files: Sequence[Path] = ()) -> Collection:
         place = f"effect {point.name} of {_package(point)} ({point.value})"
         try:
             found = point.load()
-        except (Exception, SystemExit) as error:
-            warnings.append(f"{place} is left out: {type(error).__name__}: {error}")
+        except KeyboardInterrupt:
+            raise
+        except BaseException as error:
+            warnings.append(f"{place} is left out: {words_of(error)}")
             continue
         if not isinstance(found, Effect):
             warnings.append(
@@ -83,14 +86,14 @@ def all_effects(files: Sequence[Path] = ()) -> Collection:
         elif found.name in effects:
             warnings.append(f"{place} is left out: the name {found.name} is taken")
         else:
-            effects[found.name] = found
+            effects[found.name] = guarded(found, _package(point))
     for file in files:
         for found in load_file(file):
             if found.name in ours:
                 raise InputError(f"{file}: the name {found.name} is taken; give it another")
             if found.name in effects:
                 warnings.append(f"{file}: its {found.name} goes before the installed one")
-            effects[found.name] = found
+            effects[found.name] = guarded(found, str(file))
     return Collection(tuple(effects.values()), tuple(warnings))
 
 
@@ -147,28 +150,13 @@ def _executed(path: Path) -> ModuleType:
     sys.modules[name] = module  # dataclasses and typing look their module up there
     try:
         exec(compile(path.read_bytes(), str(path), "exec"), vars(module))
-    except (Exception, SystemExit) as error:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:
         if known is None:
             del sys.modules[name]
-        raise InputError(f"{path}{_line(error, path)}: {_words(error)}") from error
+        raise InputError(f"{path}{line_of(error, str(path))}: {words_of(error)}") from error
     return module
-
-
-def _line(error: BaseException, path: Path) -> str:
-    """Where in the file it went wrong, as ":12"."""
-    if isinstance(error, SyntaxError):
-        return f":{error.lineno}" if error.lineno else ""
-    line, trace = 0, error.__traceback__
-    while trace is not None:
-        if trace.tb_frame.f_code.co_filename == str(path):
-            line = trace.tb_lineno
-        trace = trace.tb_next
-    return f":{line}" if line else ""
-
-
-def _words(error: BaseException) -> str:
-    message = error.msg if isinstance(error, SyntaxError) else str(error)
-    return f"{type(error).__name__}: {message}"
 
 
 def _package(point: object) -> str:

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +13,7 @@ from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.held import without_held_poses
 from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.replacing import place_of
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.files.run_folder import TICKS
@@ -147,11 +147,3 @@ def refuse_twice(paths: Iterable[Path]) -> None:
         if place in seen:
             raise InputError(f"{path} is given twice; a drive counts once, in RUN or in --holdout")
         seen.add(place)
-
-
-def place_of(path: Path) -> str:
-    """Where a path leads to in the end."""
-    try:
-        return os.path.realpath(path)
-    except ValueError:  # a NUL byte in the name; whoever opens the file says so
-        return str(path)

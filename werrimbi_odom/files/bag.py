@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
 from werrimbi_odom.errors import InputError
@@ -81,6 +81,8 @@ def opened_bag(path: Path) -> Iterator[Bag]:
         ) from missing
     reader = None
     try:
+        if path.is_dir():
+            _refuse_repeated(path)
         reader = Reader(path)
         reader.open()
         found = reader.topics.items()
@@ -95,6 +97,19 @@ def opened_bag(path: Path) -> Iterator[Bag]:
         yield Bag(path, topics, reader, get_typestore(Stores.ROS2_JAZZY))
     finally:
         reader.close()
+
+
+def _refuse_repeated(folder: Path) -> None:
+    """A file that the metadata name a thousand times would be read a thousand times."""
+    from ruamel.yaml import YAML
+
+    metadata = YAML(typ="safe").load(folder / "metadata.yaml")["rosbag2_bagfile_information"]
+    seen: set[tuple[int, int]] = set()
+    for name in metadata["relative_file_paths"]:
+        found = (folder / PurePath(name).name).stat()
+        if (found.st_dev, found.st_ino) in seen:
+            raise InputError(f"{folder / 'metadata.yaml'}: it names the file {name} more than once")
+        seen.add((found.st_dev, found.st_ino))
 
 
 def _unreadable(path: Path, error: Exception) -> InputError:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, Topic
+from werrimbi_odom.files.pairing import Pairing
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Ticks, counts_of
 from werrimbi_odom.files.wheel_sides import side_counts
@@ -196,32 +197,24 @@ class _MultiArrays:
 
 
 class _Pairs:
-    """Each wheel's newest count waits for the other's, as in the node.
-
-    A count that is overtaken by the next of its own wheel is dropped; its motion is in that one.
-    """
+    """A topic for each wheel, paired as the node does it; see `Pairing`."""
 
     def __init__(self, path: Path, source: TicksSource, robot_file: RobotFile) -> None:
         self._place = f"{path}: {','.join(source.topics)}"
         self._left = source.topics[0]
-        self._window = int(1e9 * float(robot_file.values["pairing_window"]))  # type: ignore[arg-type]
+        window = float(robot_file.values["pairing_window"])  # type: ignore[arg-type]
+        self._pairing = Pairing(int(1e9 * window))
         wraps_unsaid = source.kind == INT32 and not robot_file.values["encoder_bits"]
         self._bits = 32 if wraps_unsaid else 0  # an Int32 cannot but wrap there
-        self._waiting: dict[bool, tuple[int, int]] = {}
         self._time = array("d")
         self._counts = array("q")
-        self._left_out: Counter[str] = Counter()
 
     def take(self, message: Message) -> None:
-        is_left, count = message.topic == self._left, int(message.content.data)
-        other = self._waiting.get(not is_left)
-        self._left_out["without a partner in time"] += is_left in self._waiting
-        if other is not None and abs(message.received - other[0]) <= self._window:
-            self._waiting.clear()
+        side, count = int(message.topic != self._left), int(message.content.data)
+        pair = self._pairing.take(side, count, message.received)
+        if pair is not None:
             self._time.append(message.received / 1e9)
-            self._counts.extend((count, other[1]) if is_left else (other[1], count))
-            return
-        self._waiting[is_left] = (message.received, count)
+            self._counts.extend(pair)
 
     def ticks(self) -> tuple[Ticks, list[str]]:
         if not self._time:
@@ -230,7 +223,8 @@ class _Pairs:
             )
         left, right = np.array(self._counts, dtype=np.int64).reshape(-1, 2).T.copy()
         sides = (_unwrapped(left, self._bits), _unwrapped(right, self._bits))
-        return Ticks(np.array(self._time), *sides), _told(self._left_out)
+        left_out = Counter({"without a partner in time": self._pairing.unpaired})
+        return Ticks(np.array(self._time), *sides), _told(left_out)
 
 
 def stamp_of(message: Message, header: Any = None) -> float:

@@ -31,8 +31,8 @@ def replacing(path: Path) -> Iterator[TextIO]:
             with path.open("w", encoding="utf-8", newline="\n") as direct:
                 yield direct
             return
-        target = Path(os.path.realpath(path))  # a link stays a link; what it points to is replaced
-        part = target.with_name(f".{secrets.token_hex(8)}.part")
+        target = Path(place_of(path))  # a link stays a link; what it points to is replaced
+        part = _part_of(target)
         try:
             with part.open("x", encoding="utf-8", newline="\n") as file:
                 yield file
@@ -49,3 +49,38 @@ def replacing(path: Path) -> Iterator[TextIO]:
     except OSError as error:
         why = error.strerror or str(error)
         raise InputError(f"{path} cannot be written: {why}") from error
+
+
+def refuse_unwritable(path: Path, option: str) -> None:
+    """Whether `path` can be written: done by beginning it, which is all that tells in the end.
+
+    Raises
+    ------
+    InputError
+        When there is no such folder, or no file can be made there; `option` begins the message.
+    """
+    if path.exists() and not (path.is_file() or path.is_dir()):  # a pipe, a device
+        if not os.access(path, os.W_OK):
+            raise InputError(f"{option} cannot be written: Permission denied")
+        return
+    target = Path(place_of(path))
+    if not target.parent.is_dir():
+        raise InputError(f"{option}: there is no folder {target.parent}")
+    part = _part_of(target)
+    try:
+        part.touch(exist_ok=False)
+        part.unlink()
+    except OSError as error:
+        raise InputError(f"{option} cannot be written: {error.strerror or error}") from error
+
+
+def place_of(path: Path) -> str:
+    """Where a path leads to in the end."""
+    try:
+        return os.path.realpath(path)
+    except ValueError:  # a NUL byte in the name; whoever opens the file says so
+        return str(path)
+
+
+def _part_of(target: Path) -> Path:
+    return target.with_name(f".{secrets.token_hex(8)}.part")

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -142,15 +144,11 @@ def write_robot_file(
     if out.exists() and not force:
         raise InputError(f"{out} exists; --force overwrites it")
     wanted = {name: find(name).checked(value) for name, value in changes.items()}
-    for name in source.given:
-        if find(name).kind == "float":  # the node's parameters are typed: 2000 is no double
-            wanted.setdefault(name, source.values[name])
-    order = tuple(item.name for item in PARAMETERS)
-    place = (source.node, PARAMETER_KEY)
-    text = edited(source.text, place, wanted, order)
-    if effects is not None:
-        _check(effects)
-        text = with_effects(text, place, effects)
+    try:
+        robot_of({**source.values, **wanted})
+    except ValueError as error:
+        raise InputError(str(error)) from error
+    text = new_text(source, wanted, effects)
     held = source.effects if effects is None else tuple(effects)
     written = _read_back(text, out, source, held)
     if (
@@ -162,6 +160,30 @@ def write_robot_file(
     with replacing(out) as file:
         file.write(text)
     return written
+
+
+def new_text(
+    source: RobotFile,
+    changes: Mapping[str, Value],
+    effects: Sequence[AppliedEffect] | None = None,
+) -> str:
+    """The text that `write_robot_file` writes, for who wants to read it before.
+
+    Raises
+    ------
+    InputError
+        When a change is not a value of its parameter, or an effect's of its.
+    """
+    wanted = {name: find(name).checked(value) for name, value in changes.items()}
+    for name in source.given:
+        if find(name).kind == "float":  # the node's parameters are typed: 2000 is no double
+            wanted.setdefault(name, source.values[name])
+    place = (source.node, PARAMETER_KEY)
+    text = edited(source.text, place, wanted, tuple(item.name for item in PARAMETERS))
+    if effects is None:
+        return text
+    _check(effects)
+    return with_effects(text, place, effects)
 
 
 def _check(effects: Sequence[AppliedEffect]) -> None:
@@ -215,6 +237,13 @@ def _understood(text: str, path: Path, find_effect: Find | None = None) -> Robot
         names = ", ".join(f"{item.name} ({item.unit})" for item in missing)
         raise InputError(f"{path}: {node} must also give {names}")
     values = MappingProxyType({**defaults(), **given})
+    try:
+        robot_of(values)
+    except ValueError as error:  # of what values make together, each of which is well
+        named = [name for name in re.findall(r"\w+", str(error)) if name in given]
+        # The value that is farthest from 1 is the one that was mistyped.
+        worst = max(named, key=lambda name: abs(math.log(float(values[name]))))  # type: ignore[arg-type]
+        raise InputError(f"{path}, line {line_of(block, worst)}: {error}") from None
     return RobotFile(path, node, values, tuple(given), text, effects.applied())
 
 

@@ -12,6 +12,7 @@ from werrimbi_odom.files.bag_reference import ReferenceCollector, choose_referen
 from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.text import readable
 
 Progress = Callable[[float], None]
 """Told, now and then, which share of the work is done."""
@@ -71,4 +72,4 @@ def read_run_bag(
     if measured and reference_of:
         reference, frames = reference_of.reference()
         notes.append(f"reference from {measured.topic} ({measured.kind}), {frames}")
-    return Run(path.resolve().name, path, ticks, reference, tuple(notes))
+    return Run(readable(path.resolve().name), path, ticks, reference, tuple(notes))

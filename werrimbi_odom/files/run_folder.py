@@ -12,6 +12,7 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
 from werrimbi_odom.files.table import Table, read_table
+from werrimbi_odom.files.text import readable
 from werrimbi_odom.model.encoder import Counts
 from werrimbi_odom.model.pose import Floats
 
@@ -36,7 +37,7 @@ def read_run_folder(path: str | Path) -> Run:
     ticks = _ticks(path / TICKS)
     file = path / REFERENCE
     reference = _reference(file) if file.exists() or file.is_symlink() else None
-    return Run(path.resolve().name, path, ticks, reference)
+    return Run(readable(path.resolve().name), path, ticks, reference)
 
 
 def _ticks(path: Path) -> Ticks:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The text of a small file that a person wrote, or a clear word on why it cannot be read."""
+"""Text of small files that people wrote, and of names that are no text."""
 
 from __future__ import annotations
 
@@ -47,3 +47,8 @@ def read_small_text(path: Path, *, wanted: str, too_large: str) -> str:
             "save the file as UTF-8 text"
         ) from None
     return text.replace("\r\n", "\n").replace("\r", "\n")
+
+
+def readable(text: str) -> str:
+    """The same for people and pages: bytes of a path that are no UTF-8 are spelt out."""
+    return text.encode("utf-8", "backslashreplace").decode("utf-8")

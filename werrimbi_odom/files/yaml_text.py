@@ -29,6 +29,13 @@ MAX_DEPTH = 8
 _ERRORS_OF_SCALARS = (ValueError, ArithmeticError, LookupError, TypeError, AttributeError)
 _TAGS = ("!", *("tag:yaml.org,2002:" + kind for kind in ("str", "int", "float", "bool", "null")))
 
+_READ_OTHERWISE = re.compile(
+    r"[-+]?(0[0-9_]+|0[ob][0-7_]+|0x[0-9a-f_]*_[0-9a-f_]*|(?=[^_]*_)[0-9._]+(e[-+]?[0-9_]+)?)",
+    re.IGNORECASE,
+)
+"""Numbers to YAML 1.2 which are other numbers, or texts, to ROS: its reader asks C's strtol, to
+which 0100 is 64, and which knows no 0o, no 0b and no 1_000."""
+
 
 def read_text(path: Path) -> str:
     """The text of a small UTF-8 file, its line ends made LF.
@@ -112,12 +119,26 @@ def _refuse_the_unusual(yaml: YAML, text: str, path: Path) -> None:
             depth -= 1
         elif isinstance(event, DocumentStartEvent):
             documents += 1
+            if event.version is not None and tuple(event.version) < (1, 2):
+                raise InputError(
+                    f"{path}, line {line}: leave out %YAML, which ROS does not look at"
+                )
             if documents > 1:
                 raise InputError(f"{path}, line {line}: a second document begins; keep one")
         if isinstance(event, (MappingStartEvent, SequenceStartEvent, ScalarEvent)):
             tag = event.tag
             if tag is not None and str(tag) not in _TAGS:
                 raise InputError(f"{path}, line {line}: the tag {tag} is not allowed; leave it out")
+        if isinstance(event, ScalarEvent) and _is_number_to_yaml_alone(event):
+            raise InputError(
+                f"{path}, line {line}: ROS reads {event.value} otherwise than YAML does (0100 is "
+                "64; 1_000, 0o17 and 0b11 are texts); write the number in plain digits"
+            )
+
+
+def _is_number_to_yaml_alone(event: ScalarEvent) -> bool:
+    plain_or_tagged = event.style is None or str(event.tag).endswith((":int", ":float"))
+    return plain_or_tagged and _READ_OTHERWISE.fullmatch(event.value) is not None
 
 
 def line_of(block: CommentedMap, key: object) -> int:

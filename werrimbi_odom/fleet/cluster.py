@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import logging
 import re
 import time
 from collections import deque
@@ -29,6 +30,9 @@ PATIENCE = 30.0
 
 AHEAD = 2
 """Robots at a worker, one under way among them: no worker waits, and no memory fills."""
+
+_NOISY = ("distributed", "tornado", "asyncio")
+"""Loggers that tell with tracebacks of connections that are lost."""
 
 _LOOK = 2.0
 """Seconds after which it is looked whether the cluster is still there."""
@@ -205,7 +209,8 @@ def _connected(address: str, patience: float) -> Iterator[Client]:
             f"pip install '{PACKAGE}[cluster]', here and on the workers"
         ) from missing
     # A robot's drives are what is sent, once: there is nothing better to advise.
-    with dask.config.set({"distributed.admin.large-graph-warning-threshold": "16 GiB"}):
+    large = {"distributed.admin.large-graph-warning-threshold": "16 GiB"}
+    with _unheard(), dask.config.set(large):
         try:
             client = _client(address, patience)
         except (OSError, ValueError, TypeError, RuntimeError, LateError) as error:
@@ -218,6 +223,21 @@ def _connected(address: str, patience: float) -> Iterator[Client]:
             yield client
         finally:
             client.close(timeout=5.0)
+
+
+@contextmanager
+def _unheard() -> Iterator[None]:
+    """Keep off the terminal what Dask logs of a cluster that goes away: we say it, in one line."""
+    names = [name for name in logging.root.manager.loggerDict if name.startswith(_NOISY)]
+    loggers = [logging.getLogger(name) for name in names]
+    levels = [each.level for each in loggers]
+    for each in loggers:
+        each.setLevel(logging.CRITICAL + 1)
+    try:
+        yield
+    finally:
+        for each, level in zip(loggers, levels, strict=True):
+            each.setLevel(level)
 
 
 def _client(address: str, patience: float) -> Client:

@@ -14,6 +14,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.asked import BAG, refuse_twice
 from werrimbi_odom.files.bag import SUFFIXES
 from werrimbi_odom.files.run_folder import TICKS
+from werrimbi_odom.files.text import readable
 
 ROBOT = "robot.yaml"
 TRAIN, RUNS, HOLDOUT = "train", "runs", "holdout"
@@ -80,7 +81,7 @@ def _member(folder: Path) -> Member | None:
         return _looked_at(folder)
     except OSError as error:
         problem = f"{folder} cannot be read: {error.strerror}"
-        return Member(folder.name, folder / ROBOT, (), problem=problem)
+        return Member(readable(folder.name), folder / ROBOT, (), problem=problem)
 
 
 def _looked_at(folder: Path) -> Member | None:
@@ -103,7 +104,7 @@ def _looked_at(folder: Path) -> Member | None:
             refuse_twice([*runs, *holdout])
         except InputError as error:
             problem = str(error)
-    return Member(folder.name, robot, tuple(runs), tuple(holdout), problem)
+    return Member(readable(folder.name), robot, tuple(runs), tuple(holdout), problem)
 
 
 def is_run(path: Path) -> bool:

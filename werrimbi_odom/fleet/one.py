@@ -77,6 +77,8 @@ def row_of(task: Task) -> Row:
         return failed(task, "this needs more memory than there is; cut the runs into several")
     except (InputError, OSError) as error:
         return failed(task, str(error))
+    except (SystemExit, KeyboardInterrupt) as error:  # Ctrl-C does not get here, see `spread`
+        return failed(task, f"code that it ran ended it ({type(error).__name__}: {error})")
     except Exception as error:  # one robot must not end the fleet
         return failed(task, bug(error))
 

@@ -11,11 +11,12 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
-from typing import Any, NamedTuple, overload
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.model.pace import USUAL_AT_FIRST, Pace
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -24,8 +25,11 @@ Counts = NDArray[np.float64] | NDArray[np.int64]
 CLOCK_JUMP = 1.0
 """A stamp older than the last by more than this [s] is a clock set back, not a late message."""
 
+RESOLUTION = 0.5e-9
+"""Stamps count in nanoseconds; two that are closer than this [s] are one."""
+
 LEARNED_MARGIN = 4.0
-"""A wheel may go this many times faster than it ever did ..."""
+"""A wheel may go this many times faster than it did of late ..."""
 LEARNED_FLOOR = 1.0
 """... or one turn a second, before a fall to zero is called a reset."""
 
@@ -108,8 +112,8 @@ class Encoder:
     tally: EncoderTally = field(default_factory=EncoderTally)
     _last: Reading | None = None
     _doubted: Reading | None = None
-    _period: float = 0.0
-    _fastest: float = 0.0
+    pace: Pace = field(default_factory=Pace)
+    _period: float = USUAL_AT_FIRST
     _left_speed: float = 0.0
     _right_speed: float = 0.0
 
@@ -139,6 +143,7 @@ class Encoder:
         if self._last is None:
             self._last = reading
             self.tally.accepted += 1
+            self.pace.begin(time)
             return None
         duration = self._duration(time - self._last.time)
         if duration is None:
@@ -147,23 +152,24 @@ class Encoder:
 
     def _duration(self, elapsed: float) -> float | None:
         """Seconds to divide by, or None when the message does not follow the last one."""
-        if elapsed > 0.0:
+        if elapsed > RESOLUTION:
             return elapsed
-        if elapsed == 0.0:
+        if elapsed >= -RESOLUTION:
             self.tally.duplicates += 1
             return None
         if elapsed >= -CLOCK_JUMP:
             self.tally.out_of_order += 1
             return None
         self.tally.clock_jumps += 1
-        return self._period or 1.0
+        return self._period
 
     def _advance(self, reading: Reading, duration: float) -> WheelStep | None:
         assert self._last is not None
         last, robot = self._last, self.robot
         left = wrapped(reading.left - last.left, robot.encoder_bits)
         right = wrapped(reading.right - last.right, robot.encoder_bits)
-        if self._was_reset(reading, left, right, duration):
+        lasted = self.pace.lasted(duration)
+        if self._was_reset(reading, left, right, lasted):
             self.tally.resets += 1
             return self._anchor_anew(reading, duration)
         limit = self.limits.max_wheel_speed
@@ -179,14 +185,15 @@ class Encoder:
         self.tally.wraps += int(left != reading.left - last.left)
         self.tally.wraps += int(right != reading.right - last.right)
         self.tally.gaps += int(duration > self.limits.gap_duration)
-        left_travel, right_travel = left * robot.left_tick, right * robot.right_tick
-        self._left_speed, self._right_speed = left_travel / duration, right_travel / duration
+        self._accept(reading, duration)
         turns = max(
             abs(left) / robot.left_ticks_per_revolution,
             abs(right) / robot.right_ticks_per_revolution,
         )
-        self._fastest = max(self._fastest, turns / duration)
-        self._accept(reading, duration)
+        self.pace.see(turns / lasted)
+        self._period = lasted
+        left_travel, right_travel = left * robot.left_tick, right * robot.right_tick
+        self._left_speed, self._right_speed = left_travel / lasted, right_travel / lasted
         return WheelStep(reading.time, duration, left_travel, right_travel)
 
     def _anchor_anew(self, reading: Reading, duration: float) -> WheelStep:
@@ -195,37 +202,33 @@ class Encoder:
         return WheelStep(reading.time, duration, 0.0, 0.0, lost_left**2, lost_right**2)
 
     def _accept(self, reading: Reading, duration: float) -> None:
-        self._last, self._doubted, self._period = reading, None, duration
+        assert self._last is not None
+        if reading.time > self._last.time:
+            self.pace.hear(reading.time, duration)
+        else:
+            self.pace.begin(reading.time)  # the clock was set back
+        self._last, self._doubted = reading, None
         self.tally.accepted += 1
 
-    @property
-    def fastest(self) -> float:
-        """Fastest that a wheel has turned so far [turns/s]."""
-        return self._fastest
-
     def have_taken(
-        self, durations: Floats, left: float, right: float, last: Reading, fastest: float
+        self, durations: Floats, left: float, right: float, lasted: float, last: Reading
     ) -> None:
-        """Go on behind steps that were taken together elsewhere.
+        """Go on behind steps that were taken together elsewhere, which `pace` has heard.
 
         Parameters
         ----------
         durations : ndarray, shape (n,)
             Of the steps [s].
-        left, right : float
-            Travel in the last of them [m].
+        left, right, lasted : float
+            Travel in the last of them [m], and the seconds to judge it over.
         last : Reading
             The reading they end with.
-        fastest : float
-            Fastest that a wheel has turned until then [turns/s].
         """
-        duration = float(durations[-1])
-        self._left_speed, self._right_speed = left / duration, right / duration
-        self._fastest = fastest
+        self._left_speed, self._right_speed, self._period = left / lasted, right / lasted, lasted
         self.tally.messages += durations.size
         self.tally.accepted += durations.size
         self.tally.gaps += int(np.count_nonzero(durations > self.limits.gap_duration))
-        self._last, self._doubted, self._period = last, None, duration
+        self._last, self._doubted = last, None
 
     def _exceeds(self, limit: float, start: Reading, end: Reading, duration: float) -> bool:
         robot = self.robot
@@ -233,25 +236,21 @@ class Encoder:
         right = wrapped(end.right - start.right, robot.encoder_bits) * robot.right_tick
         return max(abs(left), abs(right)) > limit * abs(duration)
 
-    def _was_reset(self, reading: Reading, left: float, right: float, duration: float) -> bool:
+    def _was_reset(self, reading: Reading, left: float, right: float, lasted: float) -> bool:
         assert self._last is not None
         last, robot = self._last, self.robot
         per_left, per_right = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
-        usual = min(duration, self._period or duration)
+        rate = reach_rate(robot, self.limits, self.pace.fastest)
         if reading.left == 0 and reading.right == 0:
             far = max(abs(left) / per_left, abs(right) / per_right)
-            if far > self._reach(usual):
+            if far > self.pace.usual * rate:
                 return True
-        reach = self._reach(duration)
+        reach = lasted * rate
         return fell_to_zero(
             reading.left / per_left, last.left / per_left, left / per_left, reach
         ) or fell_to_zero(
             reading.right / per_right, last.right / per_right, right / per_right, reach
         )
-
-    def _reach(self, duration: float) -> float:
-        """Turns that a wheel can have made in a time [s]."""
-        return duration * reach_rate(self.robot, self.limits, self._fastest)
 
 
 def wrapped(difference: float, bits: int) -> float:
@@ -264,13 +263,9 @@ def wrapped(difference: float, bits: int) -> float:
     return (difference + half) % (2 * half) - half
 
 
-@overload
-def fell_to_zero(new: float, old: float, step: float, reach: float) -> bool: ...
-@overload
-def fell_to_zero(new: Floats, old: Floats, step: Floats, reach: Floats) -> NDArray[np.bool_]: ...
-def fell_to_zero(new: Any, old: Any, step: Any, reach: Any) -> Any:
+def fell_to_zero(new: float, old: float, step: float, reach: float) -> bool:
     """Whether a counter came to near zero further than a wheel can reach; all in turns."""
-    return (abs(new) <= reach) & (abs(old) > reach) & (abs(step) > reach)
+    return abs(new) <= reach and abs(old) > reach and abs(step) > reach
 
 
 def reach_rate(robot: Robot, limits: EncoderLimits, fastest: float) -> float:

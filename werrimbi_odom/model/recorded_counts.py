@@ -12,17 +12,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.model.encoder import (
-    LEARNED_FLOOR,
-    LEARNED_MARGIN,
+    RESOLUTION,
     Counts,
     Encoder,
     EncoderLimits,
     EncoderTally,
     Reading,
     WheelStep,
-    fell_to_zero,
     reach_rate,
 )
+from werrimbi_odom.model.pace import CLOSE, PAUSE
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -158,17 +157,17 @@ def _quiet_steps(encoder: Encoder, record: _Record, row: int) -> _Part:
         left_count, left_wraps = _differences(left, robot.encoder_bits)
         right_count, right_wraps = _differences(right, robot.encoder_bits)
         left_turns, right_turns = left_count / per_left, right_count / per_right
-        rate = np.maximum(np.abs(left_turns), np.abs(right_turns)) / duration
-        fastest = np.maximum.accumulate(np.concatenate([[encoder.fastest], rate]))
-        if limit > 0.0:
-            reach = duration * reach_rate(robot, limits, 0.0)
-        else:
-            reach = duration * np.maximum(LEARNED_FLOOR, LEARNED_MARGIN * fastest[:-1])
+        usual = encoder.pace.usual_at(time[1:])
+        lasted = np.where(duration >= CLOSE * usual[:-1], duration, usual[:-1])
+        rate = np.maximum(np.abs(left_turns), np.abs(right_turns)) / lasted
         left_travel, right_travel = left_count * robot.left_tick, right_count * robot.right_tick
-        doubt = ~((duration > 0.0) & (duration < np.inf) & (rate < np.inf))
+        doubt = ~((duration > RESOLUTION) & (duration <= PAUSE) & (rate < np.inf))
         doubt |= (left[1:] == 0) & (right[1:] == 0) & (rate > 0.0)
-        for turns, steps in ((left / per_left, left_turns), (right / per_right, right_turns)):
-            doubt |= fell_to_zero(turns[1:], turns[:-1], steps, reach)
+        # Beyond the least, and not beyond the most, that a wheel may be believed to reach.
+        fastest = max(encoder.pace.fastest, float(rate.max(initial=0.0, where=~doubt)))
+        least, most = (lasted * reach_rate(robot, limits, each) for each in (0.0, fastest))
+        for now, steps in ((left / per_left, left_turns), (right / per_right, right_turns)):
+            doubt |= (np.abs(now[1:]) <= most) & (np.abs(steps) > least)
         if limit > 0.0:
             doubt |= np.maximum(np.abs(left_travel), np.abs(right_travel)) > limit * duration
     count = int(doubt.argmax()) if doubt.any() else doubt.size
@@ -184,12 +183,13 @@ def _quiet_steps(encoder: Encoder, record: _Record, row: int) -> _Part:
     if count:
         encoder.tally.wraps += int(np.count_nonzero(left_wraps[:count]))
         encoder.tally.wraps += int(np.count_nonzero(right_wraps[:count]))
+        encoder.pace.have_heard(part.time, usual[count], rate[:count])
         encoder.have_taken(
             part.duration,
             float(part.left[-1]),
             float(part.right[-1]),
+            float(lasted[count - 1]),
             record.reading(row + count - 1),
-            float(fastest[count]),
         )
     return part
 

@@ -13,6 +13,15 @@ from werrimbi_odom.model.effect import AppliedEffect
 CovarianceOrder = Literal["first", "exact"]
 COVARIANCE_ORDERS: tuple[CovarianceOrder, ...] = ("first", "exact")
 
+SIZES = (1e-9, 1e9)
+"""Least and most of an effective radius and track [m]. No robot is near either, not even one given
+in a wrong unit by which another wrong unit is tried; but between them nothing that is computed of
+counts of 64 bits and stamps of a nanosecond is beyond all numbers, nor is divided by zero."""
+TRAVELS = (1e-15, 1e9)
+"""Least and most travel of a wheel for one count [m], for the same reason."""
+MOST_NOISE = 1e3
+"""Most noise of a wheel [m^0.5]: it errs by a kilometre in a metre."""
+
 
 @dataclass(frozen=True, slots=True)
 class Robot:
@@ -43,7 +52,8 @@ class Robot:
     Raises
     ------
     ValueError
-        When a value is not finite or outside its physical range; the message names the field.
+        When a value, or what the values make together (`SIZES`, `TRAVELS`), is not finite or
+        outside its physical range; the message names the fields.
     """
 
     wheel_separation: float
@@ -79,6 +89,23 @@ class Robot:
             raise ValueError(
                 f"encoder_bits must be 0 (never wraps) or from 2 to 64, it is {self.encoder_bits}"
             )
+        self._check_products()
+
+    def _check_products(self) -> None:
+        """Each value may be a number and what is made of them none: 1e-300 m have no curvature."""
+        track = "wheel_separation times wheel_separation_multiplier"
+        _check_between(track, self.track, SIZES)
+        for side in ("left", "right"):
+            multiplier = f"{side}_wheel_radius_multiplier"
+            radius = f"wheel_radius times {multiplier}"
+            _check_between(radius, self.wheel_radius * getattr(self, multiplier), SIZES)
+            travel = f"travel for one count ({radius} times 2 pi over {side}_ticks_per_revolution)"
+            _check_between(travel, getattr(self, f"{side}_tick"), TRAVELS)
+            noise = getattr(self, f"{side}_wheel_noise")
+            if noise > MOST_NOISE:
+                raise ValueError(
+                    f"{side}_wheel_noise must be at most {MOST_NOISE:g} m^0.5, it is {noise}"
+                )
 
     @property
     def track(self) -> float:
@@ -96,3 +123,9 @@ class Robot:
         """Travel of the right wheel for one count [m]."""
         radius = self.wheel_radius * self.right_wheel_radius_multiplier
         return 2.0 * math.pi * radius / self.right_ticks_per_revolution
+
+
+def _check_between(name: str, value: float, bounds: tuple[float, float]) -> None:
+    least, most = bounds
+    if not least <= value <= most:
+        raise ValueError(f"{name} must be from {least:g} to {most:g} m, it is {value:g} m")

@@ -49,8 +49,10 @@ def scaled_with_std(value: float, std: float, unit: str = "") -> str:
     return f"({value:.{digits}f} ± {std:.{digits}f})e{size}{behind}"
 
 
-def chance_words(p_value: float) -> str:
-    """How often chance would do the same."""
+def chance_words(p_value: float | None) -> str:
+    """How often chance would do the same; None: nothing was tested."""
+    if p_value is None:
+        return "found by trying every set-up, which has no chance to be told"
     if p_value < 1e-12:
         return "beyond any chance"
     if p_value < 1e-4:
@@ -60,8 +62,10 @@ def chance_words(p_value: float) -> str:
     return "no more than chance shows"
 
 
-def p_words(p_value: float) -> str:
+def p_words(p_value: float | None) -> str:
     """For a table."""
+    if p_value is None:
+        return "-"
     if p_value >= 0.995:
         return "1"
     if p_value >= 0.01:

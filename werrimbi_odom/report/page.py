@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.files.replacing import replacing
+from werrimbi_odom.files.text import readable
 from werrimbi_odom.report.drawing_program import drawing_program
 from werrimbi_odom.report.page_text import paragraphs, tables
 from werrimbi_odom.report.style import IN_THE_DARK
@@ -72,7 +73,7 @@ def write_page(page: Page, path: Path) -> None:
         When it cannot be written.
     """
     with replacing(path) as file:
-        file.write(page_html(page))
+        file.write(readable(page_html(page)))
 
 
 def page_html(page: Page) -> str:

@@ -4,11 +4,9 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
 from typing import Any
 
-import numpy as np
 from builtin_interfaces.msg import Time as Stamp
 from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped, TransformStamped
 from nav_msgs.msg import Odometry
@@ -18,6 +16,7 @@ from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.ros.compare_track import Reading
+from werrimbi_odom.ros.planar import covariance_of, place_of, yaw_of
 
 REFERENCE_TYPES: dict[str, type] = {
     "pose_stamped": PoseStamped,
@@ -26,7 +25,7 @@ REFERENCE_TYPES: dict[str, type] = {
     "transform_stamped": TransformStamped,
 }
 
-_PLANE = (0, 1, 5)  # x, y and yaw among x, y, z, roll, pitch, yaw
+_VARIANCES = (0, 7, 35)  # of x, y and yaw among the 36 entries
 
 
 class Clockwork:
@@ -36,15 +35,24 @@ class Clockwork:
         self._origin: int | None = None
 
     def seconds(self, stamp: Any) -> float:
-        """A stamp in seconds since the first that was seen."""
+        """A stamp in seconds since the first that was seen.
+
+        Raises
+        ------
+        InputError
+            When it is none; arguments are the cause and the detail.
+        """
         if self._origin is None:
             self._origin = stamp.sec
+        if stamp.nanosec >= 10**9:
+            raise InputError("stamp not valid", f"{stamp.nanosec} nanoseconds past a second")
         return float(stamp.sec - self._origin) + 1e-9 * float(stamp.nanosec)
 
     def stamp(self, seconds: float) -> Stamp:
         """The stamp of such a time."""
         whole, part = divmod(round(1e9 * seconds), 10**9)
-        return Stamp(sec=whole + (self._origin or 0), nanosec=part)
+        second = min(whole + (self._origin or 0), 2**31 - 1)  # which it may be rounded beyond
+        return Stamp(sec=second, nanosec=part)
 
 
 def odometry_of(message: Any, clockwork: Clockwork) -> tuple[Reading, BodyMotion[float]]:
@@ -55,9 +63,7 @@ def odometry_of(message: Any, clockwork: Clockwork) -> tuple[Reading, BodyMotion
     InputError
         When a number cannot be used; arguments are the cause and the detail.
     """
-    covariance = _covariance(message.pose.covariance)
-    if covariance is None:
-        raise InputError("no covariance", "that of the odometry's pose is empty or not finite")
+    covariance = covariance_of(message.pose.covariance)
     pose = _pose(message.pose.pose.position, message.pose.pose.orientation)
     linear, angular = message.twist.twist.linear, message.twist.twist.angular
     time = clockwork.seconds(message.header.stamp)
@@ -73,7 +79,7 @@ def reference_reader(
     ----------
     kind : str
     usual : PoseCovariance
-        Taken where a message states no covariance of its own, or one that is zero.
+        Taken where a message states no covariance of its own: a variance that is not positive.
 
     Returns
     -------
@@ -82,35 +88,20 @@ def reference_reader(
     """
 
     def read(message: Any, clockwork: Clockwork) -> Reading:
-        stated = None
+        stated = usual
         if kind == "pose_stamped":
             place, turn = message.pose.position, message.pose.orientation
         elif kind == "transform_stamped":
             place, turn = message.transform.translation, message.transform.rotation
         else:
             place, turn = message.pose.pose.position, message.pose.pose.orientation
-            stated = _covariance(message.pose.covariance)
-        if stated is None or not min(stated.xx, stated.yy, stated.yawyaw) > 0.0:
-            stated = usual
+            entries = message.pose.covariance
+            if all(entries[place] > 0.0 for place in _VARIANCES):  # zero, -1 or NaN state none
+                stated = covariance_of(entries)
         return Reading(clockwork.seconds(message.header.stamp), _pose(place, turn), stated)
 
     return read
 
 
 def _pose(place: Any, turn: Any) -> Pose:
-    x, y, z, w = turn.x, turn.y, turn.z, turn.w
-    norm = math.sqrt(x * x + y * y + z * z + w * w)
-    if not (math.isfinite(place.x) and math.isfinite(place.y) and math.isfinite(norm)):
-        raise InputError("pose not finite", "NaN or infinite")
-    if not 0.5 < norm < 2.0:
-        raise InputError("no orientation", f"the quaternion's norm is {norm:g}, not 1")
-    return Pose(place.x, place.y, math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z))
-
-
-def _covariance(entries: Any) -> PoseCovariance[float] | None:
-    """The planar part; None where it is none: negative or not finite."""
-    block = np.asarray(entries, dtype=np.float64).reshape(6, 6)[np.ix_(_PLANE, _PLANE)]
-    if not np.isfinite(block).all() or (block.diagonal() < 0.0).any():
-        return None
-    symmetric = (0.5 * (block + block.T))[np.triu_indices(3)]
-    return PoseCovariance(*symmetric.tolist())
+    return Pose(*place_of(place), yaw_of(turn, slack=1.0))

@@ -49,8 +49,14 @@ class LegError:
 
     @property
     def deviation(self) -> float:
-        """Squared Mahalanobis distance error' Σ⁻¹ error: chi-squared if honest."""
-        return float(squared_deviation(self.error[None], self.covariance[None])[0])
+        """Squared Mahalanobis distance error' Σ⁻¹ error: chi-squared if honest.
+
+        Infinite where Σ has no inverse: something is promised to be without any error.
+        """
+        try:
+            return float(squared_deviation(self.error[None], self.covariance[None])[0])
+        except np.linalg.LinAlgError:
+            return math.inf
 
 
 class LegCutter:

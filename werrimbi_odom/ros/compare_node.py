@@ -38,7 +38,7 @@ from werrimbi_odom.ros.compare_inputs import (
 from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError
 from werrimbi_odom.ros.compare_track import OdometryTrack, Reading
 from werrimbi_odom.ros.compare_window import Window
-from werrimbi_odom.ros.odom_node import full_name
+from werrimbi_odom.ros.graph import crowds, full_name, namesakes
 from werrimbi_odom.ros.running import run
 
 WAITING = 1_000
@@ -76,6 +76,8 @@ class CompareNode(Node):  # type: ignore[misc]
         self._told: set[str] = set()
         self._heard = {"odom": -math.inf, "reference": -math.inf}
         self._latest = math.nan
+        self._compared_at = -math.inf
+        self._counts_before: Counter[str] = Counter()
         self._level = DiagnosticStatus.OK
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._error = self._publisher(Vector3Stamped, "~/error")
@@ -104,11 +106,12 @@ class CompareNode(Node):  # type: ignore[misc]
             return
         self._base_frame = message.child_frame_id
         happened = self._track.add(reading, twist)
+        self._counts["old odometry" if happened == "old" else "odometry taken"] += 1
         if happened in ("set", "back"):
             self._counts["poses set" if happened == "set" else "clock jumps"] += 1
             self._cutter.restart()
         if happened == "back":
-            self._waiting.clear()
+            self._forget_waiting()
         while self._waiting and self._waiting[0].time <= self._track.newest:
             self._compare(self._waiting.popleft())
 
@@ -123,7 +126,7 @@ class CompareNode(Node):  # type: ignore[misc]
             if reading.time > self._latest - 1.0:
                 self._counts["old references"] += 1
                 return
-            self._waiting.clear()  # its clock was put back
+            self._forget_waiting()  # its clock was put back
             self._cutter.restart()
         self._latest = reading.time
         if reading.time <= self._track.newest:
@@ -141,6 +144,7 @@ class CompareNode(Node):  # type: ignore[misc]
             self._counts["without odometry"] += 1
             return
         self._counts["compared"] += 1
+        self._compared_at = self._now()
         leg, ends = self._cutter.take(Both(odometry, reference))
         if leg is None:
             return
@@ -148,6 +152,10 @@ class CompareNode(Node):  # type: ignore[misc]
         if ends:
             self._window.take(leg.deviation, leg.grows)
             self._publish_statistics(leg)
+
+    def _forget_waiting(self) -> None:
+        self._counts["without odometry"] += len(self._waiting)
+        self._waiting.clear()
 
     # ------------------------------------------------------------------------- out
 
@@ -198,6 +206,7 @@ class CompareNode(Node):  # type: ignore[misc]
             "NEES high": f"{high:.3f}",
             "coverage": f"{window.coverage:.3f}",
             **self._counts,
+            "waiting": len(self._waiting),
         }
         status = DiagnosticStatus(
             level=level,
@@ -211,17 +220,32 @@ class CompareNode(Node):  # type: ignore[misc]
         self._diagnostics.publish(array)
 
     def _verdict(self) -> tuple[bytes, str]:
+        """Level and words: of what is compared, unless who is there makes that meaningless."""
+        level, words = self._verdict_on_messages()
+        topics = tuple(self.resolve_topic_name(name) for name in self._heard)
+        wrong = [f"several publish {at} ({names})" for at, names in crowds(self, topics).items()]
+        wrong += namesakes(self)
+        if wrong and level == DiagnosticStatus.OK:
+            level = DiagnosticStatus.WARN
+        return level, "; ".join([*wrong, words])
+
+    def _verdict_on_messages(self) -> tuple[bytes, str]:
         now = self._now()
+        before = f"; before, {self._window.verdict()[1]}" if self._window.count else ""
+        new = self._counts - self._counts_before
+        self._counts_before = Counter(self._counts)
         silent = [name for name, at in self._heard.items() if now - at > SILENT]
         if silent:
             topics = " and ".join(self.resolve_topic_name(name) for name in silent)
-            before = f"; before, {self._window.verdict()[1]}" if self._window.count else ""
             return DiagnosticStatus.STALE, f"nothing to compare: {topics} silent{before}"
-        if not self._counts["compared"]:
+        if min(self._heard.values()) - self._compared_at > SILENT:  # both talk, past each other
+            refused = ", ".join(f"{key} ({n})" for key, n in new.items() if " refused: " in key)
+            if refused:
+                return DiagnosticStatus.ERROR, f"nothing to compare: {refused}{before}"
             apart = self._latest - self._track.newest
             return DiagnosticStatus.WARN, (
                 "no stamp of the reference falls between two of the odometry; its last is "
-                f"{apart:+.1f} s from the odometry's: are both on one clock (use_sim_time)?"
+                f"{apart:+.1f} s from the odometry's: are both on one clock (use_sim_time)?{before}"
             )
         honest, words = self._window.verdict()
         return DiagnosticStatus.OK if honest else DiagnosticStatus.WARN, words

@@ -18,6 +18,9 @@ from werrimbi_odom.files.parameters import Parameter, Value
 from werrimbi_odom.inference.comparison.reference_noise import USUAL_SIGMA_XY, USUAL_SIGMA_YAW
 from werrimbi_odom.ros.compare_inputs import REFERENCE_TYPES
 
+LEAST, MOST = 1e-9, 1e6
+"""Of a standard deviation of the reference, so that its square is a number, and no zero."""
+
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         "reference_type",
@@ -51,7 +54,8 @@ PARAMETERS: tuple[Parameter, ...] = (
         USUAL_SIGMA_XY,
         "m",
         "Standard deviation of the reference's x and y, where its messages state none.",
-        above=0.0,
+        minimum=LEAST,
+        maximum=MOST,
     ),
     Parameter(
         "reference_sigma_yaw",
@@ -59,7 +63,8 @@ PARAMETERS: tuple[Parameter, ...] = (
         USUAL_SIGMA_YAW,
         "rad",
         "The same of its heading.",
-        above=0.0,
+        minimum=LEAST,
+        maximum=MOST,
     ),
 )
 

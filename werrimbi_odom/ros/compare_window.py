@@ -35,6 +35,7 @@ class Window:
 
     def take(self, deviation: float, grows: bool) -> None:
         """Take a leg; where the covariance did not grow its deviation means nothing."""
+        grows = grows and math.isfinite(deviation)
         self._grew.append(grows)
         if grows:
             self._deviations.append(deviation)
@@ -87,7 +88,8 @@ class Window:
         if self.nees < low:
             return (
                 False,
-                f"the covariance is too large, the errors are smaller than it says: {words}",
+                "the covariance is too large, or reference_sigma_xy and _yaw larger than the "
+                f"reference's noise: the errors are smaller than they say: {words}",
             )
         worst = max(self._deviations) / sum(self._deviations)
         if worst > _ONE_LEG and self.count > 2:

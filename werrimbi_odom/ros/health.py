@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
@@ -16,7 +16,19 @@ from werrimbi_odom.model.encoder import EncoderTally
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
 
+_REFUSALS = ("refused: ", "refused set_pose: ", "not learnt from: ")
 _WORTH_A_WARNING = ("resets", "jumps", "implausible", "clock jumps", "out of order", "gaps")
+_UNUSABLE = {
+    "duplicates": "their stamps stand still",
+    "out of order": "older than the last",
+    "not finite": "no numbers",
+    "implausible": "faster than max_wheel_speed",
+    "unpaired": "left and right farther apart than pairing_window",
+}
+"""Readings of which no odometry comes, by what is wrong where all of them are so."""
+MISSED = 0.1
+"""Share of what was published and never taken from which on there is a warning: no motion is lost
+with a message, and a radio link loses some."""
 
 
 class Health:
@@ -41,14 +53,22 @@ class Health:
         self._topics = topics
         self._heard = [0] * len(topics)
         self._heard_at = [-float("inf")] * len(topics)
+        self._answered = [0] * len(topics)
+        self._numbers = [_Numbers() for _ in topics]
+        self._missed = 0
         self._refused: Counter[str] = Counter()
         self._refused_poses: Counter[str] = Counter()
+        self._not_learnt: Counter[str] = Counter()
         self._lost = 0
         self._before: dict[str, int] = {}
         self._reported_at = time.monotonic()
 
-    def hear(self, topic: int) -> None:
-        """Note that a message has arrived."""
+    def hear(self, topic: int, info: Mapping[str, Any], *, ours: bool = True) -> None:
+        """Note that a message has arrived, and what DDS says about it."""
+        self._numbers[topic].take(info.get("publication_sequence_number"))
+        if not ours:
+            self.foreign += 1
+            return
         self._heard[topic] += 1
         self._heard_at[topic] = time.monotonic()
 
@@ -60,6 +80,10 @@ class Health:
         """Note that a message on set_pose could not be used."""
         self._note(self._refused_poses, f"set_pose refused: {cause}", cause, detail)
 
+    def refuse_to_learn(self, cause: str, detail: str) -> None:
+        """Note that a message of the topic that is learnt from could not be used."""
+        self._note(self._not_learnt, f"not learnt from: {cause}", cause, detail)
+
     def lose(self, event: Any) -> None:
         """Note that DDS has lost input messages."""
         self._lost = event.total_count
@@ -70,6 +94,8 @@ class Health:
         tally: EncoderTally,
         inputs: Mapping[str, int],
         effects: Mapping[str, str] | None = None,
+        crowds: Mapping[str, str] | None = None,
+        wrong: Sequence[str] = (),
     ) -> DiagnosticStatus:
         """How things stand, and at which rate they went since the last report.
 
@@ -83,8 +109,14 @@ class Health:
             Further counts of the input.
         effects : mapping, optional
             What each physical effect runs with.
+        crowds : mapping, optional
+            Topics of the input that have several publishers, and who these are.
+        wrong : sequence of str
+            What else is wrong, in words.
         """
-        now = time.monotonic()
+        now, crowds = time.monotonic(), crowds or {}
+        for topic, numbers in zip(self._topics, self._numbers, strict=True):
+            self._missed += numbers.missed(alone=topic not in crowds)
         counts = self._counts(tally, inputs)
         new = Counter(counts)
         new.subtract(self._before)
@@ -94,7 +126,9 @@ class Health:
             "input rate": f"{new['messages'] / elapsed:.1f} Hz",
             "output rate": f"{new['published'] / elapsed:.1f} Hz",
         }
-        level, words = self._verdict(now, new)
+        level, words = self._verdict(now, new, [*self._crowded(crowds, new), *wrong])
+        if new["published"]:
+            self._answered = list(self._heard)
         told = rates | counts | dict(effects or {})
         values = [KeyValue(key=key, value=str(value)) for key, value in told.items()]
         return DiagnosticStatus(
@@ -114,6 +148,7 @@ class Health:
             **(heard if len(heard) > 1 else {}),
             "messages of other joints": self.foreign,
             "lost by DDS": self._lost,
+            "never taken": self._missed,
             "without stamp": self.unstamped,
             **inputs,
             "published": self.published,
@@ -126,9 +161,21 @@ class Health:
             **{f"refused: {cause}": n for cause, n in self._refused.items()},
             "refused set_pose": self._refused_poses.total(),
             **{f"refused set_pose: {cause}": n for cause, n in self._refused_poses.items()},
+            **{f"not learnt from: {cause}": n for cause, n in self._not_learnt.items()},
         }
 
-    def _verdict(self, now: float, new: Mapping[str, int]) -> tuple[bytes, str]:
+    def _crowded(self, crowds: Mapping[str, str], new: Mapping[str, int]) -> list[str]:
+        """Topics on which several tell of our wheels; another driver may be that of an arm."""
+        if new["messages of other joints"]:
+            return []
+        return [
+            f"several publish {topic} ({names}): the pose jumps between their counters"
+            for topic, names in crowds.items()
+        ]
+
+    def _verdict(
+        self, now: float, new: Mapping[str, int], wrong: Sequence[str]
+    ) -> tuple[bytes, str]:
         """Level and words; no words when all is well."""
         silences = [now - at for at in self._heard_at]
         silent = [
@@ -145,20 +192,55 @@ class Health:
         refusals = [
             f"{key.removeprefix('refused: ')} ({n})"
             for key, n in new.items()
-            if n > 0 and key.startswith(("refused: ", "refused set_pose: "))
+            if n > 0 and key.startswith(_REFUSALS)
         ]
+        # Of one message more no odometry comes: the first, with which an interval only begins.
+        unanswered = (a - b for a, b in zip(self._heard, self._answered, strict=True))
+        if not new["published"] and min(unanswered) > 1:
+            useless = [
+                f"{key} ({new[key]}), {means}" for key, means in _UNUSABLE.items() if new[key]
+            ]
+            causes = "; ".join([*refusals, *useless, *wrong])
+            return ERROR, f"no odometry, all input is refused: {causes}"
         events = [f"{key} ({new[key]})" for key in _WORTH_A_WARNING if new[key] > 0]
+        if new["never taken"] > MISSED * (new["never taken"] + new["messages"]):
+            events.append(f"never taken ({new['never taken']}): more than this node keeps up with")
         happened = ", ".join(refusals + events)
-        if new["refused"] and not new["published"]:
-            return ERROR, f"no odometry, all input is refused: {happened}"
-        if happened:
-            return WARN, f"in the last second: {happened}"
-        return OK, ""
+        words = [f"in the last second: {happened}"] if happened else []
+        return (WARN, "; ".join([*words, *wrong])) if words or wrong else (OK, "")
 
     def _note(self, tally: Counter[str], words: str, cause: str, detail: str) -> None:
         if cause not in tally:
             self._logger.warning(f"{words}: {detail} (from now on only counted on /diagnostics)")
         tally[cause] += 1
+
+
+class _Numbers:
+    """The numbers that a topic's publisher gave its messages: one left out was never taken.
+
+    DDS drops the oldest of what waits where more comes than is taken, and reports no loss.
+    """
+
+    def __init__(self) -> None:
+        self._last: int | None = None
+        self._left_out = 0
+        self._began_anew = False
+
+    def take(self, number: int | None) -> None:
+        """Note a number; None where the middleware tells none."""
+        if number is None:
+            return
+        if self._last is not None and number > self._last:
+            self._left_out += number - self._last - 1
+        elif self._last is not None:
+            self._began_anew = True
+        self._last = number
+
+    def missed(self, alone: bool) -> int:
+        """Messages left out since the last call; of several publishers nobody can say."""
+        missed = self._left_out if alone and not self._began_anew else 0
+        self._left_out, self._began_anew = 0, False
+        return missed
 
 
 def _for(silence: float) -> str:

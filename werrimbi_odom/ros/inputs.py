@@ -27,6 +27,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Int32, Int64, Int64MultiArray
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.pairing import Pairing
 from werrimbi_odom.files.parameters import Value, robot_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros.health import Health
@@ -113,6 +114,7 @@ class JointStates:
         self._names: list[str] | None = None
         self._places: tuple[list[int], list[int]] = ([], [])
         self._absent: list[str] = []
+        self._twice: list[str] = []
         _subscribe(wiring, JointState, "joint_states", self._arrived)
 
     def tally(self) -> dict[str, int]:
@@ -124,15 +126,17 @@ class JointStates:
             "resets of single wheels": sum(side.resets for side in self._sides),
         }
 
-    def _arrived(self, message: Any) -> None:
+    def _arrived(self, message: Any, info: Info) -> None:
         if message.name != self._names:
             self._find(message.name)
-        if len(self._absent) == sum(map(len, self._wanted)):
-            self._health.foreign += 1  # from the driver of an arm, say, on the same topic
+        # Of other joints alone: from the driver of an arm, say, on the same topic.
+        ours = len(self._absent) < sum(map(len, self._wanted))
+        self._health.hear(0, info, ours=ours)
+        if not ours:
             return
-        self._health.hear(0)
-        if self._absent:
-            self._health.refuse(f"joint {self._absent[0]} missing", f"it has {self._names}")
+        if self._absent or self._twice:
+            wrong = f"{self._absent[0]} missing" if self._absent else f"{self._twice[0]} twice"
+            self._health.refuse(f"joint {wrong}", f"it has {self._names}")
             return
         positions = message.position
         if len(positions) != len(message.name):
@@ -153,38 +157,35 @@ class JointStates:
         if stamp.sec == 0 and stamp.nanosec == 0:
             self._health.unstamped += 1
             stamp = self._clock.now().to_msg()
+        elif stamp.nanosec >= 10**9:
+            self._health.refuse("stamp not valid", f"{stamp.nanosec} nanoseconds past a second")
+            return
         self._take(stamp, left, right)
 
     def _find(self, names: list[str]) -> None:
         """Where our wheels stand in a message; looked up anew only when its names change."""
         self._names = list(names)
         self._absent = [name for side in self._wanted for name in side if name not in names]
+        self._twice = [name for side in self._wanted for name in side if names.count(name) > 1]
         if not self._absent:
             left, right = ([names.index(name) for name in side] for side in self._wanted)
             self._places = left, right
 
 
 class Pair:
-    """Two topics, one for each wheel, paired by arrival (std_msgs/Int32 or Int64).
-
-    A count is paired with the nearest of the other wheel within the window: with the one that
-    waits, or, when the next one comes closer than that did, with this. So a pairing that began one
-    message off, after a lost one, mends itself. What finds no partner is dropped, and its motion is
-    in the next one.
-    """
+    """Two topics, a wheel each (std_msgs/Int32 or Int64), paired by arrival; see `Pairing`."""
 
     def __init__(self, wiring: Wiring, message_type: type) -> None:
         self._take, self._health = wiring.take, wiring.health
         self._stamps = ArrivalStamps(wiring.node)
-        self._window = int(1e9 * float(wiring.values["pairing_window"]))  # type: ignore[arg-type]
-        self._newest = [_Count(), _Count()]
-        self._unpaired = 0
+        window = float(wiring.values["pairing_window"])  # type: ignore[arg-type]
+        self._pairing = Pairing(int(1e9 * window))
         for side, topic in enumerate(topics_of(wiring.values)):
             _subscribe(wiring, message_type, topic, self._listener(side))
 
     def tally(self) -> dict[str, int]:
-        """Counts that found no partner."""
-        return {"unpaired": self._unpaired}
+        """Counts that found no partner, and those that came before theirs."""
+        return {"unpaired": self._pairing.unpaired, "earlier of a pair": self._pairing.earlier}
 
     def _listener(self, side: int) -> Callable[[Any, Info], None]:
         def arrived(message: Any, info: Info) -> None:
@@ -193,30 +194,10 @@ class Pair:
         return arrived
 
     def _arrived(self, side: int, value: int, info: Info) -> None:
-        self._health.hear(side)
-        self._unpaired += self._newest[side].waits
-        count = self._newest[side] = _Count(value, arrival_of(info))
-        other = self._newest[1 - side]
-        apart = abs(count.arrival - other.arrival)
-        if apart <= self._window and apart < other.apart:
-            count.apart = other.apart = apart
-            left, right = self._newest
-            self._take(self._stamps.of(info), left.value, right.value)
-
-
-@dataclass(slots=True)
-class _Count:
-    """A count of one wheel, and how far in time its partner was."""
-
-    value: int = 0
-    arrival: int = -(10**18)
-    """[ns]"""
-    apart: float = math.inf
-    """[ns]; infinite while it has none."""
-
-    @property
-    def waits(self) -> bool:
-        return self.apart == math.inf and self.arrival > 0
+        self._health.hear(side, info)
+        pair = self._pairing.take(side, value, arrival_of(info))
+        if pair is not None:
+            self._take(self._stamps.of(info), *pair)
 
 
 class Ticks:
@@ -232,7 +213,7 @@ class Ticks:
         return {}
 
     def _arrived(self, message: Any, info: Info) -> None:
-        self._health.hear(0)
+        self._health.hear(0, info)
         counts = message.data
         if len(counts) != 2:
             self._health.refuse("wrong array length", f"{len(counts)} values, not [left, right]")

@@ -17,15 +17,20 @@ from rclpy.event_handler import SubscriptionEventCallbacks
 from rclpy.qos_overriding_options import QoSOverridingOptions
 from sensor_msgs.msg import Imu
 
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.phase_learner import PhaseLearner
 from werrimbi_odom.model.phases import KNOWN_WELL_ENOUGH, Phase, learnable
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.ros import inputs
+from werrimbi_odom.ros import inputs, planar
 from werrimbi_odom.ros.tracker import Tracker
 
 FINE = 0.03
 """Standard deviation of a phase [rad] beyond which nothing is gained by telling it anew."""
+
+
+FASTEST = 1e4
+"""Yaw rate [rad/s] beyond which a gyro is broken: no body of a robot stands it."""
 
 
 class NoLearning:
@@ -138,10 +143,14 @@ class Learning(NoLearning):
 
     def _see_imu(self, message: Any) -> None:
         if message.angular_velocity_covariance[0] < 0.0:  # REP-145: it does not measure this
-            self._health.refuse("no angular velocity", f"the Imu on {self.topic} measures none")
+            self._health.refuse_to_learn("no angular velocity", "the Imu measures none")
+            return
+        rate = message.angular_velocity.z
+        if not abs(rate) < FASTEST:
+            self._health.refuse_to_learn("rate out of range", f"{rate} rad/s")
             return
         if not self._done:
-            self._learner.see_rate(self._time_of(message), message.angular_velocity.z)
+            self._learner.see_rate(self._time_of(message), rate)
 
     def _see_pose(self, message: Any) -> None:
         self._see_yaw(message, message.pose.orientation)
@@ -151,7 +160,12 @@ class Learning(NoLearning):
 
     def _see_yaw(self, message: Any, orientation: Any) -> None:
         if not self._done:
-            self._learner.see_yaw(self._time_of(message), _yaw(orientation))
+            try:
+                yaw = planar.yaw_of(orientation, slack=1.0)
+            except InputError as error:
+                self._health.refuse_to_learn(*error.args)
+                return
+            self._learner.see_yaw(self._time_of(message), yaw)
 
     def _time_of(self, message: Any) -> float:
         stamp = message.header.stamp
@@ -203,11 +217,3 @@ def _words(applied: AppliedEffect, learning: NoLearning) -> str:
 
 def _key(phase: Phase) -> str:
     return f"{phase.effect}.{phase.parameter}"
-
-
-def _yaw(orientation: Any) -> float:
-    """Heading of a quaternion [rad]; not a number where it is none."""
-    x, y, z, w = orientation.x, orientation.y, orientation.z, orientation.w
-    if not 0.5 < math.sqrt(x * x + y * y + z * z + w * w) < 2.0:
-        return math.nan
-    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))

@@ -8,9 +8,7 @@ docs/node.md argues each entry of the covariances.
 from __future__ import annotations
 
 import math
-from typing import Any
 
-import numpy as np
 from builtin_interfaces.msg import Time as Stamp
 from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
 from nav_msgs.msg import Odometry
@@ -19,21 +17,18 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.odometer import Estimate
 from werrimbi_odom.model.pose import Pose
+from werrimbi_odom.ros import planar
 
 PLANAR_VARIANCE = 1e-6
 """Of z, roll and pitch and of their rates, zero on a flat floor: (1 mm)², (1 mrad)², a second."""
 
-_ROUNDING = 1.0 + 1e-12
-"""On every variance, so that rounding cannot turn a semi-definite matrix into an indefinite one."""
-
-_FARTHEST = 1e12  # m: no robot is; beyond it squares of squares overflow
+_OFF_UNIT = 1e-3  # by which the norm of a quaternion may differ from 1
 
 # Places in a 6 x 6 matrix, row by row, over (x, y, z, roll, pitch, yaw).
 _XX, _XY, _XYAW = 0, 1, 5
 _YX, _YY, _YYAW = 6, 7, 11
 _YAWX, _YAWY, _YAWYAW = 30, 31, 35
 _OUT_OF_PLANE = (14, 21, 28)
-_PLANE = (0, 1, 5)
 
 
 class OdometryMessage:
@@ -70,20 +65,21 @@ class OdometryMessage:
         return self._message
 
     def _fill_covariances(self, estimate: Estimate) -> None:
-        xx, xy, xyaw, yy, yyaw, yawyaw = estimate.covariance
+        xx, xy, xyaw, yy, yyaw, yawyaw = planar.rounded_up(estimate.covariance)
         pose, twist = self._pose, self._twist
-        pose[_XX] = xx * _ROUNDING
-        pose[_YY] = yy * _ROUNDING
-        pose[_YAWYAW] = yawyaw * _ROUNDING
+        pose[_XX] = xx
+        pose[_YY] = yy
+        pose[_YAWYAW] = yawyaw
         pose[_XY] = pose[_YX] = xy
         pose[_XYAW] = pose[_YAWX] = xyaw
         pose[_YYAW] = pose[_YAWY] = yyaw
         speed, cross, yaw_rate = estimate.twist_covariance
-        twist[_XX] = speed * _ROUNDING
+        speed, yaw_rate = speed * planar.UP, yaw_rate * planar.UP
+        twist[_XX] = speed
         # The wheels do not slide sideways, as surely as they do not slip along: the same patch of
         # tyre holds both ways.
-        twist[_YY] = speed * _ROUNDING
-        twist[_YAWYAW] = yaw_rate * _ROUNDING
+        twist[_YY] = speed
+        twist[_YAWYAW] = yaw_rate
         twist[_XYAW] = twist[_YAWX] = cross
 
 
@@ -112,32 +108,9 @@ def pose_from(
     frame = message.header.frame_id
     if frame != odom_frame:
         raise InputError("wrong frame", f"frame_id is {frame!r}, not {odom_frame!r}")
-    pose = message.pose.pose
-    covariance = np.asarray(message.pose.covariance, dtype=np.float64).reshape(6, 6)
-    yaw = _yaw_of(pose.orientation)
-    if not all(map(math.isfinite, (pose.position.x, pose.position.y, yaw))):
-        raise InputError("pose not finite", "NaN or infinite")
-    if max(abs(pose.position.x), abs(pose.position.y)) > _FARTHEST:
-        raise InputError("pose out of range", f"farther than {_FARTHEST:g} m")
-    block = covariance[np.ix_(_PLANE, _PLANE)]
-    if not np.isfinite(block).all():
-        raise InputError("covariance not finite", "NaN or infinite")
-    if np.abs(block).max() > _FARTHEST**2:
-        raise InputError("covariance out of range", f"more than {_FARTHEST**2:g}")
-    size = np.sqrt(np.outer(np.abs(block.diagonal()), np.abs(block.diagonal())))
-    if not (np.abs(block - block.T) <= 1e-6 * size).all():
-        raise InputError("covariance not symmetric", "of x, y and yaw")
-    if np.linalg.eigvalsh(block)[0] < -1e-9 * np.abs(block).max():
-        raise InputError("covariance not positive semi-definite", "of x, y and yaw")
-    symmetric = (0.5 * (block + block.T))[np.triu_indices(3)]
-    return Pose(pose.position.x, pose.position.y, yaw), PoseCovariance(*symmetric.tolist())
-
-
-def _yaw_of(orientation: Any) -> float:
-    x, y, z, w = orientation.x, orientation.y, orientation.z, orientation.w
-    norm = x * x + y * y + z * z + w * w
-    if math.isfinite(norm) and abs(norm - 1.0) > 1e-3:
-        raise InputError("orientation not a rotation", f"the quaternion's norm is {norm:g}, not 1")
-    if math.isfinite(norm) and x * x + y * y > 1e-3:
+    x, y = planar.place_of(message.pose.pose.position)
+    turn = message.pose.pose.orientation
+    yaw = planar.yaw_of(turn, slack=_OFF_UNIT)
+    if turn.x * turn.x + turn.y * turn.y > 1e-3:
         raise InputError("orientation not planar", "it rolls or pitches")
-    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+    return Pose(x, y, yaw), planar.covariance_of(message.pose.covariance)

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Callable
-from dataclasses import replace
 from functools import partial
 from typing import Any
 
@@ -30,9 +29,8 @@ from std_srvs.srv import Trigger
 from visualization_msgs.msg import MarkerArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.parameters import limits_of, tolerance_of
-from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros import inputs, parameters
+from werrimbi_odom.ros.graph import crowds, full_name, namesakes
 from werrimbi_odom.ros.health import Health
 from werrimbi_odom.ros.learning import learning_of, told
 from werrimbi_odom.ros.markers import PieceTrail
@@ -60,14 +58,12 @@ class OdomNode(Node):  # type: ignore[misc]
 
     def __init__(self) -> None:
         super().__init__("odom_node")
-        self._values, self._effects = parameters.declared(self)
-        values = self._values
-        self._changeable = parameters.changeable(self._effects)
+        self._settings = parameters.declared(self)
+        values, robot, limits = self._settings.values, self._settings.robot, self._settings.limits
+        self._changeable = parameters.changeable(self._settings.effects)
         self._frame = str(values["odom_frame_id"])
-        robot = self._robot()
-        limits = limits_of(values)
         self._topics = tuple(self.resolve_topic_name(name) for name in inputs.topics_of(values))
-        self._tracker = Tracker(robot, tolerance_of(values), limits)
+        self._tracker = Tracker(robot, self._settings.tolerance, limits)
         self._message = OdometryMessage(self._frame, str(values["base_frame_id"]))
         self._trail = PieceTrail(self._frame, robot.track)
         self._health = Health(self.get_logger(), self._topics, limits.gap_duration)
@@ -90,7 +86,9 @@ class OdomNode(Node):  # type: ignore[misc]
         )
         self.create_service(Trigger, "~/reset", self._on_reset)
         self.add_pre_set_parameters_callback(partial(parameters.with_floats, self._changeable))
-        self.add_on_set_parameters_callback(partial(parameters.judged, self._changeable))
+        self.add_on_set_parameters_callback(
+            lambda changed: parameters.judged(self._changeable, self._settings, changed)
+        )
         self.add_post_set_parameters_callback(self._on_parameters_set)
         # The steady clock: /diagnostics must go on when simulated time stands still.
         steady = Clock(clock_type=ClockType.STEADY_TIME)
@@ -101,7 +99,11 @@ class OdomNode(Node):  # type: ignore[misc]
 
     def _take(self, stamp: Stamp, left: float, right: float) -> None:
         """The whole way of a message, from two counters to odometry."""
-        estimate = self._tracker.take(stamp, left, right)
+        try:
+            estimate = self._tracker.take(stamp, left, right)
+        except InputError as error:
+            self._health.refuse(*error.args)
+            return
         if estimate is None:
             return
         odometry = self._message.filled(stamp, estimate)
@@ -142,20 +144,14 @@ class OdomNode(Node):  # type: ignore[misc]
         changes = parameters.changes_of(self._changeable, changed)
         if not changes:
             return
-        self._values.update({name: v for name, v in changes.items() if name in self._values})
-        self._effects = parameters.with_changes(self._effects, changes)
-        limits = limits_of(self._values)
-        robot = self._robot()
+        settings = self._settings = self._settings.after(changes)
+        robot, limits = settings.robot, settings.limits
         self._health.silent_after = limits.gap_duration
-        self._keep(self._tracker.retune(robot, tolerance_of(self._values), limits))
+        self._keep(self._tracker.retune(robot, settings.tolerance, limits))
         self._learning.retune(robot, tuple(changes))
         self.get_logger().info(
             "from here on: " + ", ".join(f"{name} {value}" for name, value in changes.items())
         )
-
-    def _robot(self) -> Robot:
-        """The robot as it is believed to be now."""
-        return replace(inputs.robot_at_counters(self._values), effects=self._effects)
 
     # ------------------------------------------------------------------------- reports
 
@@ -205,8 +201,15 @@ class OdomNode(Node):  # type: ignore[misc]
 
     def _publish_diagnostics(self) -> None:
         name = f"{full_name(self)}: wheel encoders"
-        effects = told(self._effects, self._learning)
-        status = self._health.report(name, self._tracker.tally, self._input.tally(), effects)
+        effects = told(self._settings.effects, self._learning)
+        status = self._health.report(
+            name,
+            self._tracker.tally,
+            self._input.tally(),
+            effects,
+            crowds(self, self._topics),
+            namesakes(self),
+        )
         if status.level != self._level:
             self._level = status.level
             # Two lines, because rclpy knows a logging call by its line and its severity.
@@ -236,26 +239,21 @@ class OdomNode(Node):  # type: ignore[misc]
             )
 
     def _say_hello(self) -> None:
-        log = self.get_logger()
+        log, values = self.get_logger(), self._settings.values
         for name in parameters.leftover_qos_overrides(self):
             log.warning(f"{name} is not used: there is no such topic or policy")
-        if parameters.has_virtual_ticks(self._values):
+        if parameters.has_virtual_ticks(values):
             log.info(
                 "no ticks_per_revolution: wheel angles are taken as exact to a microradian. Give "
                 "left_ and right_ticks_per_revolution where you know them: then quantisation "
                 "belongs to the covariance, and a count that flickers is no motion"
             )
-        for name, words in told(self._effects, self._learning).items():
+        for name, words in told(self._settings.effects, self._learning).items():
             log.info(f"{name}: {words}")
         log.info(
-            f"{self._values['input_type']} on {' and '.join(self._topics)}, odometry on "
-            f"{self._odometry.topic_name} from {self._frame} to {self._values['base_frame_id']}"
+            f"{values['input_type']} on {' and '.join(self._topics)}, odometry on "
+            f"{self._odometry.topic_name} from {self._frame} to {values['base_frame_id']}"
         )
-
-
-def full_name(node: Node) -> str:
-    """Name with namespace, as the diagnostics of several robots need it to be told apart."""
-    return str(node.get_fully_qualified_name().lstrip("/"))
 
 
 def _transform_sender(node: Node) -> SendTransform:

@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 from rcl_interfaces.msg import FloatingPointRange, ParameterDescriptor, SetParametersResult
@@ -21,6 +22,11 @@ from werrimbi_odom.files import parameters as table
 from werrimbi_odom.files.effect_parameters import EFFECTS, Named, named_effects, parameters_of
 from werrimbi_odom.files.parameters import Value
 from werrimbi_odom.model.effect import AppliedEffect
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pieces import PieceTolerance
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.ros.inputs import robot_at_counters
+from werrimbi_odom.ros.rehearsal import rehearse
 
 CHANGEABLE = frozenset(
     {
@@ -50,10 +56,38 @@ Changeable = Mapping[str, table.Parameter]
 
 
 class Settings(NamedTuple):
-    """What the node was started with."""
+    """What is believed of the robot, and how it is wired."""
 
-    values: dict[str, Value]
+    values: Mapping[str, Value]
     effects: tuple[AppliedEffect, ...]
+
+    @property
+    def robot(self) -> Robot:
+        """The robot behind the counters, with its effects."""
+        return replace(robot_at_counters(self.values), effects=self.effects)
+
+    @property
+    def tolerance(self) -> PieceTolerance:
+        """When pieces end."""
+        return table.tolerance_of(self.values)
+
+    @property
+    def limits(self) -> EncoderLimits:
+        """When counters are doubted."""
+        return table.limits_of(self.values)
+
+    def after(self, changes: Mapping[str, Value]) -> Settings:
+        """The settings with some of them changed.
+
+        Raises
+        ------
+        ValueError
+            When the node could not go on with them.
+        """
+        own = {name: value for name, value in changes.items() if name in self.values}
+        settings = Settings({**self.values, **own}, with_changes(self.effects, changes))
+        rehearse(settings.robot, settings.tolerance)
+        return settings
 
 
 def changeable(effects: tuple[AppliedEffect, ...]) -> Changeable:
@@ -104,7 +138,7 @@ def _declare_effects(node: Node, effects: tuple[AppliedEffect, ...]) -> None:
             node.declare_parameter(item.name, value, descriptor, ignore_override=True)
 
 
-def checked(given: Mapping[str, object], node_name: str = "/odom_node") -> dict[str, Value]:
+def checked(given: Mapping[str, object], node_name: str = "/odom_node") -> Mapping[str, Value]:
     """Values of all parameters but the effects'; see `settings_of`."""
     return settings_of(given, node_name).values
 
@@ -148,7 +182,12 @@ def settings_of(given: Mapping[str, object], node_name: str = "/odom_node") -> S
         )
     if wrong:
         raise InputError(". ".join(wrong))
-    return Settings(values, effects.applied())
+    settings = Settings(values, effects.applied())
+    try:
+        rehearse(settings.robot, settings.tolerance)
+    except ValueError as error:
+        raise InputError(str(error)) from error
+    return settings
 
 
 def has_virtual_ticks(values: Mapping[str, Value]) -> bool:
@@ -174,11 +213,13 @@ def with_floats(items: Changeable, parameters: list[Parameter]) -> list[Paramete
     ]
 
 
-def judged(items: Changeable, parameters: list[Parameter]) -> SetParametersResult:
-    """Whether a change at run time may be made, and else why not."""
+def judged(
+    items: Changeable, settings: Settings, parameters: list[Parameter]
+) -> SetParametersResult:
+    """Whether a change of the settings at run time may be made, and else why not."""
     try:
-        changes_of(items, parameters)
-    except InputError as error:
+        settings.after(changes_of(items, parameters))
+    except ValueError as error:
         return SetParametersResult(successful=False, reason=str(error))
     return SetParametersResult(successful=True)
 

@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 from builtin_interfaces.msg import Time as Stamp
 
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
 from werrimbi_odom.model.driving import DrivenStep
 from werrimbi_odom.model.encoder import EncoderLimits, EncoderTally
@@ -16,6 +17,7 @@ from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.pieces import Piece, PieceTolerance
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.ros.rehearsal import is_finite
 
 
 class Finished(NamedTuple):
@@ -36,6 +38,7 @@ class Tracker:
 
     def __init__(self, robot: Robot, tolerance: PieceTolerance, limits: EncoderLimits) -> None:
         self.pose = Pose()
+        self._known = CERTAIN
         self.stamp = Stamp()
         """Of the last reading that was taken."""
         self._odometer = Odometer(robot, tolerance, limits)
@@ -69,16 +72,31 @@ class Tracker:
         return self._odometer.errors().mean_shift
 
     def take(self, stamp: Stamp, left: float, right: float) -> Estimate | None:
-        """The estimate after a reading; None for the first and for one that is refused."""
+        """The estimate after a reading; None for the first and for one that is refused.
+
+        Raises
+        ------
+        InputError
+            When a number comes out that is none, as of an effect of somebody's own at a speed that
+            nothing has; the pose stays where it was, as if the wheels had stood.
+        """
         if self._origin is None:
             self._origin = stamp.sec
         time = self.seconds(stamp)
-        accepted = self.tally.accepted
-        estimate = self._odometer.update(time, left, right)
+        accepted, distance = self.tally.accepted, self.distance
+        try:
+            estimate = self._odometer.update(time, left, right)
+            lost = estimate is not None and not is_finite(estimate)
+        except ArithmeticError:
+            lost = True
+        if lost:
+            self._odometer.set_pose(self.pose, self._known)
+            self._odometer.distance = distance
+            raise InputError("beyond all numbers", f"what counts {left} and {right} make")
         if self.tally.accepted > accepted:
             self.started, self.stamp = True, stamp
         if estimate is not None:
-            self.pose = estimate.pose
+            self.pose, self._known = estimate.pose, estimate.covariance
         return estimate
 
     def seconds(self, stamp: Stamp) -> float:
@@ -105,7 +123,7 @@ class Tracker:
         """Go on from another pose; returns the piece that this ends, if it had any length."""
         end = self.covariance
         piece = self._odometer.set_pose(pose, covariance)
-        self.pose = pose
+        self.pose, self._known = pose, covariance
         return Finished(piece, end) if any(piece.travel) else None
 
     def reset(self) -> None:

@@ -13,7 +13,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison, judged
 from werrimbi_odom.inference.comparison.judged_legs import Prepared, finely
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
-from werrimbi_odom.inference.diagnosis.holdout import judge_of, known_at_home
+from werrimbi_odom.inference.diagnosis.holdout import judge_of, known_at_home, set_aside
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.robot import Robot
@@ -99,10 +99,11 @@ def opened(given: Given) -> Opened:
         When a run has no usable reference or no ticks.
     """
     robot, judging = given.robot, given.judging
-    judge = judge_of(given.runs, given.holdout, robot, **judging)
+    runs, holdout = (given.runs, given.holdout) if given.holdout else set_aside(given.runs)
+    judge = judge_of(runs, holdout, robot, **judging)
     return Opened(
         given,
-        Drives(judge.train, finely(judge.train, judging["limits"])),
+        Drives(judge.train, finely(judge.train)),
         Drives(judge.holdout, judge.fine),
         tuple(run.name for run in judge.kept_back),
     )

@@ -5,15 +5,13 @@
 from __future__ import annotations
 
 import difflib
+import os
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.parameters import PARAMETERS
-from werrimbi_odom.files.robot_file import PARAMETER_KEY, RobotFile, write_robot_file
-from werrimbi_odom.files.yaml_edit import edited
-from werrimbi_odom.files.yaml_effects import with_effects
+from werrimbi_odom.files.replacing import place_of
+from werrimbi_odom.files.robot_file import RobotFile, new_text, write_robot_file
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.workbench.steps import Session
@@ -27,27 +25,42 @@ class Target:
 
     path: Path
     force: bool = False
-    """Whether `path` itself may be overwritten."""
+    """Whether what is at `path` may be overwritten, once."""
+    leads_to: str = field(init=False)
+    """Where `path` led at the beginning: a link that somebody puts there later is no leave."""
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "leads_to", place_of(self.path))
 
     def of(self, session: Session, taken: Collection[Path] = ()) -> Path:
-        """The file of one tab: the place if it is free or its own, else the next free number.
+        """The file of one tab: its own, if nobody has touched it since, else a free one.
 
         Parameters
         ----------
         taken
             What other tabs have written.
         """
-        for path in session.saved:
-            return path
-        if self.path not in taken and (self.force or not self.path.exists()):
+        for path, item in reversed(tuple(session.saved.items())):
+            if _holds(path, item.text):
+                return path
+        may = self.force and self.path not in session.saved and place_of(self.path) == self.leads_to
+        if self.path not in taken and (may or not os.path.lexists(self.path)):
             return self.path
         number = 2
-        while (path := self._numbered(number)).exists():
+        while os.path.lexists(path := self._numbered(number)):
             number += 1
         return path
 
     def _numbered(self, number: int) -> Path:
         return self.path.with_name(f"{self.path.stem}_{number}{self.path.suffix}")
+
+
+def _holds(path: Path, text: str) -> bool:
+    """Whether a file is as it was written: one that was edited since, or replaced, is not ours."""
+    try:
+        return not path.is_symlink() and path.read_bytes() == text.encode()
+    except OSError:
+        return False
 
 
 def beside(robot: Path) -> Path:
@@ -67,10 +80,7 @@ def changes_of(robot: Robot, source: RobotFile) -> dict[str, float]:
 
 def text_of(source: RobotFile, robot: Robot) -> str:
     """The new file's text, for who wants to read it before it is written."""
-    place = (source.node, PARAMETER_KEY)
-    order = tuple(item.name for item in PARAMETERS)
-    text = edited(source.text, place, changes_of(robot, source), order)
-    return with_effects(text, place, robot.effects)
+    return new_text(source, changes_of(robot, source), robot.effects)
 
 
 def saved(
@@ -85,33 +95,17 @@ def saved(
     """
     path = target.of(session, taken)
     robot = session.now.look.robot
-    write_robot_file(
+    written = write_robot_file(
         source,
         changes_of(robot, source),
         path,
         force=path in session.saved or (target.force and path == target.path),
         effects=robot.effects,
     )
-    return session.written(path)
+    return session.written(path, written.text)
 
 
 def changed_lines(before: str, after: str) -> list[tuple[str, str]]:
     """Lines of the new file with "+" (new), "-" (gone) or " " (as before) before each."""
     lines = difflib.ndiff(before.splitlines(), after.splitlines())
     return [(line[0], line[2:]) for line in lines if line[0] in "+- "]
-
-
-def refuse(out: Path, force: bool) -> None:
-    """Before any work: an --out that cannot be written.
-
-    Raises
-    ------
-    InputError
-        When it is a folder, exists, or lies in no folder.
-    """
-    if out.is_dir():
-        raise InputError(f"--out {out} is a folder; give a file name in it")
-    if out.exists() and not force:
-        raise InputError(f"{out} exists; --force overwrites it, another --out keeps it")
-    if not out.parent.is_dir():
-        raise InputError(f"--out {out}: there is no folder {out.parent}")

@@ -47,6 +47,15 @@ class Step:
         return "as given" if self.added is None else self.added.effect.name
 
 
+@dataclass(frozen=True)
+class Saved:
+    """What was written to a file."""
+
+    step: int
+    """Index of the step that it holds, or `GONE`."""
+    text: str = field(repr=False)
+
+
 @dataclass(frozen=True, eq=False)
 class Session:
     """The steps of one tab; those after `at` were undone and can be done again."""
@@ -57,8 +66,8 @@ class Session:
     """Fitted, but something speaks against it: the user has to say."""
     diagnoses: Mapping[int, Diagnosed] = field(default_factory=dict)
     """By the index of the step that was diagnosed."""
-    saved: Mapping[Path, int] = field(default_factory=dict)
-    """Files that this tab wrote, and the step that each holds, or `GONE`."""
+    saved: Mapping[Path, Saved] = field(default_factory=dict)
+    """Files that this tab wrote."""
 
     @property
     def now(self) -> Step:
@@ -88,7 +97,7 @@ class Session:
     @property
     def is_saved(self) -> bool:
         """Whether a file holds the current step."""
-        return self.at in self.saved.values()
+        return any(item.step == self.at for item in self.saved.values())
 
     def diagnosed(self, diagnosis: Diagnosed) -> Session:
         """With what is missing at the current step."""
@@ -109,7 +118,10 @@ class Session:
             at=following,
             proposed=None,
             diagnoses={at: item for at, item in self.diagnoses.items() if at < following},
-            saved={path: at if at < following else GONE for path, at in self.saved.items()},
+            saved={
+                path: item if item.step < following else replace(item, step=GONE)
+                for path, item in self.saved.items()
+            },
         )
 
     def insisted(self) -> Session:
@@ -128,9 +140,10 @@ class Session:
         """A step forward again; where there is none, the same."""
         return replace(self, at=min(self.at + 1, len(self.steps) - 1), proposed=None)
 
-    def written(self, path: Path) -> Session:
+    def written(self, path: Path, text: str) -> Session:
         """The current step is in a file."""
-        return replace(self, saved={**self.saved, path: self.at})
+        others = {other: item for other, item in self.saved.items() if other != path}
+        return replace(self, saved={**others, path: Saved(self.at, text)})
 
 
 def begun(look: Look) -> Session:

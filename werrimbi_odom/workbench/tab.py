@@ -184,7 +184,7 @@ class Tab:
         except InputError as error:
             self.tell(str(error), trouble=True)
         else:
-            path = shared.target.of(self.session, taken)
+            path = tuple(self.session.saved)[-1]
             shared.taken.add(path)
             self.tell(f"Written: {path}")
         self.changed("title-save")

@@ -39,7 +39,7 @@ from werrimbi_odom.inference.comparison.judged_legs import Legs, Prepared, judge
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.diagnosis import chance
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.diagnosis.holdout import Judge, at_home, judge_of
+from werrimbi_odom.inference.diagnosis.holdout import Judge, at_home, begin
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.knobs import (
@@ -51,7 +51,6 @@ from werrimbi_odom.inference.fitting.knobs import (
 )
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
 from werrimbi_odom.inference.fitting.together import together
-from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
@@ -94,8 +93,8 @@ def add_effect(
             f"the robot file lists {effect.name} already; a mistake put right twice is made again"
         )
     show(0.0, "set-up")
-    set_up = look_for_mistakes([*runs, *holdout], robot, kind, limits)
-    judge = judge_of(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+    started = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+    judge, set_up = started.judge, started.set_up
     begun, also = with_set_up(effect, robot, set_up)
     sigma = (sigma_xy or _stated(judge, "xy_told"), sigma_yaw or _stated(judge, "yaw_told"))
     show(0.15, "calibration")

@@ -26,9 +26,10 @@ from werrimbi_odom.inference.adding.draft_source import name_of, source_of
 from werrimbi_odom.inference.adding.start import Drives, starts
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.selection import RIVAL, Fitted
+from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.variables import Variable, floor_cells, variables_of
 from werrimbi_odom.inference.fitting.prediction import path_of
+from werrimbi_odom.inference.rules import RIVAL
 from werrimbi_odom.model.effect import Effect
 
 BELIEVED = 1e-3

@@ -29,8 +29,8 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, knobs_of
-from werrimbi_odom.inference.fitting.matching import match_finely
 from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUp
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.encoder import EncoderLimits

@@ -16,10 +16,10 @@ from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, MULTIPLIERS
 from werrimbi_odom.inference.fitting.likelihood import relative_errors
-from werrimbi_odom.inference.fitting.matching import MatchedRun
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
 from werrimbi_odom.inference.fitting.prediction import predict
 from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

@@ -9,8 +9,7 @@ same legs, with the same legs left out and the same noise of the reference.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any
+from dataclasses import dataclass, fields
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,15 +27,21 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     residuals_of,
 )
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.matching import (
-    QUARTER_TURN,
-    MatchedRun,
-    cut,
-    cut_finely,
-    every_pose,
-    match_finely,
-)
 from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.legs.cutting import (
+    QUARTER_TURN,
+    Record,
+    cut_finely,
+    divided,
+    every_pose,
+    leg_ends,
+    match_finely,
+    record_of,
+)
+from werrimbi_odom.inference.legs.cutting import (
+    joined as joined_legs,
+)
+from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -79,6 +84,16 @@ class Legs:
     variables: Mapping[str, Floats]
     """What errors may go with, by name with unit, shape (m,) each."""
 
+    def chosen(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> Legs:
+        """Some of the legs, by mask or by index."""
+        columns = {
+            item.name: getattr(self, item.name)[which]
+            for item in fields(self)
+            if item.name not in ("leg", "errors", "variables")
+        }
+        variables = {name: values[which] for name, values in self.variables.items()}
+        return Legs(leg=self.leg, errors=self.errors.chosen(which), variables=variables, **columns)
+
 
 @dataclass(frozen=True, slots=True, eq=False)
 class _Group:
@@ -94,6 +109,8 @@ class _Group:
     sigma_xy: Floats
     """Of each run [m]."""
     sigma_yaw: Floats
+    plain: tuple[Residual, ...]
+    """Paths by the robot by whose travel the legs are cut."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -104,6 +121,7 @@ class Prepared:
     """By whose travel the legs are cut."""
     kind: ReferenceKind
     leg: float
+    limits: EncoderLimits | None
     runs: tuple[Run, ...]
     groups: tuple[_Group, ...]
     cuts: Mapping[float, tuple[Together, ...]]
@@ -121,6 +139,26 @@ class Prepared:
     def noises(self) -> tuple[tuple[Measure, ReferenceNoise], ...]:
         """The reference's noise, for each of the ways in which it measures."""
         return tuple((group.measure, group.noise) for group in self.groups)
+
+    @property
+    def left_out(self) -> tuple[LeftOut, ...]:
+        """Stretches that no model is judged on, run by run: gaps, and legs of a reference's jump.
+
+        Whoever finds another reason to leave a stretch out adds it to the record of the run
+        (`legs.cutting.Record.left_out`), and it is cut out and told like these.
+        """
+        found: list[list[LeftOut]] = [[] for _ in self.runs]
+        for group, legs in zip(self.groups, self.cuts[self.leg], strict=True):
+            spoilt = _jumped(group, legs, self.kind)
+            for place, (index, run) in enumerate(zip(group.index, legs.runs, strict=True)):
+                found[index] += run.record.left_out
+                own = spoilt[legs.legs[place] : legs.legs[place + 1]] & ~run.gap
+                time, path = run.measured.time, self.runs[index].path
+                found[index] += [
+                    LeftOut(path, float(time[leg]), float(time[leg + 1]), "reference", "it jumped")
+                    for leg in np.flatnonzero(own).tolist()
+                ]
+        return tuple(part for own in found for part in sorted(own, key=lambda one: one.begin))
 
 
 def prepare(
@@ -141,56 +179,92 @@ def prepare(
     InputError
         When a run has no usable reference or no ticks.
     """
-    members: dict[Measure, list[tuple[int, MatchedRun, bool]]] = {}
+    members: dict[Measure, list[tuple[int, Record, bool]]] = {}
     for index, run in enumerate(runs):
         show(0.5 * index / len(runs), f"matching {run.name}")
         alike, measure = measured_alike(run)
-        every = every_pose(alike, robot, limits)
-        members.setdefault(measure, []).append((index, every, alike is run))
+        record = record_of(alike, robot, limits, leg)
+        members.setdefault(measure, []).append((index, record, alike is run))
     groups = tuple(
         _group(robot, measure, found, kind, sigma_xy, sigma_yaw)
         for measure, found in members.items()
     )
-    cuts: dict[float, tuple[Together, ...]] = {}
+    show(0.5, "cutting legs")
+    return Prepared(
+        robot, kind, leg, limits, tuple(runs), groups, _cut_to_lengths(groups, robot, leg)
+    )
+
+
+def _cut_to_lengths(
+    groups: Sequence[_Group], robot: Robot, leg: float
+) -> dict[float, tuple[Together, ...]]:
+    """Legs of all lengths of which there are enough, joined of the shortest.
+
+    A length is as good as another where both have the same legs, for the reference is too rare.
+    """
+    records = [[run.record for run in group.every.runs] for group in groups]
+    runs = sum(map(len, records))
+    ways = [[_way(record, robot, leg) for record in own] for own in records]
+    rows: dict[float, list[list[NDArray[np.intp]]]] = {}
     counts: set[int] = set()
     for times in sorted(TIMES, key=lambda times: (times != 1.0, times)):
-        show(0.5 + 0.5 * len(cuts) / len(TIMES), "cutting legs")
-        legs = tuple(
-            together(
-                [cut(run, robot, times * leg, times * QUARTER_TURN) for run in group.every.runs]
-            )
-            for group in groups
+        found = [
+            [leg_ends(way, record.gap, times) for way, record in zip(*own, strict=True)]
+            for own in zip(ways, records, strict=True)
+        ]
+        count = sum(
+            ends.size - 1 - int(record.gap.sum())
+            for own in zip(found, records, strict=True)
+            for ends, record in zip(*own, strict=True)
         )
-        count = sum(part.count for part in legs)
-        if times == 1.0 or (count not in counts and count >= max(8, 2 * len(runs))):
-            cuts[times * leg] = legs
+        if times == 1.0 or (count not in counts and count >= max(8, 2 * runs)):
+            rows[times * leg] = found
             counts.add(count)
-    return Prepared(robot, kind, leg, tuple(runs), groups, cuts)
+    parts = []
+    for number, own in enumerate(records):
+        every = [
+            np.unique(np.concatenate(ends))
+            for ends in zip(*(r[number] for r in rows.values()), strict=True)
+        ]
+        parts.append(together([divided(*one) for one in zip(own, every, strict=True)]))
+    return {
+        length: tuple(
+            together([joined_legs(*one) for one in zip(part.runs, own, strict=True)], part)
+            for part, own in zip(parts, found, strict=True)
+        )
+        for length, found in rows.items()
+    }
 
 
-def finely(prepared: Prepared, limits: EncoderLimits | None = None) -> Together:
+def _way(record: Record, robot: Robot, leg: float) -> Floats:
+    """What was gone up to each pose of a record, in legs."""
+    counters = record.counters
+    way = counters.way(robot, leg, QUARTER_TURN)
+    return np.interp(record.measured.time, counters.time, way)
+
+
+def finely(prepared: Prepared) -> Together:
     """Cut the runs into the short legs of a fit: what `match_finely` does, from what is there."""
-    found: dict[int, MatchedRun] = {}
+    found = {}
     for group in prepared.groups:
         for index, every, whole in zip(group.index, group.every.runs, group.whole, strict=True):
             if whole:
-                found[index] = cut_finely(every, prepared.robot, prepared.leg)
+                found[index] = cut_finely(every.record, prepared.robot, prepared.leg)
             else:
-                [found[index]] = match_finely(
-                    [prepared.runs[index]], prepared.robot, prepared.leg, limits
-                )
+                run = prepared.runs[index]
+                [found[index]] = match_finely([run], prepared.robot, prepared.leg, prepared.limits)
     return together([found[index] for index in range(len(prepared.runs))])
 
 
 def _group(
     robot: Robot,
     measure: Measure,
-    members: list[tuple[int, MatchedRun, bool]],
+    members: list[tuple[int, Record, bool]],
     kind: ReferenceKind,
     sigma_xy: float | None,
     sigma_yaw: float | None,
 ) -> _Group:
-    every = together([run for _, run, _ in members])
+    every = together([every_pose(record) for _, record, _ in members])
     plain = Model(robot, tuple({} for _ in members))
     residuals, _ = residuals_of(plain, every, measure)
     estimated = reference_noise(robot, residuals, kind)
@@ -200,15 +274,19 @@ def _group(
     heading, of_heading, yaw_told = _known(
         sigma_yaw, [run.sigma_yaw for run in every.runs], estimated[1], USUAL_SIGMA_YAW
     )
+    jumps = tuple(
+        jumps_of(residual, run.gap) for residual, run in zip(residuals, every.runs, strict=True)
+    )
     return _Group(
         tuple(index for index, _, _ in members),
         measure,
         every,
         tuple(whole for _, _, whole in members),
-        tuple(jumps_of(residual) for residual in residuals),
+        jumps,
         ReferenceNoise(position, heading, told, yaw_told),
         of_position,
         of_heading,
+        residuals,
     )
 
 
@@ -227,10 +305,10 @@ def _known(
 
 
 def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
-    """Errors of all legs of one length, in the order of the runs."""
+    """Errors of all legs of one length, in the order of the runs; gaps are no legs."""
     parts = []
     for group, runs in zip(prepared.groups, prepared.cuts[leg], strict=True):
-        own = Model(model.robot, tuple(model.own[index] for index in group.index))
+        own = _of_group(group, model)
         by_position = group.measure == "position"
         if by_position:
             _, own = residuals_of(own, group.every, group.measure)
@@ -250,30 +328,34 @@ def paths(prepared: Prepared, model: Model) -> tuple[Residual, ...]:
     """Measured and dead-reckoned path of every run, in their order."""
     found: dict[int, Residual] = {}
     for group in prepared.groups:
-        own = Model(model.robot, tuple(model.own[index] for index in group.index))
-        residuals, _ = residuals_of(own, group.every, group.measure)
+        residuals, own = group.plain, _of_group(group, model)
+        if own.robot != prepared.robot or any(own.own):
+            residuals, _ = residuals_of(own, group.every, group.measure)
         found.update(zip(group.index, residuals, strict=True))
     return tuple(found[index] for index in range(len(prepared.runs)))
+
+
+def _of_group(group: _Group, model: Model) -> Model:
+    """The model with what the group's runs have of their own."""
+    return Model(model.robot, tuple(model.own[index] for index in group.index))
+
+
+def _jumped(group: _Group, runs: Together, kind: ReferenceKind) -> NDArray[np.bool_]:
+    """Legs that a jump of the reference spoils, shape (m,)."""
+    both = zip(group.jumps, runs.runs, strict=True)
+    return np.concatenate([jumped_legs(jumps, run.rows, kind) for jumps, run in both])
 
 
 def _table(
     prepared: Prepared, group: _Group, runs: Together, errors: LegErrors, leg: float
 ) -> Legs:
-    outlier = np.concatenate(
-        [
-            jumped_legs(
-                jumps, np.searchsorted(every.measured.time, run.measured.time), prepared.kind
-            )
-            for jumps, every, run in zip(group.jumps, group.every.runs, runs.runs, strict=True)
-        ]
-    )
     times = [run.measured.time for run in runs.runs]
     begin = np.concatenate([time[:-1] for time in times])
     end = np.concatenate([time[1:] for time in times])
-    return Legs(
+    legs = Legs(
         leg,
         errors,
-        outlier,
+        _jumped(group, runs, prepared.kind),
         np.array(group.index)[runs.run_of_leg],
         begin,
         end,
@@ -283,6 +365,7 @@ def _table(
         runs.finish[:, 1],
         _variables(runs, errors, begin, end),
     )
+    return legs.chosen(~runs.gap) if runs.gap.any() else legs
 
 
 def _variables(runs: Together, errors: LegErrors, begin: Floats, end: Floats) -> dict[str, Floats]:
@@ -314,29 +397,21 @@ def _in_order(parts: list[Legs]) -> Legs:
     """Legs of all groups, sorted by run."""
     if len(parts) == 1:
         return parts[0]
-    run = np.concatenate([part.run for part in parts])
-    order = np.argsort(run, kind="stable")
     names = dict.fromkeys(name for part in parts for name in part.variables)
-    variables = {
-        name: np.concatenate(
-            [part.variables.get(name, np.full(part.run.size, np.nan)) for part in parts]
-        )[order]
-        for name in names
+    columns = {
+        item.name: np.concatenate([getattr(part, item.name) for part in parts])
+        for item in fields(Legs)
+        if item.name not in ("leg", "errors", "variables")
     }
-
-    def whole(name: str) -> Any:
-        return np.concatenate([getattr(part, name) for part in parts])[order]
-
-    return Legs(
-        parts[0].leg,
-        joined([part.errors for part in parts]).chosen(order),
-        whole("outlier"),
-        whole("run"),
-        whole("start_time"),
-        whole("end_time"),
-        whole("x"),
-        whole("y"),
-        whole("end_x"),
-        whole("end_y"),
-        variables,
+    whole = Legs(
+        leg=parts[0].leg,
+        errors=joined([part.errors for part in parts]),
+        variables={
+            name: np.concatenate(
+                [part.variables.get(name, np.full(part.run.size, np.nan)) for part in parts]
+            )
+            for name in names
+        },
+        **columns,
     )
+    return whole.chosen(np.argsort(whole.run, kind="stable"))

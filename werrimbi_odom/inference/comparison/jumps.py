@@ -16,13 +16,14 @@ _BEYOND = 0.5  # share of the motion about it that no model's error reaches at o
 _NORMAL = 1.4826  # from median deviation to standard deviation
 
 
-def jumps_of(item: Residual) -> Floats:
+def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
     """What the reference jumped by in each interval, (x, y, yaw); zero where it did not; (n-1, 3).
 
     A jump is an error of one interval beyond all others, beyond its neighbours', and beyond what
-    was driven about it: no model, however wrong, errs like this.
+    was driven about it: no model, however wrong, errs like this. What goes by in a `gap` (n - 1,)
+    is none: nobody was looking.
     """
-    errors = np.where(np.isfinite(item.intervals), item.intervals, 0.0)
+    errors = np.where(np.isfinite(item.intervals) & ~gap[:, None], item.intervals, 0.0)
     if errors.shape[0] < 8:
         return np.zeros_like(errors)
     usual = _running_median(errors)

@@ -11,11 +11,12 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.position_filter import position_errors
+from werrimbi_odom.inference.fitting.joined_legs import predict_joined
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.likelihood import errors_between, reading_noise
-from werrimbi_odom.inference.fitting.matching import MatchedRun
-from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all, right_handed
+from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion
@@ -124,7 +125,7 @@ def errors_of(
         The reference gives positions alone; headings then come from those before the leg.
     """
     robot = model.robot
-    prediction = predict_all(model, runs)
+    prediction = predict_joined(model, runs)
     view = view_of(robot.effects)
     start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
     wheels = (
@@ -140,6 +141,7 @@ def errors_of(
             np.square(sigma_xy) + float(reading_noise(robot)[0]),
             runs.legs,
             _headings(model, runs, start),
+            runs.gap,
         )
         error, wheels, reference = found.error, found.wheels, found.reference
         heading = found.heading

@@ -45,6 +45,7 @@ def position_errors(
     variance: Floats | float,
     first: NDArray[np.intp],
     headings: Floats,
+    gap: NDArray[np.bool_],
 ) -> PositionErrors:
     """Filter the legs of all runs.
 
@@ -60,14 +61,16 @@ def position_errors(
         First leg of each run, and the number of legs.
     headings : ndarray, shape (runs,)
         At the first pose of each run, known roughly [rad].
+    gap : ndarray of bool, shape (m,)
+        Legs that nobody saw: the heading is carried through, the position begins anew.
     """
     variances = np.zeros(relative.shape[0]) + variance
     doubt = 1.0
     for _ in range(_ROUNDS):
         found, deviation = _filtered(
-            relative, wheels, start, finish, variances, first, headings, doubt
+            relative, wheels, start, finish, variances, first, headings, gap, doubt
         )
-        usual = float(np.median(deviation)) / _MEDIAN_CHI2_2
+        usual = float(np.median(deviation[~gap])) / _MEDIAN_CHI2_2
         if usual <= 1.5 or doubt >= _MOST_DOUBT:
             break
         doubt = min(doubt * usual, _MOST_DOUBT)
@@ -82,6 +85,7 @@ def _filtered(
     variances: Floats,
     first: NDArray[np.intp],
     headings: Floats,
+    gap: NDArray[np.bool_],
     doubt: float,
 ) -> tuple[PositionErrors, Floats]:
     count = relative.shape[0]
@@ -114,6 +118,11 @@ def _filtered(
         parts[0] += doubt * own
         parts[1] += own
         noise = variances[leg] * np.eye(2)
+        if gap[leg]:
+            state[:2] = finish[leg]
+            parts[:, :2, :], parts[:, :, :2] = 0.0, 0.0
+            parts[[[0], [2]], [0, 1], [0, 1]] = variances[leg]
+            continue
         unexpected = finish[leg] - state[:2]
         total = parts[0, :2, :2] + noise
         inverse = np.linalg.inv(total)

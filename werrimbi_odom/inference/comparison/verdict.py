@@ -18,7 +18,7 @@ from werrimbi_odom.inference.comparison.systematic import (
     NoiseFactor,
     Systematic,
 )
-from werrimbi_odom.inference.fitting.matching import QUARTER_TURN
+from werrimbi_odom.inference.legs.cutting import QUARTER_TURN
 
 FEWEST = 10
 """Legs, below which nothing is judged."""

@@ -5,7 +5,8 @@
 In each round all effects of the library and all cells of the evidence map are scored at once. Where
 a plain dependence on a measured variable explains far more than any effect can, the library does
 not hold what is missing, and no name is given. Otherwise the best few effects are fitted in full,
-and the best of them is taken if it earns its price and its promise holds on the runs held out.
+and the best of them is taken if it earns its price on the fitted drives, cross-validated. Drives
+that are held out have no part in any of it: they report.
 """
 
 from __future__ import annotations
@@ -13,11 +14,11 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 
-from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.diagnosis.candidates import Score
+from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.diagnosis.holdout import judge_of
+from werrimbi_odom.inference.diagnosis.holdout import begin
 from werrimbi_odom.inference.diagnosis.lasting import lasting, lasting_effect
 from werrimbi_odom.inference.diagnosis.search import (
     Instead,
@@ -31,32 +32,22 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import Support, support_of
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, chance, told
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
-from werrimbi_odom.inference.fitting.matching import match_finely, stated
 from werrimbi_odom.inference.fitting.together import Together, together
-from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, look_for_mistakes
+from werrimbi_odom.inference.legs.cutting import match_finely, stated
+from werrimbi_odom.inference.rules import (
+    CELLS_ASKED,
+    LAW_SHARE,
+    OWN_LAW_SHARE,
+    RIVAL,
+    ROUNDS,
+    SURE,
+    VERY_SURE,
+)
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
-__all__ = ["Diagnosis", "Ranked", "Verdict", "chance", "diagnose"]
-
-SURE = 1e-3
-"""An effect is believed when chance would show as much in fewer cases than this, all counted."""
-
-VERY_SURE = 1e-5
-"""The same for a dependence that no effect explains: there are hundreds of cells."""
-
-ASKED = 20
-"""Cells of the map, the most certain, of which it is asked whether they last."""
-
-FAR_MORE = 1.3
-"""How many times as much a plain dependence must explain as the best effect, to refute it."""
-
-FAR_MORE_OF_ITS_OWN = 2.0
-"""The same where the effect looks at that variable and acts there: its law may be a bit off."""
-
-ROUNDS = 4
-"""Effects that are looked for, one after the other."""
+__all__ = ["SURE", "VERY_SURE", "Diagnosis", "Ranked", "Verdict", "chance", "diagnose"]
 
 
 def diagnose(
@@ -91,11 +82,8 @@ def diagnose(
         When a run has no usable reference or no ticks, or its headings are in degrees.
     """
     show(0.0, "set-up")
-    set_up = look_for_mistakes([*runs, *holdout], robot, kind, limits)
-    for finding in set_up.findings:
-        if finding.effect == IN_DEGREES:
-            raise InputError(f"{runs[0].path}: {finding.words}")
-    judge = judge_of(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+    begun = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+    judge, set_up = begun.judge, begun.set_up
     laid = together(match_finely(judge.fitted_on, set_up.robot, leg, limits))
     sigma = (
         sigma_xy or stated(laid.runs, "sigma_xy"),
@@ -113,7 +101,7 @@ def diagnose(
         beyond = _beyond_the_library(this, best, laid, kind)
         if best is None or beyond is not None:
             break
-        if not judge.holds(fit.point.model, best.point.model):
+        if not holds_when_cross_validated(laid, fit, best):
             break
         fit = jumps_anew(laid, best, kind, set_up.robot, sigma)
     remaining = (
@@ -125,7 +113,7 @@ def diagnose(
     instead: tuple[Instead, ...] = ()
     if not fit.names and fit.calibrated and beyond is None:
         instead = instead_of_calibration(laid, fit, kind, effects, set_up.robot, sigma)
-    return told(set_up, robot, tuple(rounds), fit, beyond, remaining, judge, laid, kind, instead)
+    return told(begun, robot, tuple(rounds), fit, beyond, remaining, laid, kind, instead)
 
 
 def _best(this: Round, runs: Together, kind: ReferenceKind) -> Fitted | None:
@@ -145,7 +133,11 @@ def _best(this: Round, runs: Together, kind: ReferenceKind) -> Fitted | None:
 def _beyond_the_library(
     this: Round, best: Fitted | None, runs: Together, kind: ReferenceKind
 ) -> Dependence | None:
-    """A dependence that explains far more than the best effect does: no effect is what it is."""
+    """A dependence that explains more than a right law could leave to it: no effect is what it is.
+
+    It competes with the best effect as a model of its own, by the same fall of the cost and the
+    same penalty for each of its numbers.
+    """
     score = next(
         (
             score
@@ -157,19 +149,20 @@ def _beyond_the_library(
     certain = [cell for cell in this.dependences if cell.p_value < VERY_SURE]
     if score is not None and best is not None:
         support = _support(score, runs, this.before.point.model)
-        data = runs.data
-        explained = max(_fall(score.gain, data), this.before.cost - best.cost)
+        data, penalty = runs.data, this.before.price_of_one
+        fall = max(_fall(score.gain, data), this.before.cost - best.cost)
+        worth = fall - (best.price - this.before.price)
 
-        def far_more(cell: Dependence) -> bool:
+        def more_than_a_law_leaves(cell: Dependence) -> bool:
             own = cell.channel in support.outputs and bool(
                 support.inputs & set(cell.variable.looks_at)
             )
-            factor = FAR_MORE_OF_ITS_OWN if own else FAR_MORE
-            return _fall(cell.gain - 2 * cell.degrees, data) > factor * explained + 15.0
+            share = OWN_LAW_SHARE if own else LAW_SHARE
+            return share * (_fall(cell.gain, data) - penalty * cell.degrees) > worth + RIVAL
 
-        certain = [cell for cell in certain if far_more(cell)]
+        certain = [cell for cell in certain if more_than_a_law_leaves(cell)]
     knobs = (*CALIBRATION, *this.before.knobs)
-    found = lasting(runs, this.before.point, kind, knobs, certain[:ASKED])
+    found = lasting(runs, this.before.point, kind, knobs, certain[:CELLS_ASKED])
     return next((cell for cell, p_value in found if p_value < SURE), None)
 
 

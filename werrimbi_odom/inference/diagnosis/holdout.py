@@ -9,15 +9,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run, Ticks
 from werrimbi_odom.inference.comparison.judged_legs import Prepared, finely, judged_legs, prepare
 from werrimbi_odom.inference.comparison.legs import statistics
+from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise, recorded_otherwise
 from werrimbi_odom.inference.diagnosis.search import with_own_values
-from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model, knobs_of
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUp, look_for_mistakes
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
@@ -73,17 +75,6 @@ class Judge:
         """The model in the held-out runs: shared values as they are, the runs' own learnt."""
         return at_home(model, self.fine, self.kind)
 
-    def holds(self, before: Model, after: Model) -> bool:
-        """Whether the held-out runs are likelier with the one model than with the other.
-
-        Each with the noise that suits it: a wrong model's own is wide enough for any.
-        """
-        costs = []
-        for model in (before, after):
-            point = self.at_home(model)
-            costs.append(float(Costs(self.fine, point, self.kind)(point.variances)[0]))
-        return costs[1] < costs[0] + 2.0
-
 
 def known_at_home(model: Model, runs: Together, kind: ReferenceKind) -> Model:
     """A model in other runs, without what belongs to the references alone."""
@@ -118,6 +109,54 @@ def at_home(model: Model, runs: Together, kind: ReferenceKind) -> Point:
     return fit_model(runs, point, kind, knobs, find_jumps=False, rounds=1).point
 
 
+@dataclass(frozen=True)
+class Begun:
+    """What every judgement of drives begins with."""
+
+    judge: Judge
+    set_up: SetUp
+    """Found in the fitted drives alone."""
+    otherwise: tuple[RecordedOtherwise, ...]
+    """Drives that were recorded otherwise; left out wherever others remain."""
+
+
+def begin(
+    runs: Sequence[Run],
+    holdout: Sequence[Run],
+    robot: Robot,
+    kind: ReferenceKind,
+    leg: float,
+    limits: EncoderLimits | None,
+    sigma_xy: float | None,
+    sigma_yaw: float | None,
+) -> Begun:
+    """Split the drives, find the set-up of the fitted ones, and leave out what is not like them.
+
+    Raises
+    ------
+    InputError
+        When a run has no usable reference or no ticks, or its headings are in degrees.
+    """
+
+    def split(kept: Sequence[Run], held: Sequence[Run]) -> tuple[SetUp, Judge]:
+        set_up = look_for_mistakes(kept, robot, kind, limits)
+        for finding in set_up.findings:
+            if finding.effect == IN_DEGREES:
+                raise InputError(f"{kept[0].path}: {finding.words}")
+        return set_up, judge_of(kept, held, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+
+    fitted, held = (tuple(runs), tuple(holdout)) if holdout else set_aside(runs)
+    set_up, judge = split(fitted, held)
+    otherwise = recorded_otherwise(judge.train, judge.holdout, set_up.robot, kind, limits)
+    sides = []
+    for side, held_out in ((fitted, False), (held, True)):
+        odd = {each.run for each in otherwise if each.held_out == held_out}
+        sides.append(tuple(run for run in side if run.name not in odd) or side)
+    if (sides[0], sides[1]) != (fitted, held):
+        set_up, judge = split(*sides)
+    return Begun(judge, set_up, otherwise)
+
+
 def judge_of(
     runs: Sequence[Run],
     holdout: Sequence[Run],
@@ -128,13 +167,13 @@ def judge_of(
     sigma_xy: float | None,
     sigma_yaw: float | None,
 ) -> Judge:
-    """Put runs aside where none were given for it, and cut the legs."""
-    fitted_on, kept_back = (tuple(runs), tuple(holdout)) if holdout else set_aside(runs)
+    """Cut the legs of the runs that are fitted, and of those that judge."""
+    fitted_on, kept_back = tuple(runs), tuple(holdout)
     train, held = (
         prepare(some, robot, kind, leg=leg, limits=limits, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
         for some in (fitted_on, kept_back)
     )
-    return Judge(robot, kind, fitted_on, kept_back, train, held, finely(held, limits))
+    return Judge(robot, kind, fitted_on, kept_back, train, held, finely(held))
 
 
 def set_aside(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...]]:

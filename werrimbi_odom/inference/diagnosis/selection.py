@@ -30,11 +30,9 @@ from werrimbi_odom.inference.fitting.knobs import (
     shared_of,
 )
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import PENALTY_FLOOR, RIVAL
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-
-RIVAL = 10.0
-"""Difference of costs up to which two models cannot be told apart (a likelihood ratio of 150)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +73,8 @@ class Fitted:
 
 
 def price_of_one(runs: Together) -> float:
-    """What one free number must be worth: the logarithm of the number of data (BIC)."""
-    return max(6.0, math.log(max(runs.data, 2)))
+    """What one free number must be worth: the logarithm of the number of data (BIC), or more."""
+    return max(PENALTY_FLOOR, math.log(max(runs.data, 2)))
 
 
 def scatter_of(runs: Together, design: Design) -> float:

@@ -12,18 +12,18 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.holdout import Errors, Judge, Sides
+from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge, Sides
+from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
-from werrimbi_odom.inference.diagnosis.selection import RIVAL, Fitted
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.stability import rivals_in_halves
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import CALIBRATION_WORTH, RIVAL, SIMPLER
 from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding
 from werrimbi_odom.model.robot import Robot
 
 Verdict = Literal["none", "named", "ambiguous", "unknown"]
-
-SIMPLER = 3.0
-"""By how much an effect must cost less than the calibration that it would replace."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,8 +31,9 @@ class Ranked:
     """An effect and what it is worth."""
 
     effect: str
-    p_value: float
-    """Of as much by chance, corrected for the number of effects tried."""
+    p_value: float | None
+    """Of as much by chance, corrected for the number of effects tried; None where nothing was
+    tested: a set-up mistake is found by a search of all set-ups, and has no distribution."""
     train: Sides | None
     """Position error before and after adding it [m]; None where it was not worth a fit."""
     holdout: Sides | None
@@ -49,7 +50,11 @@ class Diagnosis:
     ranking: tuple[Ranked, ...]
     rivals: tuple[str, ...]
     """Effects that these runs cannot tell apart; the named one is among them."""
+    torn: tuple[str, ...]
+    """Those of the rivals that are so because halves of the data disagree."""
     set_up: SetUp
+    otherwise: tuple[RecordedOtherwise, ...]
+    """Drives that were recorded otherwise than the fitted ones; left out where others remain."""
     depends_on: tuple[Dependence, ...]
     """What the errors of the robot as given (its set-up put right) depend on."""
     remaining: tuple[Dependence, ...]
@@ -82,33 +87,40 @@ def chance(fit: Fitted, before: Fitted, tried: int) -> float:
 
 
 def told(
-    set_up: SetUp,
+    begun: Begun,
     given: Robot,
     rounds: tuple[Round, ...],
     final: Fitted,
     beyond: Dependence | None,
     remaining: tuple[Dependence, ...],
-    judge: Judge,
     laid: Together,
     kind: ReferenceKind,
     instead: tuple[Instead, ...],
 ) -> Diagnosis:
     """Everything put together."""
+    judge, set_up = begun.judge, begun.set_up
     mistakes = [finding.effect for finding in set_up.findings]
-    sizes = [name for name in final.calibrated if final.importance[name] > 2.0 * final.price_of_one]
+    sizes = [
+        name
+        for name in final.calibrated
+        if final.importance[name] > CALIBRATION_WORTH * final.price_of_one
+    ]
     effects = sorted([*final.names, *sizes], key=lambda name: -final.importance[name])
     found = tuple(dict.fromkeys([*mistakes, *effects]))
     rivals: tuple[str, ...] = ()
+    torn: tuple[str, ...] = ()
     if mistakes:
         twins = _possible_twins(set_up.findings[0])
         rivals = (mistakes[0], *twins) if twins else ()
     elif found:
         rivals = _rivals(found[0], rounds, final, instead)
+        torn = _torn(found[0], rounds, final, laid, kind)
+        rivals = tuple(dict.fromkeys((*(rivals or (found[0],)), *torn))) if torn else rivals
     verdict: Verdict
     if not found:
         verdict = "none" if beyond is None else "unknown"
     elif beyond is not None and not mistakes and len(rounds) == 1:
-        verdict, found, rivals = "unknown", (), ()
+        verdict, found, rivals, torn = "unknown", (), (), ()
     else:
         verdict = "ambiguous" if len(rivals) > 1 else "named"
     start = judge.of(Model(given, judge.nothing_of_own))
@@ -119,7 +131,9 @@ def told(
         found,
         tuple(_ranking(found, set_up, rounds, final, judge, start)),
         rivals,
+        torn,
         set_up,
+        begun.otherwise,
         rounds[0].dependences,
         remaining,
         given,
@@ -172,6 +186,20 @@ def _rivals(
     return ()
 
 
+def _torn(
+    first: str, rounds: tuple[Round, ...], final: Fitted, laid: Together, kind: ReferenceKind
+) -> tuple[str, ...]:
+    """Effects that halves of the data prefer to the one that was found.
+
+    Of several that were found none is asked: a half that shows more of the one prefers it rightly.
+    """
+    if final.names != (first,):
+        return ()
+    fits = [fit for fit in rounds[0].tried if not fit.at_bound]
+    best = next((fit for fit in fits if fit.names[-1] == first), None)
+    return () if best is None else rivals_in_halves(laid, rounds[0], best, kind)
+
+
 def _ranking(
     found: tuple[str, ...],
     set_up: SetUp,
@@ -184,7 +212,7 @@ def _ranking(
     ranked: dict[str, Ranked] = {}
     mended = judge.of(Model(set_up.robot, judge.nothing_of_own)) if set_up.findings else start
     for finding in set_up.findings:
-        ranked[finding.effect] = _worth(finding.effect, 0.0, start, mended)
+        ranked[finding.effect] = _worth(finding.effect, None, start, mended)
     before = mended
     for number, this in enumerate(rounds):
         if number > 0:
@@ -205,10 +233,14 @@ def _ranking(
         p_value = min(1.0, chi2_above(score.gain, score.degrees) * rounds[0].number)
         ranked.setdefault(score.candidate.name, Ranked(score.candidate.name, p_value, None, None))
     first = [ranked.pop(name) for name in found if name in ranked]
-    return [*first, *sorted(ranked.values(), key=lambda item: item.p_value)]
+    return [*first, *sorted(ranked.values(), key=_certainty)]
 
 
-def _worth(effect: str, p_value: float, before: Errors, after: Errors) -> Ranked:
+def _certainty(item: Ranked) -> float:
+    return 0.0 if item.p_value is None else item.p_value
+
+
+def _worth(effect: str, p_value: float | None, before: Errors, after: Errors) -> Ranked:
     return Ranked(
         effect,
         p_value,

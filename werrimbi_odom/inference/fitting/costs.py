@@ -10,9 +10,9 @@ from dataclasses import dataclass
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
-from werrimbi_odom.inference.fitting.matching import MatchedRun
 from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all
 from werrimbi_odom.inference.fitting.together import Together, laid_out
+from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.pose import Floats
 
 

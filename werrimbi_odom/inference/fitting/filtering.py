@@ -44,7 +44,7 @@ class Legs(NamedTuple):
     begins: NDArray[np.bool_]
     """Where the filter must start anew: first legs of runs, (m,)."""
     skip: NDArray[np.bool_]
-    """Legs on which the reference jumped, (m,)."""
+    """Legs on which the reference jumped, and gaps, (m,)."""
     heading: Floats
     """Heading at the start of a run where it was not measured, at the run's first leg, (m,)."""
 
@@ -118,8 +118,12 @@ def filtered(legs: Legs) -> Unexpected:
         gain = spread @ np.linalg.inv(total)
         values[:, leg], changes[leg] = new, change
         jumped = legs.skip[leg]
+        anew_slope = np.where(known[..., None], 0.0, slope)
+        # What was measured at the leg's end is all that is known of it; the rest (the heading,
+        # where positions alone are measured) is as well known as the wheels carried it there.
         anew_state = np.where(known, finish[leg], state)
         anew_spread = np.where(_both(known), legs.reading[:, None], 0.0)
+        anew_spread = np.where(_both(~known), spread, anew_spread)
         state = state + (gain @ new[..., None])[..., 0]
         spread = spread - gain @ spread
         spread = 0.5 * (spread + spread.swapaxes(-1, -2))
@@ -128,7 +132,7 @@ def filtered(legs: Legs) -> Unexpected:
             values[:, leg[jumped]], changes[leg[jumped]] = 0.0, 0.0
             state = np.where(jumped[:, None], anew_state, state)
             spread = np.where(jumped[:, None, None], anew_spread, spread)
-            slope = np.where((jumped[:, None] & known)[..., None], 0.0, slope)
+            slope = np.where(jumped[:, None, None], anew_slope, slope)
     back = turns.swapaxes(-1, -2)
     return Unexpected(
         (back @ values[..., None])[..., 0], back @ covariances @ turns, back[0] @ changes

@@ -28,10 +28,10 @@ from werrimbi_odom.inference.fitting.knobs import (
     shared_of,
 )
 from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.fitting.matching import MatchedRun
 from werrimbi_odom.inference.fitting.noise import held_variances, likeliest
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict, predict_all
 from werrimbi_odom.inference.fitting.together import Together, laid_out
+from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 

@@ -18,9 +18,9 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.filtering import UNMEASURED, Legs, filtered
-from werrimbi_odom.inference.fitting.matching import MatchedRun
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion
@@ -61,13 +61,16 @@ class Innovations:
     known: NDArray[np.bool_]
     """Which coordinates were measured and are to be counted, shape (m, 3)."""
 
-    def minus_two_log_likelihood(self) -> Floats:
-        """Of each set of variances, constants left out; shape (g,)."""
+    def cost_of_legs(self) -> Floats:
+        """Minus two log-likelihood of each leg, constants left out; (g, m), zero where unseen."""
         solved = np.linalg.solve(self.covariance, self.value[..., None])[..., 0]
         misfit = np.sum(self.value * solved, axis=-1)
         volume = np.linalg.slogdet(self.covariance)[1]
-        counted = self.known.any(axis=-1)
-        return np.asarray(np.sum((misfit + volume)[:, counted], axis=-1))
+        return np.where(self.known.any(axis=-1), misfit + volume, 0.0)
+
+    def minus_two_log_likelihood(self) -> Floats:
+        """Of each set of variances, constants left out; shape (g,)."""
+        return np.asarray(np.sum(self.cost_of_legs(), axis=-1))
 
     def whitened(self) -> tuple[Floats, Floats]:
         """Innovations of unit variance (m, 3) and their derivatives (m, 3, p), first set."""
@@ -97,13 +100,14 @@ def innovations(
         Derivatives of the legs' relative poses. In the result one more column follows: the
         derivative in the run's heading at its first reference pose, zero where that was measured.
     excluded : ndarray of bool, shape (m,), optional
-        Legs on which the reference jumped: not counted, and the pose starts anew after them.
+        Legs on which the reference jumped: like gaps they are not counted, and the pose starts anew
+        after them.
     start_yaws : sequence of float or None, optional
         For each run the heading at the first reference pose, where that was not measured [rad].
     """
     count = runs.count
     slopes = np.zeros((count, 3, 0)) if change is None else change
-    skip = np.zeros(count, dtype=np.bool_) if excluded is None else excluded
+    skip = runs.gap if excluded is None else runs.gap | excluded
     view = view_of(robot.effects)
     start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
     if kind == "incremental":

@@ -11,8 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.fitting.knobs import START_YAW, Model
-from werrimbi_odom.inference.fitting.matching import MatchedRun
 from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.covariance import (
     PoseCovariance,
     carried,

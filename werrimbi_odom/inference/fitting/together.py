@@ -8,14 +8,14 @@ costs what one long drive would, and not a round of numpy calls for each.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field, fields
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.fitting.matching import MatchedRun, delayed
+from werrimbi_odom.inference.legs.cutting import MatchedRun, delayed, joined
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.driving import features
 from werrimbi_odom.model.effect import wiring_of
@@ -23,6 +23,9 @@ from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.wiring import Wiring
+
+SIDES = ("left", "right")
+Found = TypeVar("Found")
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -38,7 +41,6 @@ class Together:
     """First step of each leg, shape (m,)."""
     end: NDArray[np.intp]
     """One past the last step of each leg, shape (m,)."""
-    run_of_step: NDArray[np.intp]
     run_of_leg: NDArray[np.intp]
     start: Floats
     """Measured pose at each leg's start, (m, 3); NaN where not measured."""
@@ -48,10 +50,13 @@ class Together:
     """Reference intervals in each leg, shape (m,)."""
     duration: Floats
     """Of each leg, shape (m,) [s]."""
-    inside: NDArray[np.intp]
-    """Steps that belong to a leg."""
+    gap: NDArray[np.bool_]
+    """Legs that are none, for they hold something that is left out; shape (m,)."""
+    finer: Together | None = None
+    """The same nodes in shorter legs, of which these are joined."""
     _features: dict[tuple[float, ...], Drive[Floats]] = field(default_factory=dict)
     _delayed: dict[float, Together] = field(default_factory=dict)
+    _known: dict[Hashable, Any] = field(default_factory=dict)
 
     @property
     def count(self) -> int:
@@ -60,8 +65,19 @@ class Together:
 
     @property
     def data(self) -> int:
-        """Number of measured coordinates at the legs' ends."""
-        return int(np.isfinite(self.finish).sum())
+        """Number of measured coordinates at the ends of legs that count."""
+        return int(np.isfinite(self.finish[~self.gap]).sum())
+
+    @property
+    def run_of_step(self) -> NDArray[np.intp]:
+        """Index of the run of each step, shape (n,)."""
+        return np.repeat(np.arange(len(self.runs)), np.diff(self.steps))
+
+    @property
+    def inside(self) -> NDArray[np.intp]:
+        """Steps that belong to a leg."""
+        runs = zip(self.runs, self.steps, strict=False)
+        return np.concatenate([np.arange(run.ends[0], run.ends[-1]) + first for run, first in runs])
 
     def per_leg(self, values: Floats) -> Floats:
         """Sums over the steps of each leg of values for all steps."""
@@ -73,16 +89,34 @@ class Together:
         if all(delay == run.delay for run in self.runs):
             return self
         known = self._delayed.get(delay)
-        if known is None:
+        if known is None and self.finer is not None:
+            finer = self.finer.delayed(delay)
+            runs = zip(finer.runs, self.runs, strict=True)
+            known = together([joined(fine, run.rows) for fine, run in runs], finer)
+        elif known is None:
             known = together([delayed(run, delay) for run in self.runs])
-            _remember(self._delayed, delay, known)
+        _remember(self._delayed, delay, known)
         return known
+
+    def known(self, key: Hashable, work: Callable[[Together], Found]) -> Found:
+        """What `work` makes of the runs, worked out once for a key."""
+        found: Found | None = self._known.get(key)
+        if found is None:
+            found = work(self)
+            _remember(self._known, key, found)
+        return found
+
+    def parts(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
+        """First leg of `finer` in each leg, and one past the last; shape (m,) each."""
+        assert self.finer is not None
+        runs = zip(self.finer.runs, self.runs, self.finer.legs, strict=False)
+        nodes = [np.searchsorted(fine.rows, run.rows) + first for fine, run, first in runs]
+        begin, end = ([part[which] for part in nodes] for which in (slice(-1), slice(1, None)))
+        return np.concatenate(begin), np.concatenate(end)
 
     def raw(self, robot: Robot) -> WheelTravel[Floats]:
         """Travel of all steps before any effect."""
-        left, right = (
-            np.concatenate([getattr(run, side) for run in self.runs]) for side in ("left", "right")
-        )
+        left, right = (_joined([getattr(run, side) for run in self.runs]) for side in SIDES)
         left, right = wiring_of(robot.effects).wheels(left, right)
         return WheelTravel(left * robot.left_tick, right * robot.right_tick)
 
@@ -97,8 +131,14 @@ class Together:
         return known
 
 
-def together(runs: Sequence[MatchedRun]) -> Together:
-    """Lay runs end to end."""
+def together(runs: Sequence[MatchedRun], finer: Together | None = None) -> Together:
+    """Lay runs end to end.
+
+    Parameters
+    ----------
+    finer : Together, optional
+        The runs of which these are `joined`.
+    """
     steps = _starts([run.time.size - 1 for run in runs])
     legs = _starts([run.legs for run in runs])
     poses = [np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1) for run in runs]
@@ -108,18 +148,14 @@ def together(runs: Sequence[MatchedRun]) -> Together:
         legs,
         np.concatenate([run.ends[:-1] + first for run, first in zip(runs, steps, strict=False)]),
         np.concatenate([run.ends[1:] + first for run, first in zip(runs, steps, strict=False)]),
-        np.repeat(np.arange(len(runs)), np.diff(steps)),
         np.repeat(np.arange(len(runs)), np.diff(legs)),
         np.concatenate([pose[:-1] for pose in poses]),
         np.concatenate([pose[1:] for pose in poses]),
         np.concatenate([run.intervals for run in runs]),
         np.concatenate([np.diff(run.time[run.ends]) for run in runs]),
-        np.concatenate(
-            [
-                np.arange(run.ends[0], run.ends[-1]) + first
-                for run, first in zip(runs, steps, strict=False)
-            ]
-        ),
+        np.concatenate([run.gap for run in runs]),
+        finer,
+        {} if finer is None else finer._features,  # they are of steps, which are the same
     )
 
 
@@ -149,6 +185,8 @@ def _remember(memory: dict[Any, Any], key: Any, value: Any) -> None:
 def _joined(parts: Sequence[Any]) -> Any:
     """Values of one kind, their arrays laid end to end."""
     first = parts[0]
+    if len(parts) == 1:
+        return first
     if isinstance(first, np.ndarray):
         return np.concatenate(parts)
     if isinstance(first, tuple):

@@ -12,8 +12,8 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import NUISANCES
-from werrimbi_odom.inference.fitting.matching import match
 from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.manoeuvres.drives import Ideal, Pace, ideal_run, rates_of
 from werrimbi_odom.inference.manoeuvres.rivals import Drives
 

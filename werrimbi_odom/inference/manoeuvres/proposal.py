@@ -19,7 +19,6 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.search import Round
-from werrimbi_odom.inference.diagnosis.selection import RIVAL
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, pace_of
 from werrimbi_odom.inference.manoeuvres.imagined import imagined
 from werrimbi_odom.inference.manoeuvres.rivals import (
@@ -34,6 +33,7 @@ from werrimbi_odom.inference.manoeuvres.rivals import (
     unlike,
 )
 from werrimbi_odom.inference.manoeuvres.unknown import Manoeuvre, for_the_unknown, strongest
+from werrimbi_odom.inference.rules import RIVAL
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

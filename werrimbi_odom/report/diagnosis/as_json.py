@@ -36,6 +36,7 @@ def json_of(
             for item in diagnosis.ranking
         ],
         "rivals": list(diagnosis.rivals),
+        "rivals_by_halves": list(diagnosis.torn),
         "depends_on": [_cell(cell) for cell in significant(diagnosis)],
         "next_manoeuvre": None if manoeuvre is None else asdict(manoeuvre),
         "found": [
@@ -50,6 +51,15 @@ def json_of(
                 "twins": list(finding.twins),
             }
             for finding in diagnosis.set_up.findings
+        ],
+        "recorded_otherwise": [
+            {
+                "run": each.run,
+                "held_out": each.held_out,
+                "effects": list(each.effects),
+                "words": [finding.words for finding in each.findings],
+            }
+            for each in diagnosis.otherwise
         ],
         "train": _sides(diagnosis.train),
         "holdout": _sides(diagnosis.holdout),

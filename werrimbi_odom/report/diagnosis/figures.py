@@ -20,7 +20,7 @@ from werrimbi_odom.report.diagnosis.before_after_figure import before_after, bef
 from werrimbi_odom.report.diagnosis.dependence_figure import dependence_figure
 from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure, ordered_cells
 from werrimbi_odom.report.diagnosis.manoeuvre_figure import ideal_of, manoeuvre_figure
-from werrimbi_odom.report.numbers import length
+from werrimbi_odom.report.numbers import length, p_words
 from werrimbi_odom.report.sketches.library import effect_sketch
 from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, escaped, paled, plain
 
@@ -80,7 +80,7 @@ def ranking_figure(diagnosis: Diagnosis) -> go.Figure:
             cliponaxis=False,
             customdata=[item.effect for item in ranked],
             hovertext=[
-                f"{item.effect}, {word}: {_text(each)}<br>p = {item.p_value:.1e}"
+                f"{item.effect}, {word}: {_text(each)}<br>p = {p_words(item.p_value)}"
                 for item, each in zip(ranked, sides, strict=True)
             ],
             hovertemplate="%{hovertext}<extra></extra>",

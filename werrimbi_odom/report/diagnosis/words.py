@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, chance
 from werrimbi_odom.inference.diagnosis.named import effect_named
+from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.diagnosis.as_json import significant
@@ -49,7 +50,7 @@ def words_of(told: Told, steps: NextSteps) -> str:
         "ambiguous": _ambiguous,
         "unknown": _unknown,
     }[diagnosis.verdict]
-    paragraphs = tell(told, steps)
+    paragraphs = [*tell(told, steps), *_otherwise(diagnosis)]
     return "\n".join(_filled(text) for text in paragraphs if text)
 
 
@@ -126,6 +127,11 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
         if rivals[0] in mistakes(diagnosis)
         else f"Something is missing, but these drives cannot tell which: {which}."
     )
+    if diagnosis.torn:
+        lines.append(
+            f"All drives together speak for {rivals[0]}; halves of them, taken by themselves, for "
+            f"{listed(diagnosis.torn, 'or')}. A verdict that half of the data would change is none."
+        )
     others = [effect_named(diagnosis, name) for name in rivals[1:]]
     twins = [each.name for each in others if each and first and always_twins(first, each)]
     if twins:
@@ -198,6 +204,25 @@ def _set_up(diagnosis: Diagnosis) -> list[str]:
     lines = ["Something is set up wrongly:"]
     for finding in findings:
         lines.append(f"- {_sentence(finding.words)[:-1]}: {finding.effect}.")
+    return lines
+
+
+def _otherwise(diagnosis: Diagnosis) -> list[str]:
+    """Drives that were recorded otherwise than the fitted ones, by what differs."""
+    alike: dict[tuple[str, ...], list[RecordedOtherwise]] = {}
+    for each in diagnosis.otherwise:
+        alike.setdefault(each.effects, []).append(each)
+    lines = []
+    for drives in alike.values():
+        names = listed([each.run for each in drives])
+        what = "; ".join(finding.words for finding in drives[0].findings)
+        one = len(drives) == 1
+        lines.append(
+            f"But: {'drive' if one else 'drives'} {names} {'was' if one else 'were'} recorded "
+            f"otherwise than the drives that the diagnosis is of: {what}. "
+            f"{'It has' if one else 'They have'} no part in what is said here, but for the figures "
+            "of held-out drives where there are no others."
+        )
     return lines
 
 

@@ -179,7 +179,7 @@ def _following(tab: Tab, found: Diagnosed) -> None:
 
 
 def _by_chance(item: Ranked) -> str:
-    if item.p_value > SURE:
+    if item.p_value is not None and item.p_value > SURE:
         return "not seen in these drives"
     return chance_words(item.p_value)
 

@@ -1,0 +1,145 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a user's effect raises or gives: one line with its place and exit 2, in a fleet a row."""
+
+from __future__ import annotations
+
+import builtins
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.cli.main import main
+from werrimbi_odom.effects import LIBRARY, all_effects
+from werrimbi_odom.files.asked import Asked, How
+from werrimbi_odom.fleet.one import Task, row_of
+
+RECORDING = Path(__file__).parents[2] / "werrimbi_odom" / "recordings" / "square"
+EFFECT = '''
+import sys
+import numpy as np
+from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.motion import WheelTravel
+
+class Dumb(BaseException):
+    def __str__(self):
+        raise RuntimeError("not even that")
+
+@wheel_effect(size=Parameter("", 0.0, 0.1, (-1.0, 1.0), "how much"))
+def of_my_own(travel, drive, size):
+    """Something that goes wrong."""
+    {law}
+'''
+RAISED = sorted(
+    {
+        kind.__name__
+        for kind in vars(builtins).values()
+        if isinstance(kind, type)
+        and issubclass(kind, BaseException)
+        and kind.__module__ == "builtins"
+    }
+    - {"KeyboardInterrupt", "MemoryError"}
+)
+MADE = {
+    "UnicodeDecodeError": "'utf-8', b'', 0, 1, ''",
+    "UnicodeEncodeError": "'utf-8', '', 0, 1, ''",
+}
+MADE |= {"UnicodeTranslateError": "'', 0, 1, ''", "BaseExceptionGroup": "'', [GeneratorExit()]"}
+MADE |= {"ExceptionGroup": "'', [ValueError()]"}
+RESULTS = {
+    "None": "gives a NoneType",
+    "(travel.left, travel.right)": "gives a tuple",
+    "WheelTravel(None, travel.right)": "its left is a NoneType",
+    "WheelTravel(travel.left, 'far')": "its right is a str",
+    "WheelTravel(np.zeros(3), travel.right)": "its left has the shape (3,)",
+    "WheelTravel(travel.left.astype(object), travel.right)": "its left holds object",
+}
+
+
+def place(folder: Path, law: str) -> Path:
+    (folder / "mine.py").write_text(EFFECT.format(law=law))
+    text = (RECORDING / "robot.yaml").read_text().rstrip()
+    text += "\n    effects: [of_my_own]\n    of_my_own:\n      size: 0.01\n"
+    (folder / "robot.yaml").write_text(text)
+    return folder
+
+
+def words(folder: Path, verb: str, *more: str) -> list[str]:
+    given = ["--robot", str(folder / "robot.yaml"), str(RECORDING)]
+    return [*verb.split(), *given, "--effects", str(folder / "mine.py"), *more]
+
+
+@pytest.mark.parametrize("name", RAISED)
+def test_any_exception_of_a_law_is_one_line(
+    tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    law = f"raise {name}({MADE.get(name, '')})"
+    folder = place(tmp_path, law)
+    out = tmp_path / "odom.csv"
+    assert main(words(folder, "odom", "--out", str(out))) == 2
+    said = capsys.readouterr()
+    assert said.err.count("\n") == 1
+    line = EFFECT.format(law=law).splitlines().index(f"    {law}") + 1
+    assert f"mine.py:{line}: the law of of_my_own(size=0.01) fails: {name}" in said.err
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("result", RESULTS)
+def test_any_result_that_is_none_is_one_line(
+    tmp_path: Path, result: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = place(tmp_path, f"return {result}")
+    assert main(words(folder, "compare")) == 2
+    said = capsys.readouterr()
+    assert said.err.count("\n") == 1
+    assert RESULTS[result] in said.err
+
+
+@pytest.mark.parametrize("law", ["raise Dumb", "sys.exit(0)", "return 1.0 / 0.0", "return nowhere"])
+@pytest.mark.parametrize("verb", ["diagnose", "add track_width", "draft", "calibrate fit"])
+def test_no_verb_ends_as_if_all_were_well(
+    tmp_path: Path, verb: str, law: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = place(tmp_path, law)
+    more = [] if verb == "diagnose" else ["--out", str(tmp_path / "new")]
+    assert main(words(folder, verb, *more)) == 2
+    said = capsys.readouterr()
+    assert said.err.count("\n") == 1
+    assert "the law of of_my_own" in said.err
+    assert not (tmp_path / "new").exists()
+
+
+@pytest.mark.parametrize("law", ["raise Dumb", "sys.exit(0)", "raise KeyboardInterrupt"])
+def test_in_a_fleet_it_is_a_row(tmp_path: Path, law: str) -> None:
+    folder = place(tmp_path, law)
+    how = How(effects=(folder / "mine.py",))
+    row = row_of(Task("robot_1", Asked(folder / "robot.yaml", (RECORDING,), (), how)))
+    assert row.verdict == "error"
+    assert "of_my_own" in row.error or "KeyboardInterrupt" in row.error
+
+
+@pytest.mark.parametrize("name", ["SystemExit", "Dumb", "GeneratorExit"])
+def test_a_file_that_raises_as_it_is_read_is_one_line(
+    tmp_path: Path, name: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder = place(tmp_path, "return travel")
+    text = (folder / "mine.py").read_text()
+    (folder / "mine.py").write_text(f"{text}\n\nraise {name}\n")
+    assert main(words(folder, "diagnose")) == 2
+    said = capsys.readouterr()
+    assert said.err.count("\n") == 1
+    assert f"mine.py:{text.count(chr(10)) + 3}: {name}" in said.err
+
+
+def test_a_guarded_law_is_the_law(tmp_path: Path) -> None:
+    file = place(tmp_path, "return WheelTravel(travel.left * (1.0 + size), travel.right)")
+    one, other = (all_effects([file / "mine.py"]).find("of_my_own") for _ in range(2))
+    assert one.parameters.keys() == {"size"}
+    from werrimbi_odom.model.motion import WheelTravel
+
+    for steps in (np.ones(3), 1.0):
+        after = one.apply(WheelTravel(steps, steps), None, size=0.5)
+        assert np.all(after.left == 1.5)
+        assert np.all(other.apply(WheelTravel(steps, steps), None, size=0.5).left == after.left)
+    assert all(item is known for item, known in zip(all_effects().effects, LIBRARY, strict=False))

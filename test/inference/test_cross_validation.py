@@ -1,0 +1,91 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A model is chosen by legs that its fit has not seen, of the fitted drives alone."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from test.inference.driven import runs_of
+from werrimbi_odom.effects import find
+from werrimbi_odom.inference.diagnosis.cross_validation import (
+    FOLDS,
+    cross_validated_cost,
+    fold_of_leg,
+    holds_when_cross_validated,
+)
+from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.model.robot import Robot
+
+GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
+
+
+def laid_out(truth: Robot, seeds: range) -> Together:
+    return together(match_finely(runs_of(truth, seeds, seconds=60), GIVEN, 1.0))
+
+
+def with_effect(runs: Together, name: str) -> tuple[Fitted, Fitted]:
+    before = first_fit(runs, GIVEN, "absolute")
+    (after,) = search_round(runs, before, "absolute", [find(name)], GIVEN).tried
+    return before, after
+
+
+def test_every_fold_holds_some_of_every_drive() -> None:
+    runs = laid_out(GIVEN, range(1, 4))
+    fold = fold_of_leg(runs)
+    for run in range(3):
+        assert set(fold[runs.run_of_leg == run].tolist()) == set(range(FOLDS))
+
+
+def test_an_effect_that_is_there_holds() -> None:
+    truth = replace(GIVEN, effects=(find("lateral_slip").using(creep=0.01),))
+    before, after = with_effect(laid_out(truth, range(1, 4)), "lateral_slip")
+    runs = laid_out(truth, range(1, 4))
+    assert holds_when_cross_validated(runs, before, after)
+    fall = before.cost - after.cost
+    promised = cross_validated_cost(runs, before) - cross_validated_cost(runs, after)
+    assert promised == pytest.approx(fall, rel=0.1)
+
+
+def test_leaving_a_fold_out_is_what_refitting_without_it_gives() -> None:
+    """The linear short cut against least squares done anew for every fold."""
+    runs = laid_out(GIVEN, range(1, 3))
+    fit = first_fit(runs, GIVEN, "absolute")
+    white, slopes = fit.design.flat()
+    rows = np.repeat(fold_of_leg(runs), 3)
+    brute = fit.cost
+    for fold in range(FOLDS):
+        here = rows == fold
+        step = np.linalg.pinv(slopes[~here]) @ -white[~here]
+        left = white[here] + slopes[here] @ step
+        brute += left @ left - white[here] @ white[here]
+    assert cross_validated_cost(runs, fit) == pytest.approx(brute, abs=1e-6)
+
+
+def test_a_useless_number_costs_about_as_much_as_chance_gave_it() -> None:
+    """Fitted to the noise it gains 1 on the average; on legs left out it must lose as much."""
+    runs = laid_out(GIVEN, range(1, 3))
+    fit = first_fit(runs, GIVEN, "absolute")
+    white, slopes = fit.design.flat()
+    alone = cross_validated_cost(runs, fit)
+    random = np.random.default_rng(5)
+    losses = []
+    for _ in range(60):
+        column = random.normal(size=white.size) * (white != 0.0)
+        wide = np.column_stack([slopes, column])
+        step = np.linalg.lstsq(wide, -white, rcond=None)[0]
+        left = white + wide @ step
+        design = replace(
+            fit.design,
+            white=left.reshape(fit.design.white.shape),
+            slopes=wide.reshape(*fit.design.white.shape, -1),
+        )
+        more = replace(fit, design=design, cost=fit.cost + float(left @ left - white @ white))
+        losses.append(cross_validated_cost(runs, more) - alone)
+    assert 0.3 < np.mean(losses) < 3.0

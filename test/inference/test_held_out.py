@@ -1,0 +1,101 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Held out is held out: what judges a model has no part in finding it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import pytest
+
+from test.inference.driven import runs_of
+from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.adding.adding import add_effect
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.model.robot import Robot
+
+GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
+KICKING = replace(GIVEN, effects=(find("castor_kick").using(angle=0.02, length=0.05),))
+
+Spoilt = Callable[[Run], Run]
+
+
+def late(run: Run) -> Run:
+    """The reference's clock a second off."""
+    assert run.reference is not None
+    return replace(run, reference=replace(run.reference, time=run.reference.time + 1.0))
+
+
+def swapped(run: Run) -> Run:
+    """Left and right counter exchanged."""
+    return replace(run, ticks=replace(run.ticks, left=run.ticks.right, right=run.ticks.left))
+
+
+@pytest.fixture(scope="module")
+def runs() -> list[Run]:
+    return runs_of(KICKING, range(1, 7), seconds=60)
+
+
+def diagnosed(fitted: Sequence[Run], held: Sequence[Run]) -> Diagnosis:
+    return diagnose(fitted, GIVEN, LIBRARY, holdout=held)
+
+
+@pytest.fixture(scope="module")
+def plain(runs: list[Run]) -> Diagnosis:
+    return diagnosed(runs[:3], runs[3:])
+
+
+@pytest.mark.parametrize("spoil", [late, swapped])
+def test_held_out_drives_recorded_otherwise_change_nothing_that_is_found(
+    runs: list[Run], plain: Diagnosis, spoil: Spoilt
+) -> None:
+    """Nothing but the fitted drives decides; that the others were recorded otherwise is told."""
+    found = diagnosed(runs[:3], [spoil(run) for run in runs[3:]])
+    assert found.verdict == plain.verdict == "named"
+    assert found.effect == plain.effect == "castor_kick"
+    assert found.train == plain.train
+    assert found.robot == plain.robot
+    wanted = {"late": "reference_delay", "swapped": "wheels_swapped"}[spoil.__name__]
+    odd = {each.run: each.effects for each in found.otherwise}
+    assert odd == {run.name: (wanted,) for run in runs[3:]}
+    assert plain.otherwise == ()
+
+
+def test_one_fitted_drive_outvotes_ten_that_are_held_out(runs: list[Run]) -> None:
+    found = diagnosed(runs[:1], [swapped(run) for run in runs[1:]])
+    assert "wheels_swapped" not in found.found
+    assert found.train.after <= found.train.before
+
+
+def test_a_fitted_drive_recorded_otherwise_is_told_and_left_out(runs: list[Run]) -> None:
+    """Drive 2 of five was recorded with its plugs exchanged: said, and the others decide."""
+    spoilt = [runs[0], swapped(runs[1]), *runs[2:5]]
+    found = diagnosed(spoilt, runs[5:])
+    assert [(each.run, each.effects) for each in found.otherwise] == [
+        (runs[1].name, ("wheels_swapped",))
+    ]
+    assert found.verdict == "named"
+    assert found.effect == "castor_kick"
+
+
+def test_set_up_is_looked_for_in_the_fitted_drives_alone_when_adding(runs: list[Run]) -> None:
+    held = [swapped(run) for run in runs[3:]]
+    found = add_effect(find("castor_kick"), runs[:3], GIVEN, holdout=held)
+    assert found.set_up.findings == ()
+    assert found.train.sides.after < found.train.sides.before
+
+
+def test_nothing_of_the_held_out_drives_moves_a_fit(runs: list[Run]) -> None:
+    """The written robot is the same to the last digit whatever was held out."""
+    effect = find("castor_kick")
+    one = add_effect(effect, runs[:3], GIVEN, holdout=runs[3:4])
+    other = add_effect(effect, runs[:3], GIVEN, holdout=[swapped(run) for run in runs[4:]])
+    assert one.robot == other.robot
+
+
+def test_what_was_never_tested_has_no_probability(runs: list[Run]) -> None:
+    found = diagnosed([swapped(run) for run in runs[:3]], [swapped(run) for run in runs[3:]])
+    (ranked,) = [item for item in found.ranking if item.effect == "wheels_swapped"]
+    assert ranked.p_value is None

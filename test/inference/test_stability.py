@@ -1,0 +1,74 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A name that half of the data would change is no certainty."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from test.inference.driven import runs_of
+from werrimbi_odom.effects import find
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
+from werrimbi_odom.inference.diagnosis.stability import halves, rivals_in_halves
+from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.model.robot import Robot
+
+GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
+
+
+def having(name: str, **values: float) -> Robot:
+    return replace(GIVEN, effects=(find(name).using(**values),))
+
+
+LIBRARY = tuple(find(name) for name in ("lateral_slip", "turn_dependent_track", "sideways_drift"))
+
+
+def test_halves_are_halves_of_every_drive() -> None:
+    runs = together(match_finely(runs_of(GIVEN, range(1, 4), seconds=60), GIVEN, 1.0))
+    masks = list(halves(runs))
+    assert len(masks) == 4
+    for mask in masks:
+        for run in range(3):
+            assert abs(np.mean(mask[runs.run_of_leg == run]) - 0.5) < 0.06
+    for one, other in zip(masks[::2], masks[1::2], strict=True):
+        assert np.array_equal(one, ~other)
+
+
+def test_one_effect_in_all_drives_is_named() -> None:
+    truth = having("lateral_slip", creep=0.01)
+    found = diagnose(runs_of(truth, range(1, 5), seconds=60), GIVEN, LIBRARY)
+    assert (found.verdict, found.effect, found.torn) == ("named", "lateral_slip", ())
+
+
+def test_an_effect_that_another_beats_in_half_of_the_data_is_not_certain() -> None:
+    """In the first half of every drive the robot slips, in the second it crabs, less in all."""
+    slipping = runs_of(having("lateral_slip", creep=0.012), range(1, 5), seconds=120)
+    crabbing = runs_of(having("sideways_drift", angle=0.008), range(1, 5), seconds=120)
+    mixed = []
+    for one, other in zip(slipping, crabbing, strict=True):
+        assert one.reference is not None
+        assert other.reference is not None
+        middle = one.ticks.time[one.ticks.time.size // 2]
+        before, after = one.reference, other.reference
+        at = int(np.searchsorted(before.time, middle))
+        turn = before.yaw[at] - after.yaw[at]
+        moved = (after.x - after.x[at] + 1j * (after.y - after.y[at])) * np.exp(1j * turn)
+        x, y = moved.real + before.x[at], moved.imag + before.y[at]
+        joined = [
+            np.concatenate([first[:at], second[at:]])
+            for first, second in ((before.x, x), (before.y, y), (before.yaw, after.yaw + turn))
+        ]
+        mixed.append(
+            replace(one, reference=replace(before, x=joined[0], y=joined[1], yaw=joined[2]))
+        )
+    runs = together(match_finely(mixed, GIVEN, 1.0))
+    before = first_fit(runs, GIVEN, "absolute")
+    this = search_round(runs, before, "absolute", (LIBRARY[0], LIBRARY[2]), GIVEN)
+    best = this.tried[0]
+    others = {"lateral_slip", "sideways_drift"} - {best.names[-1]}
+    assert set(rivals_in_halves(runs, this, best, "absolute")) == others
+    assert diagnose(mixed, GIVEN, (LIBRARY[0], LIBRARY[2])).verdict != "named"

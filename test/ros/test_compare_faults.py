@@ -1,0 +1,181 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""compare_node is OK only while it compares, and no message of anybody's ends it."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+pytest.importorskip("rclpy")
+
+from diagnostic_msgs.msg import DiagnosticStatus
+from geometry_msgs.msg import PoseStamped, PoseWithCovarianceStamped
+from nav_msgs.msg import Odometry
+from rclpy.qos import QoSProfile
+from rclpy.time import Time
+
+from test.ros.test_compare_node import compare, pose_stamped, robot_file  # noqa: F401  (a fixture)
+
+NUMBER = st.floats() | st.sampled_from(
+    [0.0, 1.0, 1e308, 1.6e308, -1e308, 5e-324, math.nan, math.inf, -1.0]
+)
+SECONDS = st.integers(-(2**31), 2**31 - 1) | st.integers(100, 110)
+NANOSECONDS = st.integers(0, 10**9 - 1) | st.integers(0, 2**32 - 1)
+
+
+def test_a_clock_that_is_set_while_it_compares_is_told(launch: Any, compare: Any) -> None:  # noqa: F811
+    node = launch(robot_file()).begin()
+    comparing = compare(node)
+
+    def both(seconds: float, ahead: float) -> None:
+        node.publisher(PoseStamped, "reference")
+        for _ in range(round(seconds / 0.05)):
+            node.step(10, 10)
+            node.send(PoseStamped, "reference", pose_stamped(node.now - 1000.0 + ahead, 0, 0, 0))
+            node.rest(0.05)
+
+    both(2.0, 0.0)
+    before = {item.key: item.value for item in comparing.verdict().values}
+    assert int(before["compared"]) > 10
+    assert comparing.said[-1].level == DiagnosticStatus.OK
+    both(4.5, 1000.0)
+    status = comparing.said[-1]
+    assert status.level == DiagnosticStatus.WARN
+    assert status.message.startswith("no stamp of the reference falls between two of the odometry")
+    assert "+1000." in status.message
+    assert {item.key: item.value for item in status.values}["waiting"] != "0"
+    comparing.stop()
+
+
+def odometry(second: int, variance: float) -> Odometry:
+    message = Odometry()
+    message.header.stamp = Time(seconds=second, nanoseconds=0).to_msg()
+    message.pose.pose.position.x = 0.5 * second
+    message.twist.twist.linear.x = 0.5
+    message.pose.pose.orientation.w = 1.0
+    for place in (0, 7, 35):
+        message.pose.covariance[place] = variance
+    return message
+
+
+def stated(second: int) -> PoseWithCovarianceStamped:
+    message = PoseWithCovarianceStamped()
+    message.header.stamp = Time(seconds=second, nanoseconds=0).to_msg()
+    message.pose.pose.orientation.w = 1.0
+    return message
+
+
+class Talk:
+    """Publishers in the place of an odometry and a reference."""
+
+    def __init__(self, launched: Any) -> None:
+        self.launched = launched
+        deep = QoSProfile(depth=10_000)
+        node = launched.node
+        self.wheels = node.create_publisher(Odometry, "wheels", deep)
+        self.laser = node.create_publisher(PoseWithCovarianceStamped, "laser", deep)
+        launched.until(
+            lambda: self.wheels.get_subscription_count() and self.laser.get_subscription_count(),
+            "compare_node",
+        )
+        launched.rest(0.3)
+        self.sent = {"odom": 0, "reference": 0}
+
+    def send(self, message: Any) -> None:
+        of_wheels = isinstance(message, Odometry)
+        self.sent["odom" if of_wheels else "reference"] += 1
+        (self.wheels if of_wheels else self.laser).publish(message)
+
+
+@pytest.fixture
+def talk(launch: Any, compare: Any, robot: dict[str, Any]) -> Any:  # noqa: F811
+    comparing = compare(
+        launch(robot),
+        *("-r", "odom:=wheels", "-r", "reference:=laser"),
+        reference_type="pose_with_covariance_stamped",
+        leg=0.1,
+        qos_overrides={
+            f"/{topic}": {"subscription": {"reliability": "reliable", "depth": 10_000}}
+            for topic in ("wheels", "laser")
+        },
+    )
+    return comparing, Talk(comparing.launched)
+
+
+def counts(comparing: Any) -> dict[str, int]:
+    pairs = ((item.key, item.value) for item in comparing.verdict().values)
+    return {key: int(value) for key, value in pairs if value.isdigit()}
+
+
+def test_a_covariance_that_stands_for_unknown_is_refused(talk: Any) -> None:
+    comparing, out = talk
+    for second in range(100, 130):
+        out.send(odometry(second, 1.6e308))
+        out.send(stated(second))
+        comparing.launched.rest(0.1)
+    status = comparing.said[-1]
+    assert status.level == DiagnosticStatus.ERROR
+    assert status.message.startswith("nothing to compare: odom refused: covariance out of range (")
+    for second in range(130, 140):
+        out.send(odometry(second, 1e-4 * second))
+        out.send(stated(second))
+    comparing.verdict()
+    assert counts(comparing)["compared"] >= 9
+    comparing.stop()
+
+
+@st.composite
+def messages(draw: Any) -> Any:
+    kind = draw(st.sampled_from([Odometry, PoseWithCovarianceStamped]))
+    message = kind()
+    message.header.stamp.sec, message.header.stamp.nanosec = draw(SECONDS), draw(NANOSECONDS)
+    place, turn = message.pose.pose.position, message.pose.pose.orientation
+    place.x, place.y = draw(NUMBER), draw(NUMBER)
+    turn.z, turn.w = draw(st.sampled_from([(0.0, 1.0), (0.6, 0.8)]) | st.tuples(NUMBER, NUMBER))
+    if kind is Odometry:
+        message.twist.twist.linear.x, message.twist.twist.angular.z = draw(NUMBER), draw(NUMBER)
+    variances = draw(st.sampled_from([0.0, 1e-4, 1e24, 1.6e308]) | NUMBER)
+    for at in (0, 7, 35):
+        message.pose.covariance[at] = variances
+    for at in draw(st.sets(st.integers(0, 35), max_size=3)):
+        message.pose.covariance[at] = draw(NUMBER)
+    return message
+
+
+def test_no_message_ends_it_and_each_is_in_one_count(talk: Any) -> None:
+    comparing, out = talk
+
+    @settings(
+        max_examples=25,
+        deadline=None,
+        suppress_health_check=[HealthCheck.too_slow, HealthCheck.large_base_example],
+    )
+    @given(st.lists(messages(), min_size=10, max_size=40))
+    def lives(made_up: list[Any]) -> None:
+        for message in made_up:
+            out.send(message)
+        comparing.launched.rest(0.02)
+        assert comparing.process.poll() is None, comparing.process.stderr.read()
+
+    lives()
+    comparing.launched.rest(0.5)
+    comparing.verdict()
+    told = counts(comparing)
+    refused = {
+        topic: sum(n for key, n in told.items() if key.startswith(f"{topic} refused: "))
+        for topic in ("odom", "reference")
+    }
+    ends = ("compared", "without odometry", "old references", "waiting")
+    assert refused["reference"] + sum(told.get(end, 0) for end in ends) == out.sent["reference"]
+    assert (
+        refused["odom"] + told["odometry taken"] + told.get("old odometry", 0) == out.sent["odom"]
+    )
+    for error in comparing.errors:
+        parts = error.vector.x, error.vector.y, error.vector.z
+        assert all(map(math.isfinite, parts)), error
+    comparing.stop()

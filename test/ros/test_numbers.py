@@ -1,0 +1,70 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A number of a robot file is the same number to ROS's own reader and to the command line's."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, example, given, settings
+from hypothesis import strategies as st
+
+pytest.importorskip("rclpy")
+
+import rclpy
+from rclpy.context import Context
+from rclpy.parameter import Parameter
+
+from test.ros.conftest import free_domain
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.robot_file import read_robot_file
+
+NUMBERS = st.one_of(
+    st.floats(1e-3, 1e3).map(repr),
+    st.integers(1, 1000).map(str),
+    st.builds(
+        "{}{}{}".format,
+        st.sampled_from(["", "+", "0", "0x", "0o", "0b"]),
+        st.text("0123456789_.", min_size=1, max_size=5),
+        st.sampled_from(["", "e1", "E1", "_"]),
+    ),
+)
+START = """\
+odom_node:
+  ros__parameters:
+    wheel_separation: 0.35
+    wheel_radius: 0.05
+    left_ticks_per_revolution: 2000.0
+    right_ticks_per_revolution: """
+
+
+@settings(max_examples=100, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(NUMBERS)
+@example("0100")
+@example("0x1F")
+@example("1e3")
+def test_a_number_is_the_same_to_both(tmp_path: Path, number: str) -> None:
+    file = tmp_path / "robot.yaml"
+    file.write_text(f"{START}{number}\n")
+    try:
+        to_command_line = read_robot_file(file).values["right_ticks_per_revolution"]
+    except InputError:
+        return
+    assert to_ros(file) == to_command_line
+
+
+def to_ros(file: Path) -> object:
+    """What ROS's reader hands to a node."""
+    domain, lock = free_domain()
+    context = Context()
+    rclpy.init(args=["--ros-args", "--params-file", str(file)], context=context, domain_id=domain)
+    try:
+        node = rclpy.create_node("odom_node", context=context)
+        with node.handle:
+            given = node.handle.get_parameters(Parameter)
+        node.destroy_node()
+    finally:
+        rclpy.shutdown(context=context)
+        lock.close()
+    return given["right_ticks_per_revolution"].value

@@ -1,0 +1,65 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a model would cost on legs that its fit has not seen: cross-validation over parts of drives.
+
+Whether an effect is taken is decided on the drives that are fitted, and on nothing else: those held
+out report, and do not choose. Every drive is cut into parts, and these are dealt to the folds in
+turn, so that each fold holds some of every drive and the motion that shows an effect is in all of
+them. Near a fit the model is a line, so leaving a fold out needs linear algebra alone and no fit.
+
+Source: Stone, "Cross-validatory choice and assessment of statistical predictions", J. R. Stat. Soc.
+B 36 (1974).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import FOLD_PARTS, FOLDS
+
+_RANK = 1e-6
+
+
+def cross_validated_cost(runs: Together, fit: Fitted) -> float:
+    """Minus two log-likelihood of a fitted model on legs left out of its fit, one fold at a time.
+
+    What the other folds cannot determine at all (the phase of a run that lies in one fold) is
+    fitted to the fold itself, and each such number costs 2 (Akaike): one that the fit took from
+    the noise, one that it would take from new noise.
+    """
+    white, slopes = fit.design.flat()
+    rows = np.repeat(fold_of_leg(runs), 3)
+    size = np.sqrt(np.sum(slopes**2, axis=0))
+    scaled = slopes[:, size > 0.0] / size[size > 0.0]
+    change = 0.0
+    for fold in range(FOLDS):
+        here = rows == fold
+        if not here.any():
+            continue
+        learnt, seen = scaled[~here], scaled[here]
+        told = np.sqrt(np.sum(learnt**2, axis=0)) > _RANK
+        step = np.linalg.lstsq(learnt[:, told], -white[~here], rcond=_RANK)[0]
+        left = white[here] + seen[:, told] @ step
+        own = seen[:, ~told]
+        if own.shape[1]:
+            taken = np.linalg.lstsq(own, -left, rcond=_RANK)
+            left = left + own @ taken[0]
+            change += 2.0 * float(taken[2])
+        change += float(left @ left - white[here] @ white[here])
+    return fit.cost + change
+
+
+def fold_of_leg(runs: Together) -> NDArray[np.intp]:
+    """The fold of each leg, (m,): parts of every run, dealt in turn."""
+    first = runs.legs[runs.run_of_leg]
+    count = np.diff(runs.legs)[runs.run_of_leg]
+    part = (np.arange(runs.count) - first) * FOLDS * FOLD_PARTS // count
+    return np.asarray((part + runs.run_of_leg) % FOLDS, dtype=np.intp)
+
+
+def holds_when_cross_validated(runs: Together, before: Fitted, after: Fitted) -> bool:
+    """Whether legs left out of the fits are likelier with the one model than with the other."""
+    return cross_validated_cost(runs, after) < cross_validated_cost(runs, before)

@@ -1,0 +1,91 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Drives that were recorded otherwise than the rest: a plug exchanged, a clock set, a file edited.
+
+The set-up is found in the fitted drives alone. A drive that errs far more with it than the fitted
+ones do is looked at by itself: where its own records show another set-up, it says nothing of the
+robot that the others show.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference.comparison.judged_legs import Prepared, judged_legs
+from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.rules import GROSS, OWN_GAIN
+from werrimbi_odom.inference.set_up.findings import SetUpFinding
+from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.robot import Robot
+
+
+@dataclass(frozen=True)
+class RecordedOtherwise:
+    """A drive whose set-up is not that of the fitted ones."""
+
+    run: str
+    held_out: bool
+    findings: tuple[SetUpFinding, ...]
+    """What differs from the set-up of the fitted drives."""
+
+    @property
+    def effects(self) -> tuple[str, ...]:
+        """Names of what differs."""
+        return tuple(finding.effect for finding in self.findings)
+
+
+def recorded_otherwise(
+    fitted: Prepared,
+    held_out: Prepared,
+    mended: Robot,
+    kind: ReferenceKind,
+    limits: EncoderLimits | None,
+) -> tuple[RecordedOtherwise, ...]:
+    """Drives on either side that were not recorded as most of the fitted ones.
+
+    Parameters
+    ----------
+    mended : Robot
+        With the set-up mistakes that the fitted drives have in common put right.
+    """
+    own = typical_errors(fitted, mended)
+    usual = float(np.median(own))
+    found = []
+    for prepared, errors in ((fitted, own), (held_out, typical_errors(held_out, mended))):
+        for run, error in zip(prepared.runs, errors, strict=True):
+            if not error > GROSS * usual:
+                continue
+            findings = _differing(run, mended, kind, limits)
+            if findings:
+                found.append(RecordedOtherwise(run.name, prepared is held_out, findings))
+    return tuple(found)
+
+
+def _differing(
+    run: Run, mended: Robot, kind: ReferenceKind, limits: EncoderLimits | None
+) -> tuple[SetUpFinding, ...]:
+    try:
+        findings = look_for_mistakes([run], mended, kind, limits).findings
+    except InputError:
+        return ()
+    clear = max((finding.gain for finding in findings), default=0.0)
+    return findings if clear > OWN_GAIN else ()
+
+
+def typical_errors(prepared: Prepared, robot: Robot) -> Sequence[float]:
+    """Median error of each drive's legs, by position [m], or by heading [rad] where that is all."""
+    model = Model(robot, tuple({} for _ in prepared.runs))
+    legs = judged_legs(prepared, model, prepared.leg)
+    by_position = np.isfinite(legs.errors.distance).any()
+    size = legs.errors.distance if by_position else np.abs(legs.errors.error[:, 2])
+    medians = []
+    for index in range(len(prepared.runs)):
+        own = size[(legs.run == index) & np.isfinite(size)]
+        medians.append(float(np.median(own)) if own.size else float("nan"))
+    return medians

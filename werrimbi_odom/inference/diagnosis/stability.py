@@ -1,0 +1,60 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Whether a verdict survives on halves of the data: one that does not is no certainty.
+
+Innovations of a filter are independent from leg to leg, so the likelihood of a model is a sum over
+legs, and any half of them votes by itself. Every effect that was fitted is a candidate in every
+half; one that beats the chosen effect there by as much as makes two models two is a rival.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.diagnosis.search import Round
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.design import unexpected
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import HALF_PARTS, RIVAL
+from werrimbi_odom.model.pose import Floats
+
+
+def rivals_in_halves(
+    runs: Together, this: Round, best: Fitted, kind: ReferenceKind
+) -> tuple[str, ...]:
+    """Effects of a round that explain some half of the legs better than the best of all does."""
+    others = [fit for fit in this.tried if fit is not best and not fit.at_bound]
+    if not others:
+        return ()
+    chosen = _cost_of_legs(runs, best, kind)
+    found: dict[str, None] = {}
+    costs = [_cost_of_legs(runs, fit, kind) for fit in others]
+    for half in halves(runs):
+        for fit, cost in zip(others, costs, strict=True):
+            ahead = float(np.sum((chosen - cost)[half])) + 0.5 * _price(best, fit)
+            if ahead > RIVAL * best.scatter:
+                found[fit.names[-1]] = None
+    return tuple(found)
+
+
+def _price(best: Fitted, other: Fitted) -> float:
+    """What the other model is cheaper by, before any of the data."""
+    return (best.price - other.price) * best.scatter
+
+
+def _cost_of_legs(runs: Together, fit: Fitted, kind: ReferenceKind) -> Floats:
+    return np.asarray(unexpected(runs, fit.point, kind).cost_of_legs()[0])
+
+
+def halves(runs: Together) -> Iterator[NDArray[np.bool_]]:
+    """Odd and even parts of every drive, and each drive's first and second half; masks (m,)."""
+    first = runs.legs[runs.run_of_leg]
+    count = np.diff(runs.legs)[runs.run_of_leg]
+    number = np.arange(runs.count) - first
+    for half in ((number * HALF_PARTS // count) % 2 == 0, 2 * number < count):
+        yield half
+        yield ~half

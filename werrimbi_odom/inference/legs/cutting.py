@@ -1,0 +1,364 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where legs are cut: ticks and reference brought onto common nodes, and leg after leg of travel.
+
+A reference pose falls between two tick messages. The steps are split there, in counts, so that
+splitting a step changes neither its motion nor its noise. Everything that is fitted later (radii,
+separation, effects, noise) acts on these counts, so this is done once for a run, and again only
+where the reference's clock is shifted.
+
+No leg spans a stretch that is left out (a gap of the reference or of the ticks). From the last leg
+that ends before it to where it ends there is one that is marked as a gap: fits and judgements skip
+it, and what goes on along a run (distance, wheel angle, the heading of positions alone) goes
+through it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.inference.legs.counters import Counters, counters_of, nodes_at
+from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
+from werrimbi_odom.model.drive import Span
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+FEW = 10
+"""Reference poses: of fewer, those count too that lie just outside the ticks' time."""
+
+MOMENT = 1.0
+"""How far outside [s]."""
+
+PARTS_OF_A_LEG = 4
+"""Fits use legs this much shorter than those that are judged: they tell noise from drift."""
+
+QUARTER_TURN = 0.5 * math.pi
+"""Turning [rad] that is worth a leg of path, whatever the leg's length."""
+
+ROUNDING = 1e-12
+"""Share of a drive, by which sums of its steps may be off."""
+
+
+@dataclass(frozen=True, slots=True)
+class Record:
+    """One run on one clock: counters, usable reference poses, what is left out; r poses."""
+
+    name: str
+    counters: Counters
+    measured: Reference
+    """Usable poses, shape (r,)."""
+    gap: NDArray[np.bool_]
+    """Intervals between them that are left out, shape (r - 1,)."""
+    left_out: tuple[LeftOut, ...]
+    sigma_xy: float | None
+    """Noise of the reference's position as the record states it [m]."""
+    sigma_yaw: float | None
+    """Noise of the reference's heading as the record states it [rad]."""
+
+
+@dataclass(frozen=True, slots=True)
+class MatchedRun:
+    """One run on common nodes: n steps, m legs."""
+
+    record: Record
+    rows: NDArray[np.intp]
+    """Poses of the record at which legs begin and end, shape (m + 1,)."""
+    measured: Reference
+    """These poses."""
+    gap: NDArray[np.bool_]
+    """Legs that are none, for they hold something that is left out; shape (m,)."""
+    delay: float
+    """What the reference stamps t is taken to have been seen at t - delay [s]."""
+    time: Floats
+    """Stamps of the nodes, shape (n + 1,), [s]."""
+    left: Floats
+    """Counts of the left wheel in each step, shape (n,)."""
+    right: Floats
+    """Counts of the right wheel in each step, shape (n,)."""
+    ends: NDArray[np.intp]
+    """Nodes at which legs begin and end, shape (m + 1,)."""
+    channels: Mapping[str, Span[Floats]]
+    """Extra measured channels, at the start and end of each step."""
+
+    @property
+    def name(self) -> str:
+        """Of the run."""
+        return self.record.name
+
+    @property
+    def counters(self) -> Counters:
+        """What the encoders counted."""
+        return self.record.counters
+
+    @property
+    def sigma_xy(self) -> float | None:
+        """Noise of the reference's position as the record states it [m]."""
+        return self.record.sigma_xy
+
+    @property
+    def sigma_yaw(self) -> float | None:
+        """Noise of the reference's heading as the record states it [rad]."""
+        return self.record.sigma_yaw
+
+    @property
+    def intervals(self) -> Floats:
+        """Reference intervals in each leg, shape (m,): an incremental reference errs at each."""
+        return np.diff(self.rows).astype(np.float64)
+
+    @property
+    def legs(self) -> int:
+        """Number of legs, those that are marked as gaps among them."""
+        return self.ends.size - 1
+
+
+def match(
+    run: Run,
+    robot: Robot,
+    leg: float = 1.0,
+    limits: EncoderLimits | None = None,
+    turn: float = QUARTER_TURN,
+) -> MatchedRun:
+    """Split the steps of a run at its reference poses and cut it into legs.
+
+    Parameters
+    ----------
+    robot : Robot
+        Its travel decides where legs end; they stay there whatever is fitted later.
+    leg : float
+        Length of a leg [m]. A leg is at least one interval of the reference.
+    turn : float
+        Turning on the spot that makes a leg too [rad]; path and turning add up.
+
+    Raises
+    ------
+    InputError
+        When the run has no reference, or none while the ticks were recorded.
+    """
+    record = record_of(run, robot, limits, leg, turn)
+    return divided(record, rows_of_legs(record, robot, leg, turn))
+
+
+def match_finely(
+    runs: Sequence[Run], robot: Robot, leg: float, limits: EncoderLimits | None = None
+) -> list[MatchedRun]:
+    """Runs in the short legs of a fit, `leg` [m] being the length that is judged by."""
+    records = (record_of(run, robot, limits, leg) for run in runs)
+    return [cut_finely(record, robot, leg) for record in records]
+
+
+def cut_finely(record: Record, robot: Robot, leg: float) -> MatchedRun:
+    """One of them."""
+    parts = 1.0 / PARTS_OF_A_LEG
+    return divided(record, rows_of_legs(record, robot, parts * leg, parts * QUARTER_TURN))
+
+
+def every_pose(record: Record) -> MatchedRun:
+    """A run with a leg from each usable reference pose to the next."""
+    return divided(record, np.arange(record.measured.time.size))
+
+
+def divided(record: Record, rows: NDArray[np.intp]) -> MatchedRun:
+    """A run with a leg from each of some reference poses to the next."""
+    measured = _poses(record.measured, rows)
+    time, left, right, ends, channels = nodes_at(record.counters, measured.time)
+    gap = _gaps_between(record, rows)
+    return MatchedRun(record, rows, measured, gap, 0.0, time, left, right, ends, channels)
+
+
+def joined(run: MatchedRun, rows: NDArray[np.intp]) -> MatchedRun:
+    """The same nodes with a leg from each of some of its poses to the next."""
+    return replace(
+        run,
+        rows=rows,
+        measured=_poses(run.record.measured, rows),
+        gap=_gaps_between(run.record, rows),
+        ends=run.ends[np.searchsorted(run.rows, rows)],
+    )
+
+
+def delayed(run: MatchedRun, delay: float) -> MatchedRun:
+    """The same legs, when the reference saw at t - `delay` [s] what it stamps t."""
+    if delay == run.delay:
+        return run
+    counters = run.counters
+    seen = np.clip(run.measured.time - delay, counters.time[0], counters.time[-1])
+    time, left, right, ends, channels = nodes_at(counters, np.maximum.accumulate(seen))
+    return replace(
+        run, delay=delay, time=time, left=left, right=right, ends=ends, channels=channels
+    )
+
+
+def stated(runs: Sequence[MatchedRun], name: str) -> float | None:
+    """The reference's noise (`sigma_xy` or `sigma_yaw`) as the records state it, if all do."""
+    values = [getattr(run, name) for run in runs]
+    return None if any(value is None for value in values) else float(max(values))
+
+
+def record_of(
+    run: Run,
+    robot: Robot,
+    limits: EncoderLimits | None = None,
+    leg: float = 1.0,
+    turn: float = QUARTER_TURN,
+) -> Record:
+    """Ticks and reference on one clock, and what is left out of both.
+
+    Parameters
+    ----------
+    leg, turn : float
+        What makes a leg [m, rad]; see `match`.
+
+    Raises
+    ------
+    InputError
+        As `match`.
+    """
+    reference = run.reference
+    if reference is None:
+        raise InputError(
+            f"{run.path}: there is no reference to compare with "
+            "(reference.csv: t_s,x_m,y_m,yaw_rad)"
+        )
+    counters = counters_of(run, robot, limits)
+    first, last = float(counters.time[0]), float(counters.time[-1])
+    known = (np.isfinite(reference.x) & np.isfinite(reference.y)) | np.isfinite(reference.yaw)
+    rows = usable_rows(reference.time, known, first, last)
+    if rows.size < 2:
+        raise InputError(
+            f"{run.path}: fewer than two reference poses between the first tick "
+            f"(t_s {first:g}) and the last ({last:g}); are both clocks the same?"
+        )
+    measured = _poses(reference, rows)
+    found = _silences(run, robot, counters, measured.time, leg, turn)
+    return Record(
+        run.name,
+        counters,
+        measured,
+        touched(measured.time, [(part.begin, part.end) for part in found]),
+        found,
+        _typical(reference.sigma_xy),
+        _typical(reference.sigma_yaw),
+    )
+
+
+def _silences(
+    run: Run, robot: Robot, counters: Counters, seen: Floats, leg: float, turn: float
+) -> tuple[LeftOut, ...]:
+    """Gaps of the reference, and of the ticks while there is a reference."""
+    way = counters.way(robot, leg, turn)
+    parts = [("the reference is", seen, np.interp(seen, counters.time, way))]
+    inside = (counters.time >= seen[0]) & (counters.time <= seen[-1])
+    parts.append(("the ticks are", counters.time[inside], way[inside]))
+    found = []
+    for who, time, gone in parts:
+        for index in np.flatnonzero(gaps_in(time, gone)).tolist():
+            begin, end = float(time[index]), float(time[index + 1])
+            driven = _driven(robot, counters, begin, end)
+            found.append(LeftOut(run.path, begin, end, "gap", f"{who} silent while {driven}"))
+    return tuple(sorted(found, key=lambda part: part.begin))
+
+
+def _driven(robot: Robot, counters: Counters, begin: float, end: float) -> str:
+    within = (counters.time > begin) & (counters.time < end)
+    time = np.concatenate([[begin], counters.time[within], [end]])
+    left, right = (np.diff(counters.at(time), axis=0) * [robot.left_tick, robot.right_tick]).T
+    path = float(np.abs(0.5 * (left + right)).sum())
+    turned = math.degrees(float(np.abs(right - left).sum()) / robot.track)
+    words = [f"drives {path:.1f} m"] if path >= 0.05 else []
+    words += [f"turns {turned:.0f}°"] if turned >= 20.0 or not words else []
+    return f"the robot {' and '.join(words)}"
+
+
+def usable_rows(
+    time: Floats, known: NDArray[np.bool_], first: float, last: float
+) -> NDArray[np.intp]:
+    """Rows with something `known`, in the ticks' time, each later than the one before.
+
+    Parameters
+    ----------
+    time, known : ndarray, shape (r,)
+        When each row of a reference was seen [s], and whether it holds what is asked for.
+    first, last : float
+        Time of the first tick and of the last [s].
+    """
+    within = known & (time >= first) & (time <= last)
+    if within.sum() < FEW:
+        # Where a robot was put down and where it was found, by tape: it stood a moment before the
+        # first tick and after the last.
+        within = known & (time >= first - MOMENT) & (time <= last + MOMENT)
+    rows = np.flatnonzero(within)
+    if rows.size == 0:
+        return rows
+    latest = np.maximum.accumulate(time[rows])
+    later = np.concatenate([[True], time[rows][1:] > latest[:-1]])
+    return np.asarray(rows[later])
+
+
+def rows_of_legs(record: Record, robot: Robot, leg: float, turn: float) -> NDArray[np.intp]:
+    """Poses of a record at which legs begin and end."""
+    counters = record.counters
+    way = np.interp(record.measured.time, counters.time, counters.way(robot, leg, turn))
+    return leg_ends(way, record.gap)
+
+
+def leg_ends(way: Floats, gap: NDArray[np.bool_], leg: float = 1.0) -> NDArray[np.intp]:
+    """Rows at which legs begin and end: every time a leg's worth of way has gone by.
+
+    After a gap it begins anew, and what there is of a leg before it belongs to no leg.
+
+    Parameters
+    ----------
+    way : ndarray, shape (r,)
+        What was gone up to each row of the reference, in any unit.
+    gap : ndarray of bool, shape (r - 1,)
+        Intervals that no leg may span.
+    leg : float
+        Length of a leg in that unit.
+    """
+    gone = (way - way[0]) / leg
+    rounding = ROUNDING * max(float(gone[-1]) * leg, 1.0) / leg
+    begins = np.concatenate([[0], np.flatnonzero(gap) + 1])
+    stretch = np.concatenate([[0], np.cumsum(gap)])
+    gone = gone - gone[begins][stretch]
+    done = np.floor(gone + rounding)  # whole legs so far: no list of them, were they a billion
+    new = (np.diff(done) > 0.0) & ~gap
+    if new.any():
+        return np.union1d(begins, np.flatnonzero(new) + 1)
+    # A run shorter than a leg is one leg: its longest stretch.
+    last = np.append(begins[1:] - 1, way.size - 1)
+    longest = int(np.argmax(gone[last]))
+    if last[longest] == begins[longest]:
+        longest = int(np.argmax(last - begins))
+    return np.union1d(begins, last[[longest]])
+
+
+def legs_worth(path: float, turned: float, leg: float, turn: float) -> float:
+    """How many legs a way is: path and turning, whatever their sense, add up."""
+    return path / leg + turned / turn
+
+
+def _gaps_between(record: Record, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
+    before = np.concatenate([[0], np.cumsum(record.gap)])
+    return np.asarray(np.diff(before[rows]) > 0)
+
+
+def _poses(reference: Reference, rows: NDArray[np.intp]) -> Reference:
+    if rows.size == reference.time.size:
+        return Reference(reference.time, reference.x, reference.y, reference.yaw)
+    columns = (reference.time, reference.x, reference.y, reference.yaw)
+    return Reference(*(part[rows] for part in columns))
+
+
+def _typical(sigma: Floats | None) -> float | None:
+    """Root mean square of a stated noise, or None where there is none."""
+    if sigma is None or not np.isfinite(sigma).any():
+        return None
+    return float(np.sqrt(np.nanmean(np.square(sigma))))

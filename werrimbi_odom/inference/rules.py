@@ -1,0 +1,105 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every number that decides a verdict, with its derivation or the reason why it was chosen.
+
+By how much right and wrong verdicts stood off them is plotted in docs/evidence.md.
+"""
+
+from __future__ import annotations
+
+# ---------------------------------------------------------------- how sure a finding must be
+
+SURE = 1e-3
+"""An effect is believed when chance would show as much in fewer cases than this, all candidates
+counted (Bonferroni): one false name in a thousand sound robots."""
+
+VERY_SURE = 1e-5
+"""The same for a dependence on a measured variable. All cells of the map are counted too; but an
+effect is a law that somebody found true before, and a dependence has nothing behind it, so a
+hundred times as much is asked of it."""
+
+PENALTY_FLOOR = 6.0
+"""The least that a free number must lower minus two log-likelihood by. BIC asks ln n, which is less
+where n is below 403; chi-squared of one degree is above 6 in 1.4 % of cases, so that of few data a
+number is not had for less than of many."""
+
+RIVAL = 10.0
+"""Difference of costs up to which two models cannot be told apart: a Bayes factor of 150, "very
+strong" from there on (Kass and Raftery, J. Am. Stat. Assoc. 90, 1995)."""
+
+SIMPLER = 3.0
+"""By how much an effect must cost less than the calibration it would replace, to be its rival: a
+Bayes factor of 4.5, "positive". Calibration is what every robot needs, so it is believed first."""
+
+CALIBRATION_WORTH = 2.0
+"""Penalties that one number of the calibration must be worth to be called a finding, and not only
+fitted: once it is in every fit, twice it is news."""
+
+# ------------------------------------------------------- what no effect of the library explains
+
+LAW_SHARE = 0.75
+"""Share of what a plain dependence on a measured variable is worth (fall of the cost less penalty)
+that the best effect must be worth, for its name to be given. Laws are first-order physics: of 33
+hidden sets the strongest dependence was worth at most 0.97 of the right effect, and 1.5 times the
+best wrong one where the library does not hold what is hidden; 1 / 0.75 = 1.33 is amid the two."""
+
+OWN_LAW_SHARE = 0.5
+"""The same where the dependence is on what the effect itself looks at, in the channel on which it
+acts: that is the effect's own law, freer in shape. A law that explains most of it is right in kind,
+and that it does not fit fully is said."""
+
+CELLS_ASKED = 20
+"""Dependences, the most certain, of which it is asked whether they last: each costs a pass of the
+filter, and one that lasts is among the first few or nowhere."""
+
+ROUNDS = 4
+"""Effects that are looked for, one after the other. More at once was never seen on a robot."""
+
+# --------------------------------------------------------------- drives that are put together
+
+GROSS = 3.0
+"""Times the median error of the fitted drives, beyond which a drive is looked at by itself. A
+manoeuvre that shows an effect errs more than others by as much, so this alone is no finding."""
+
+OWN_GAIN = 3.0
+"""Times by which its own set-up must lower such a drive's typical error: twice the 1.5 that a whole
+session must show, because one drive is less than a session."""
+
+FOLDS = 5
+"""Of the cross-validation: a model is fitted on four fifths and judged on the rest, five times."""
+
+FOLD_PARTS = 4
+"""Of a drive in each fold: 20 parts of a drive of a minute are three seconds each, longer than
+errors of neighbouring legs are alike."""
+
+HALF_PARTS = 10
+"""Of a drive, that go to odd and even halves in turn."""
+
+SET_ASIDE_BLOCKS, SET_ASIDE = 8, (1, 5)
+"""Stretches into which every drive is cut where no held-out drives are given, and those of them
+that are put aside: a quarter, from both halves of the drive."""
+
+SET_ASIDE_ROWS = 80
+"""Poses that a drive must have for it, ten a stretch; else whole drives are put aside."""
+
+# ------------------------------------------------------------------------- gaps of a recording
+
+GAP_INTERVALS = 10.0
+"""Times the usual interval, from which on a silence is a gap.
+
+Of messages that come at random with a steady mean one interval in 1000 is as long (an exponential
+variable is above ten medians with a chance of 2^-10); of those that come at a rate none is.
+"""
+
+GAP_WAYS = 5.0
+"""Times the usual way of an interval, that must have been gone in a gap.
+
+A localisation that speaks every quarter of a metre is silent for as long as the robot stands, and
+its next interval is as long a way as any: that is its habit, no gap.
+"""
+
+GAP_LEG = 0.25
+"""Share of a leg that must have been gone in a gap: less makes no leg longer than others are."""
+
+GAP_FEWEST = 20
+"""Intervals with travel in them, below which nobody knows what is usual: poses taken by hand."""

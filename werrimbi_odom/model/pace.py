@@ -1,0 +1,90 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""How often messages come and how fast wheels turn, learnt from stamps that may lie; and forgotten.
+
+A driver that hangs for a moment and then sends several messages at once has not made the wheels any
+faster, though its stamps say so. So a message that comes much sooner than usual is judged over the
+usual interval: the mean one over a thousand messages, in which what came late and what came soon
+after it make up for each other.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from werrimbi_odom.model.pose import Floats
+
+REMEMBERED = 1000
+"""Messages whose intervals are the usual ones. What is twice as old is forgotten altogether."""
+USUAL_AT_FIRST = 0.1
+"""Taken for the interval before the first message [s]."""
+PAUSE = 1.0
+"""After a longer interval [s] what is usual is learnt anew, with this for the first interval."""
+CLOSE = 0.5
+"""A message comes too soon when it comes after less than this share of the usual interval."""
+
+
+@dataclass(slots=True)
+class Pace:
+    """Intervals and speeds of late, a message at a time, in constant time and memory."""
+
+    usual: float = USUAL_AT_FIRST
+    """The usual interval [s]."""
+    _stamps: deque[float] = field(default_factory=lambda: deque(maxlen=REMEMBERED + 1))
+    _fastest: float = 0.0
+    _fastest_before: float = 0.0
+    _room: int = REMEMBERED
+    """Speeds to come before the older half of the memory is forgotten."""
+
+    @property
+    def fastest(self) -> float:
+        """Fastest that a wheel has turned of late [turns/s]."""
+        return max(self._fastest, self._fastest_before)
+
+    def begin(self, time: float) -> None:
+        """Learn intervals anew from a message on, with the usual one before it."""
+        self._stamps.clear()
+        self._stamps.extend((time - self.usual, time))
+
+    def lasted(self, duration: float) -> float:
+        """Seconds over which to judge what happened in an interval."""
+        return duration if duration >= CLOSE * self.usual else self.usual
+
+    def hear(self, time: float, duration: float) -> None:
+        """Take the stamp of a message and the seconds since the last one."""
+        stamps = self._stamps
+        if duration > PAUSE:
+            self.usual = PAUSE
+            self.begin(time)
+        else:
+            stamps.append(time)
+            self.usual = (time - stamps[0]) / (len(stamps) - 1)
+
+    def see(self, rate: float) -> None:
+        """Take the speed of the faster wheel [turns/s]."""
+        if rate > self._fastest:
+            self._fastest = rate
+        self._room -= 1
+        if not self._room:
+            self._fastest_before, self._fastest, self._room = self._fastest, 0.0, REMEMBERED
+
+    def usual_at(self, time: Floats) -> Floats:
+        """The usual interval [s] now and after each of n messages without a pause; (n + 1,)."""
+        stamps = np.concatenate([self._stamps, time])
+        last = np.arange(stamps.size - time.size, stamps.size)
+        first = np.maximum(last - REMEMBERED, 0)
+        return np.concatenate([[self.usual], (time - stamps[first]) / (last - first)])
+
+    def have_heard(self, time: Floats, usual: float, rates: Floats) -> None:
+        """Take n messages at once: stamps and speeds, shape (n,); and what is usual after them."""
+        self._stamps.extend(time[-REMEMBERED - 1 :].tolist())
+        self.usual = float(usual)
+        while rates.size >= self._room:
+            some, rates = rates[: self._room], rates[self._room :]
+            self._fastest_before = max(self._fastest, float(some.max()))
+            self._fastest, self._room = 0.0, REMEMBERED
+        self._fastest = max(self._fastest, float(rates.max(initial=0.0)))
+        self._room -= rates.size

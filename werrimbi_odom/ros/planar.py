@@ -1,0 +1,111 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Place, heading and covariance in the plane, out of messages of three dimensions; judged once.
+
+Whoever sends a pose may send any 64 bits as a number. What comes out of here is finite, so small
+that no square of it is beyond all numbers, and the covariance is one.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.model.covariance import PoseCovariance
+
+FARTHEST = 1e12
+"""Farthest place [m] that is believed, beyond the orbit of Jupiter: squares of squares of what lies
+farther overflow."""
+LARGEST = FARTHEST**2
+"""Largest entry of a covariance that is believed; larger ones stand for "unknown"."""
+
+UP = 1.0 + 1e-12
+"""On every variance that is published, so that rounding cannot turn a semi-definite matrix into an
+indefinite one."""
+
+_ASYMMETRY = 1e-6  # of two entries that should be equal, against the correlation 1
+_ROUNDING = 1e-9  # by which rounding may make a correlation matrix indefinite
+_PLANE = (0, 1, 5)  # x, y and yaw among x, y, z, roll, pitch, yaw
+
+
+def place_of(place: Any) -> tuple[float, float]:
+    """Place [m] in the plane.
+
+    Raises
+    ------
+    InputError
+        As all here: the first argument is the cause, the second the detail.
+    """
+    if not (math.isfinite(place.x) and math.isfinite(place.y)):
+        raise InputError("pose not finite", "NaN or infinite")
+    if max(abs(place.x), abs(place.y)) > FARTHEST:
+        raise InputError("pose out of range", f"farther than {FARTHEST:g} m")
+    return place.x, place.y
+
+
+def yaw_of(turn: Any, slack: float) -> float:
+    """Heading [rad] of a quaternion whose norm is 1 but for a factor of 1 + `slack`."""
+    x, y, z, w = turn.x, turn.y, turn.z, turn.w
+    if not all(map(math.isfinite, (x, y, z, w))):
+        raise InputError("pose not finite", "NaN or infinite")
+    norm = math.hypot(x, y, z, w)  # does not overflow where squares do
+    if not 1.0 / (1.0 + slack) <= norm <= 1.0 + slack:
+        raise InputError("orientation not a rotation", f"the quaternion's norm is {norm:g}, not 1")
+    return math.atan2(2.0 * (w * z + x * y), w * w + x * x - y * y - z * z)
+
+
+def covariance_of(entries: Any) -> PoseCovariance[float]:
+    """The covariance of x, y and yaw among the 36 entries of a message.
+
+    Metres and radians may differ by any factor, so it is the matrix of correlations that must be
+    positive semi-definite; of an entry's own size there is nothing to be judged.
+    """
+    block = np.asarray(entries, dtype=np.float64).reshape(6, 6)[np.ix_(_PLANE, _PLANE)]
+    if not np.isfinite(block).all():
+        raise InputError("covariance not finite", "NaN or infinite")
+    if np.abs(block).max() > LARGEST:
+        raise InputError("covariance out of range", f"more than {LARGEST:g}")
+    variances = block.diagonal()
+    if (variances < 0.0).any():
+        raise InputError("covariance not positive semi-definite", "a variance is negative")
+    if block[variances == 0.0].any() or block[:, variances == 0.0].any():
+        raise InputError("covariance not positive semi-definite", "a variance of 0 has covariances")
+    sigma = np.sqrt(np.where(variances > 0.0, variances, 1.0))
+    correlation = block / sigma[:, None] / sigma  # one by one: a product of the two may underflow
+    if np.abs(correlation - correlation.T).max() > _ASYMMETRY:
+        raise InputError("covariance not symmetric", "of x, y and yaw")
+    # Larger than 1 it is none, and the eigenvalues of what is much larger overflow.
+    if np.abs(correlation).max() > 1.0 + _ASYMMETRY or (
+        np.linalg.eigvalsh(0.5 * (correlation + correlation.T))[0] < -_ROUNDING
+    ):
+        raise InputError("covariance not positive semi-definite", "of x, y and yaw")
+    symmetric = (0.5 * (block + block.T))[np.triu_indices(3)]
+    return PoseCovariance(*symmetric.tolist())
+
+
+def rounded_up(covariance: PoseCovariance[float]) -> PoseCovariance[float]:
+    """A covariance as it can be published: semi-definite, whatever rounding has made of it.
+
+    Where a heading hardly known is carried far away and back, the square of the way cancels, and
+    what is left of a variance is rounding, of either sign: its size then stands for the variance.
+    """
+    xx, xy, xyaw, yy, yyaw, yawyaw = covariance
+    xx, yy, yawyaw = xx * UP, yy * UP, yawyaw * UP
+    if yawyaw > 0.0:  # what x and y vary beside what the heading explains of it
+        a, b, c = xx - xyaw * (xyaw / yawyaw), yy - yyaw * (yyaw / yawyaw), xyaw * (yyaw / yawyaw)
+        if a >= 0.0 and b >= 0.0 and (xy - c) * (xy - c) <= a * b:
+            return PoseCovariance(xx, xy, xyaw, yy, yyaw, yawyaw)
+    elif not (xyaw or yyaw or yawyaw) and min(xx, yy) >= 0.0 and xy * xy <= xx * yy:
+        return PoseCovariance(xx, xy, xyaw, yy, yyaw, yawyaw)
+    matrix = PoseCovariance(abs(xx), xy, xyaw, abs(yy), yyaw, abs(yawyaw)).matrix()
+    sigma = np.sqrt(matrix.diagonal())
+    size = np.where(sigma > 0.0, sigma, np.inf)
+    with np.errstate(over="ignore"):
+        correlation = np.clip(matrix / size[:, None] / size, -1.0, 1.0)
+    values, vectors = np.linalg.eigh(correlation)
+    near = (vectors * np.maximum(values, 0.0)) @ vectors.T * sigma[:, None] * sigma
+    near[np.diag_indices(3)] *= UP
+    return PoseCovariance(*near[np.triu_indices(3)].tolist())

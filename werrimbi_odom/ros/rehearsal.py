@@ -1,0 +1,50 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A drive that was never driven: whether numbers come out, before real counters go in."""
+
+from __future__ import annotations
+
+import math
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.model.odometer import Estimate, Odometer
+from werrimbi_odom.model.pieces import PieceTolerance
+from werrimbi_odom.model.robot import Robot
+
+_TURNS = ((0.0, 0.0), (1.0, 1.0), (1.0, -1.0), (0.5, 2.0), (-1.0, -1.0), (100.0, 100.0))
+"""Of the left and the right wheel, a second each: rest, line, spin, arc, reversal, a fast line."""
+
+
+def rehearse(robot: Robot, tolerance: PieceTolerance) -> None:
+    """Drive a robot through every kind of piece.
+
+    Raises
+    ------
+    InputError
+        When pose, twist or a covariance comes out as no number.
+    """
+    odometer = Odometer(robot, tolerance)
+    left = right = time = 0.0
+    for turns_left, turns_right in (_TURNS[0], *_TURNS):
+        left += turns_left * robot.left_ticks_per_revolution
+        right += turns_right * robot.right_ticks_per_revolution
+        time += 1.0
+        try:
+            estimate = odometer.update(time, left, right)
+        except ArithmeticError:
+            estimate = None
+            lost = True
+        else:
+            lost = estimate is not None and not is_finite(estimate)
+        if lost:
+            raise InputError(
+                "with these values odometry is beyond all numbers (tried on a line, a spin, an arc "
+                f"and a reversal of a wheel's turn or two; track {robot.track:g} m, "
+                f"{robot.left_tick:g} and {robot.right_tick:g} m for a count)"
+            )
+
+
+def is_finite(estimate: Estimate) -> bool:
+    """Whether all of it are numbers that can be reckoned with."""
+    total = sum(estimate.pose) + sum(estimate.covariance) + sum(estimate.twist)
+    return math.isfinite(total + sum(estimate.twist_covariance))
