@@ -14,9 +14,12 @@ import pytest
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.effects.functions import exp
+from werrimbi_odom.effects.shapes import mean_sin
+from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import (
     Effect,
     Parameter,
+    Twin,
     View,
     body_effect,
     reference_effect,
@@ -93,6 +96,15 @@ def differs_live(travel: Any, drive: Any, amount: float) -> Any:
     return travel.left * (1.0 + amount * (1.0 if isinstance(travel.left, float) else 2.0))
 
 
+def peeps(travel: Any, drive: Any, amount: float) -> Any:
+    heading = Drive.heading.__get__(drive)  # type: ignore[attr-defined]
+    return travel.left * (1.0 + amount * mean_sin(heading))
+
+
+def knows_its_kind(travel: Any, drive: Any, amount: float) -> Any:
+    return travel.left * (1.0 + (amount if type(drive) is Drive else 0.0))
+
+
 def does_nothing(travel: Any, drive: Any, amount: float) -> Any:
     return travel.left + 0.0 * amount
 
@@ -112,6 +124,8 @@ def jumps(travel: Any, drive: Any, amount: float) -> Any:
         (lags, "speed.end"),
         (stays_an_array, "floats must stay floats"),
         (differs_live, "step by step"),
+        (peeps, "recorded and predicted are the same.*by their names"),
+        (knows_its_kind, "recorded and predicted are the same"),
         (does_nothing, "does nothing"),
         (jumps, "slope in amount"),
     ],
@@ -178,7 +192,7 @@ GOOD = find("lateral_slip")
         (replace(GOOD, name="Lateral-Slip"), "small letters"),
         (replace(GOOD, doc="Formula    x"), "must begin with a sentence"),
         (replace(GOOD, doc=GOOD.doc.replace("Ruler", "Rule")), "Ruler"),
-        (replace(GOOD, twins=("other",)), "say what separates"),
+        (replace(GOOD, indistinguishable_from=(Twin("other"),)), "say what separates"),
         (
             replace(GOOD, parameters={"creep": replace(GOOD.parameters["creep"], unit="m s")}),
             "unit",

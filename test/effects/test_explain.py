@@ -66,7 +66,7 @@ def test_a_page_has_everything(effect: object, capsys: pytest.CaptureFixture[str
 def test_twins_say_what_to_remount(capsys: pytest.CaptureFixture[str]) -> None:
     run("sideways_drift")
     shown = " ".join(capsys.readouterr().out.split())
-    assert "reference_yaw_offset = -angle is one and the same" in shown
+    assert "reference_yaw_offset (angle = -angle): no drive can tell" in shown
     assert "turned by 90 degrees" in shown
 
 

@@ -17,6 +17,7 @@ import pytest
 
 from werrimbi_odom.effects import LIBRARY, all_effects, collection, find, load_file
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.model.effect import twin_of
 
 # The contract's two tables, with the null value of each parameter that they name.
 VOCABULARY = {
@@ -75,10 +76,14 @@ def test_names_are_unique_and_are_their_functions_names() -> None:
     assert all(effect.apply.__name__ == effect.name for effect in LIBRARY)
 
 
-def test_twins_are_mutual() -> None:
+def test_twins_are_mutual_and_say_what_tells_them_apart() -> None:
     for effect in LIBRARY:
-        for twin in effect.twins:
-            assert effect.name in find(twin).twins
+        for twin in effect.indistinguishable_from:
+            back = twin_of(find(twin.name), effect)
+            assert back is not None
+            assert (back.told_apart_by, back.do) == (twin.told_apart_by, twin.do)
+            assert twin.told_apart_by
+            assert twin.do
 
 
 @pytest.mark.parametrize("pair", ["eccentric_{}_wheel", "{}_backlash", "{}_missed_ticks"])
@@ -209,7 +214,12 @@ def test_effects_import_the_model_and_numpy_alone() -> None:
         source = inspect.getsource(inspect.getmodule(effect.apply))  # type: ignore[arg-type]
         for node in ast.walk(ast.parse(source)):
             if isinstance(node, ast.ImportFrom):
-                allowed = ("__future__", "werrimbi_odom.model.", "werrimbi_odom.effects.functions")
+                allowed = (
+                    "__future__",
+                    "werrimbi_odom.model.",
+                    "werrimbi_odom.effects.functions",
+                    "werrimbi_odom.effects.twins",
+                )
                 assert node.module is not None
                 assert node.module.startswith(allowed)
             elif isinstance(node, ast.Import):

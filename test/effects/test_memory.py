@@ -14,7 +14,8 @@ from hypothesis import strategies as st
 from werrimbi_odom.model.drive import ROLLBACK, Drive, RawStep, Span
 from werrimbi_odom.model.drive_memory import DriveMemory
 from werrimbi_odom.model.drive_of_run import drive_of_run
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.motion import BodyMotion, displacement
+from werrimbi_odom.model.pose import Floats, Pose
 
 TRACK, RADIUS = 0.35, 0.05
 
@@ -39,10 +40,11 @@ def flat(drive: Drive[Floats]) -> Floats:
 
 def both_ways(left: Floats, right: Floats, duration: Floats, flicker: float) -> None:
     raw = steps(left, right, duration)
-    memory, heading, live = DriveMemory(flicker, 0.3, -0.4), 0.0, []
+    memory, pose, live = DriveMemory(flicker, 0.3, -0.4), Pose(), []
     for step in raw:
-        live.append(flat(memory.step(step, heading)))
-        heading += step.turn
+        live.append(flat(memory.step(step, pose)))
+        dx, dy = displacement(BodyMotion(step.along, 0.0, step.turn), pose.yaw)
+        pose = Pose(pose.x + dx, pose.y + dy, pose.yaw + step.turn)
     recorded = drive_of_run(
         *(np.array(part) for part in zip(*raw, strict=True)),
         flicker=flicker,

@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.model.driving import driven, features
+from werrimbi_odom.model.driving import features
 from werrimbi_odom.model.effect import AppliedEffect, view_of
 from werrimbi_odom.model.motion import WheelTravel, displacement
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.passes import driven
+from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
 
 TRACK, RADIUS, TICKS = 0.35, 0.05, 2000.0
@@ -108,7 +109,7 @@ def gone(
     """The same from counted travel."""
     robot = Robot(TRACK, RADIUS, TICKS, TICKS, effects=effects)
     drive = features(robot, duration, raw, first_counts)
-    travel, motion = driven(robot, raw, drive, start_yaw)
+    travel, motion = driven(robot, raw, drive, Pose(yaw=start_yaw))
 
     def summed(first: float, steps: Floats) -> Floats:
         return np.cumsum(np.concatenate([[first], steps]))

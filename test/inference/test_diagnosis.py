@@ -16,9 +16,9 @@ from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.candidates import candidates, scores
 from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS, Amount, legs_pushed, pushes_of
-from werrimbi_odom.inference.diagnosis.ownership import grasp_of
 from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
+from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, path_of, predict, predict_all
@@ -173,14 +173,14 @@ def test_of_the_multipliers_those_are_kept_that_are_wrong(
 def test_what_an_effect_looks_at_and_acts_on_is_found_by_trying_it(laid: Together) -> None:
     steps = laid.drive(ROBOT)
     by_name = {each.name: each for each in candidates(LIBRARY, (), (), len(laid.runs))}
-    castor = grasp_of(by_name["castor_kick"], steps)
-    assert "since_reversal" in castor.fields
-    assert castor.channels <= {"heading"}
-    slip = grasp_of(by_name["lateral_slip"], steps)
-    assert (slip.fields, slip.channels) == ({"speed"}, {"sideways"})
-    missed = grasp_of(by_name["left_missed_ticks"], steps)
-    assert missed.channels <= {"left"}
-    assert "left_speed" in missed.fields
+    castor = support_of(by_name["castor_kick"], steps)
+    assert "since_reversal" in castor.inputs
+    assert castor.outputs <= {"heading"}
+    slip = support_of(by_name["lateral_slip"], steps)
+    assert (slip.inputs, slip.outputs) == ({"speed"}, {"sideways"})
+    missed = support_of(by_name["left_missed_ticks"], steps)
+    assert missed.outputs <= {"left"}
+    assert "left_speed" in missed.inputs
 
 
 def test_what_is_set_aside_is_not_fitted_on() -> None:

@@ -33,7 +33,6 @@ def pull(motion: Any, drive: Any, rate: float) -> Any:
 
 
 @wheel_effect(
-    pose=True,
     loss=Parameter("", 0.0, 0.2, (-0.9, 0.9), "share of the travel that is lost"),
     x=Parameter("m", 0.3, 0.3, (-99.0, 99.0), "where it is", tries=(0.3,)),
 )

@@ -19,6 +19,8 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Amount
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
+from werrimbi_odom.model.declared import DRAWINGS
+from werrimbi_odom.model.effect import Sketch
 from werrimbi_odom.report.adding.figures import error_falling_figure, steps_of
 from werrimbi_odom.report.calibration.fit_figure import leg_figure
 from werrimbi_odom.report.comparison.figures import (
@@ -40,6 +42,7 @@ from werrimbi_odom.report.diagnosis.figures import (
 )
 from werrimbi_odom.report.diagnosis.response import parts_of, response
 from werrimbi_odom.report.diagnosis.wheel_angle import once_a_turn, over_a_turn, wheel_errors
+from werrimbi_odom.report.sketches import library as sketches
 
 RELATIVE = 1e3 * AMPLITUDE / PLAIN.wheel_radius
 """How much more or less than its radius says an eccentric wheel rolls, at the most [mm/m]."""
@@ -216,15 +219,31 @@ def test_all_figures_are_json_without_surprises(comparison: Comparison) -> None:
 def test_every_effect_of_the_library_has_a_sketch(effect) -> None:  # type: ignore[no-untyped-def]
     from xml.etree import ElementTree
 
-    sketch = effect_sketch(effect.name)
+    sketch = effect_sketch(effect)
     assert sketch is not None
     root = ElementTree.fromstring(sketch)
     assert root.get("aria-label", "").startswith(effect.name)
     assert len(root) > 3
 
 
-def test_an_effect_of_ones_own_has_none() -> None:
-    assert effect_sketch("my_own") is None
+def test_an_effect_that_declares_no_sketch_has_none() -> None:
+    assert effect_sketch(replace(LIBRARY[0], sketch=None)) is None
+
+
+def test_every_drawing_can_be_asked_for_with_its_labels() -> None:
+    assert DRAWINGS.keys() == sketches.DRAWINGS.keys()
+    for name, count in DRAWINGS.items():
+        sketch = Sketch(name, "what it shows", "a caption", ("left", "right")[:count])
+        drawn = effect_sketch(replace(LIBRARY[0], sketch=sketch))
+        assert drawn is not None
+        assert ">a caption</text>" in drawn
+
+
+def test_a_sketch_that_cannot_be_drawn_is_refused_where_it_is_declared() -> None:
+    with pytest.raises(ValueError, match="there is no drawing wheel; there are backlash"):
+        Sketch("wheel", "a wheel", "round")
+    with pytest.raises(ValueError, match="eccentric asks for 1 labels"):
+        Sketch("eccentric", "a wheel", "round")
 
 
 @pytest.mark.parametrize("ideal", MANOEUVRES, ids=lambda ideal: ideal.name)

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from werrimbi_odom.effects.functions import limited, saturated
 from werrimbi_odom.model.drive import Drive, Span
-from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
 TRAVEL = Parameter(
@@ -14,7 +14,15 @@ TRAVEL = Parameter(
 )
 
 
-@wheel_effect(travel=TRAVEL)
+@wheel_effect(
+    sketch=Sketch(
+        "backlash",
+        "play between the left encoder and its wheel",
+        "after each reversal the encoder turns alone first",
+        ("left",),
+    ),
+    travel=TRAVEL,
+)
 def left_backlash(
     wheels: WheelTravel[Number], drive: Drive[Number], travel: float
 ) -> WheelTravel[Number]:
@@ -37,7 +45,15 @@ def left_backlash(
     return wheels._replace(left=wheels.left - drive.left_direction * lost)
 
 
-@wheel_effect(travel=TRAVEL)
+@wheel_effect(
+    sketch=Sketch(
+        "backlash",
+        "play between the right encoder and its wheel",
+        "after each reversal the encoder turns alone first",
+        ("right",),
+    ),
+    travel=TRAVEL,
+)
 def right_backlash(
     wheels: WheelTravel[Number], drive: Drive[Number], travel: float
 ) -> WheelTravel[Number]:

@@ -6,11 +6,16 @@ from __future__ import annotations
 
 from werrimbi_odom.effects.functions import exp
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.effect import Parameter, body_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
 
 
 @body_effect(
+    sketch=Sketch(
+        "castor",
+        "after a reversal the castor swings round",
+        "the castor swings round and kicks the robot aside",
+    ),
     angle=Parameter(
         "rad",
         null=0.0,

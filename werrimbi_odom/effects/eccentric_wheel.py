@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from werrimbi_odom.effects.functions import cos
 from werrimbi_odom.model.drive import Drive, Span
-from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
 AMPLITUDE = Parameter(
@@ -22,7 +22,17 @@ PHASE = Parameter(
 )
 
 
-@wheel_effect(quadrature=("amplitude", "phase"), amplitude=AMPLITUDE, phase=PHASE)
+@wheel_effect(
+    sketch=Sketch(
+        "eccentric",
+        "the axle is off the left wheel's centre",
+        "the left wheel leads and lags once a turn",
+        ("left",),
+    ),
+    quadrature=("amplitude", "phase"),
+    amplitude=AMPLITUDE,
+    phase=PHASE,
+)
 def eccentric_left_wheel(
     travel: WheelTravel[Number], drive: Drive[Number], amplitude: float, phase: float
 ) -> WheelTravel[Number]:
@@ -40,7 +50,17 @@ def eccentric_left_wheel(
     return travel._replace(left=travel.left + _lead(drive.left_angle, amplitude, phase))
 
 
-@wheel_effect(quadrature=("amplitude", "phase"), amplitude=AMPLITUDE, phase=PHASE)
+@wheel_effect(
+    sketch=Sketch(
+        "eccentric",
+        "the axle is off the right wheel's centre",
+        "the right wheel leads and lags once a turn",
+        ("right",),
+    ),
+    quadrature=("amplitude", "phase"),
+    amplitude=AMPLITUDE,
+    phase=PHASE,
+)
 def eccentric_right_wheel(
     travel: WheelTravel[Number], drive: Drive[Number], amplitude: float, phase: float
 ) -> WheelTravel[Number]:

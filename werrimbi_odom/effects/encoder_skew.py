@@ -5,11 +5,20 @@
 from __future__ import annotations
 
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
 
 @wheel_effect(
+    sketch=Sketch(
+        "late",
+        "the right counter is read later than the left",
+        "the two counters are not read at one instant",
+        (
+            "left counter",
+            "right counter",
+        ),
+    ),
     delay=Parameter(
         "s",
         null=0.0,

@@ -6,11 +6,12 @@ from __future__ import annotations
 
 from werrimbi_odom.effects.functions import cos, limited, sin, sinc
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.effect import Parameter, body_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
 
 
 @body_effect(
+    sketch=Sketch("slope", "the floor leans", "drifts to one side of the room, whatever it faces"),
     x=Parameter(
         "m/m", null=0.0, typical=5e-3, bounds=(-0.2, 0.2), says="drift along x per metre of path"
     ),

@@ -5,11 +5,16 @@
 from __future__ import annotations
 
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.effect import Parameter, body_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
 
 
 @body_effect(
+    sketch=Sketch(
+        "slip_outwards",
+        "in a curve the robot creeps outwards",
+        "in a curve the tyres creep outwards",
+    ),
     creep=Parameter(
         "s",
         null=0.0,

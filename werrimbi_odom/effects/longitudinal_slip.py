@@ -5,11 +5,16 @@
 from __future__ import annotations
 
 from werrimbi_odom.model.drive import Drive, Span
-from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
 
 @wheel_effect(
+    sketch=Sketch(
+        "slip_ahead",
+        "a driving tyre rolls more than it travels",
+        "lost while speeding up, back while braking",
+    ),
     coefficient=Parameter(
         "s^2/m",
         null=0.0,

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from werrimbi_odom.effects.functions import limited
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
 RAMP = 0.05
@@ -26,7 +26,16 @@ ABOVE = Parameter(
 )
 
 
-@wheel_effect(fraction=FRACTION, above=ABOVE)
+@wheel_effect(
+    sketch=Sketch(
+        "lost_counts",
+        "the left encoder loses counts",
+        "above a speed the left encoder loses counts",
+        ("left",),
+    ),
+    fraction=FRACTION,
+    above=ABOVE,
+)
 def left_missed_ticks(
     travel: WheelTravel[Number], drive: Drive[Number], fraction: float, above: float
 ) -> WheelTravel[Number]:
@@ -45,7 +54,16 @@ def left_missed_ticks(
     return travel._replace(left=travel.left / (1.0 - _lost(drive.left_speed.end, fraction, above)))
 
 
-@wheel_effect(fraction=FRACTION, above=ABOVE)
+@wheel_effect(
+    sketch=Sketch(
+        "lost_counts",
+        "the right encoder loses counts",
+        "above a speed the right encoder loses counts",
+        ("right",),
+    ),
+    fraction=FRACTION,
+    above=ABOVE,
+)
 def right_missed_ticks(
     travel: WheelTravel[Number], drive: Drive[Number], fraction: float, above: float
 ) -> WheelTravel[Number]:

@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from werrimbi_odom.model.effect import Effect, Parameter, Stage
+from werrimbi_odom.model.effect import Effect, Parameter, Stage, Twin
 
 SECTIONS = ("Formula", "Signature", "Ruler", "Twins", "Alike")
 """Words that begin a section of the docstring, at the start of a line."""
@@ -47,7 +47,7 @@ class Page:
 
 
 def page_of(effect: Effect) -> Page:
-    """Take the docstring of an effect apart."""
+    """Take the docstring of an effect apart; its declared twins are said with those in it."""
     physics: list[str] = []
     sections: dict[str, list[str]] = {}
     current: list[str] | None = None
@@ -61,10 +61,25 @@ def page_of(effect: Effect) -> Page:
         else:
             current = None
             physics.append(line)
+    found = {name: _flush(lines) for name, lines in sections.items()}
+    twins = [_of_twin(twin) for twin in effect.indistinguishable_from if twin.do]
+    if twins:
+        found["Twins"] = ".\n".join([*twins, *([found["Twins"]] if "Twins" in found else [])])
     return Page(
         tuple(" ".join(part.split()) for part in "\n".join(physics).split("\n\n") if part.strip()),
-        {name: _flush(lines) for name, lines in sections.items()},
+        {name: found[name] for name in SECTIONS if name in found},
     )
+
+
+def _of_twin(twin: Twin) -> str:
+    """What there is to know of a twin, in lines as those of a docstring."""
+    same = [f"{name} = {_times(factor)}{own}" for name, (own, factor) in twin.values.items()]
+    who = f"{twin.name} ({', '.join(same)})" if same else twin.name
+    return textwrap.fill(f"{who}: {twin.told_apart_by}. So {twin.do}", 85)
+
+
+def _times(factor: float) -> str:
+    return {1.0: "", -1.0: "-"}.get(factor, f"{factor:g} * ")
 
 
 def as_text(effect: Effect) -> str:
@@ -107,7 +122,7 @@ def as_json(effect: Effect) -> dict[str, Any]:
         "summary": effect.summary,
         "physics": " ".join(page.physics),
         **{name.lower(): page.sections.get(name) for name in SECTIONS},
-        "twin_effects": list(effect.twins),
+        "twin_effects": [twin.name for twin in effect.indistinguishable_from],
         "channels": list(effect.channels),
         "parameters": {
             name: {

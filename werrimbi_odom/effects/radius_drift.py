@@ -5,11 +5,14 @@
 from __future__ import annotations
 
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
 
 @wheel_effect(
+    sketch=Sketch(
+        "shrinking", "the wheels get smaller with time", "the wheels wear, warm or lose pressure"
+    ),
     per_metre=Parameter(
         "1/m",
         null=0.0,

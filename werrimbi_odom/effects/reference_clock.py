@@ -4,11 +4,20 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.model.effect import Parameter, reference_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, reference_effect
 from werrimbi_odom.model.view import View
 
 
 @reference_effect(
+    sketch=Sketch(
+        "late",
+        "the reference's stamps are late",
+        "the reference tells the same, later",
+        (
+            "counters",
+            "reference",
+        ),
+    ),
     delay=Parameter(
         "s",
         null=0.0,
@@ -33,6 +42,15 @@ def reference_delay(view: View, delay: float) -> View:
 
 
 @reference_effect(
+    sketch=Sketch(
+        "late",
+        "the reference's heading is later than its position",
+        "the reference's heading comes after its position",
+        (
+            "its position",
+            "its heading",
+        ),
+    ),
     delay=Parameter(
         "s",
         null=0.0,

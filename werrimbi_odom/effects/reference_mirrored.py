@@ -4,11 +4,17 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.model.effect import reference_effect
+from werrimbi_odom.effects.twins import turning_the_wrong_way
+from werrimbi_odom.model.effect import Sketch, reference_effect
 from werrimbi_odom.model.view import View
 
 
-@reference_effect(twins=("wheels_swapped",))
+@reference_effect(
+    twins=(turning_the_wrong_way("wheels_swapped"),),
+    sketch=Sketch(
+        "mirrored", "the reference's frame is left-handed", "the reference's y points the other way"
+    ),
+)
 def reference_mirrored(view: View) -> View:
     """The reference's frame is left-handed: y points down, or east and north are exchanged.
 
@@ -18,8 +24,5 @@ def reference_mirrored(view: View) -> View:
     Signature  left turns come out as right turns of the same size; lines are good
     Ruler      push the robot from the reference's origin along x, then to the left: y must grow;
                turn it to the left: yaw must grow
-    Twins      wheels_swapped is one and the same to the reference, on any drive (once the radii of
-               left and right are exchanged too): the robot turns the wrong way, or the reference
-               does. Turn the robot to the left by hand and look whose yaw grows
     """
     return view._replace(mirrored=not view.mirrored)

@@ -4,11 +4,17 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.model.effect import Parameter, reference_effect
+from werrimbi_odom.effects.twins import askew
+from werrimbi_odom.model.effect import Parameter, Sketch, reference_effect
 from werrimbi_odom.model.view import View
 
 
 @reference_effect(
+    sketch=Sketch(
+        "lever_arm",
+        "another point than the axle's middle is measured",
+        "spinning on the spot moves the measured point",
+    ),
     x=Parameter(
         "m", null=0.0, typical=0.05, bounds=(-5.0, 5.0), says="ahead of the axle's midpoint"
     ),
@@ -34,7 +40,10 @@ def reference_lever_arm(view: View, x: float, y: float) -> View:
 
 
 @reference_effect(
-    twins=("sideways_drift",),
+    twins=(askew("sideways_drift"),),
+    sketch=Sketch(
+        "yaw_offset", "the reference's forward axis is askew", "the marker is mounted askew"
+    ),
     angle=Parameter(
         "rad",
         null=0.0,
@@ -53,10 +62,7 @@ def reference_yaw_offset(view: View, angle: float) -> View:
     Signature  the robot seems to travel at a constant angle to where it looks, forwards and back
     Ruler      chalk the robot's track on a line of 5 m and the marker's axis at its end: the angle
                between them
-    Twins      sideways_drift = -angle is one and the same to the reference, on any drive: an axle
-               askew under the body, or a marker askew on it. Take the marker off and mount it anew,
-               turned by 90 degrees: what stays is the axle's, what turns is the mount's. At 180
-               degrees, also wheels_swapped with both wheels reversed: a robot that drives stern
-               first. Look which end goes ahead
+    Twins      At 180 degrees, also wheels_swapped with both wheels reversed: a robot that drives
+               stern first. Look which end goes ahead
     """
     return view._replace(yaw=view.yaw + angle)

@@ -6,13 +6,17 @@ from __future__ import annotations
 
 import math
 
+from werrimbi_odom.effects.twins import askew
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.effect import Parameter, body_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
 
 
 @body_effect(
-    twins=("reference_yaw_offset",),
+    sketch=Sketch(
+        "sideways", "the robot goes askew of where it faces", "the axle is not square to the body"
+    ),
+    twins=(askew("reference_yaw_offset"),),
     angle=Parameter(
         "rad",
         null=0.0,
@@ -35,10 +39,6 @@ def sideways_drift(
     Ruler      drive 5 m straight and chalk the floor below the middle of bow and stern, before and
                after: the line between the bow marks is turned against the line from stern to bow by
                the angle
-    Twins      reference_yaw_offset = -angle is one and the same to the reference, on any drive: an
-               axle askew under the body, or a marker askew on it. Take the marker off and mount it
-               anew, turned by 90 degrees: what stays is the axle's, what turns is the mount's. Or
-               use the ruler
     """
     cos, sin = math.cos(angle), math.sin(angle)
     return BodyMotion(

@@ -4,12 +4,19 @@
 
 from __future__ import annotations
 
+from werrimbi_odom.effects.twins import radii_over_base
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.effect import Parameter, body_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
 
 
 @body_effect(
+    twins=(radii_over_base("wheel_radius_scale"),),
+    sketch=Sketch(
+        "track",
+        "the wheels' contact points are farther apart than entered",
+        "the wheels stand on the floor wider apart",
+    ),
     multiplier=Parameter(
         "", null=1.0, typical=1.02, bounds=(1e-4, 1e4), says="effective over assumed wheel base"
     ),
@@ -27,7 +34,6 @@ def track_width(
     Signature  every turn is off by the same share, left and right, fast and slow; lines are good
     Ruler      spin ten turns by the odometry from a chalk line on the floor: the robot falls short
                of the line by 20 pi * (multiplier - 1)
-    Twins      wheel_separation_multiplier of the robot file is the same number. Where yaw alone is
-               measured, wheel_radius_scale is its inverse: drive a taped distance
+    Twins      wheel_separation_multiplier of the robot file is the same number
     """
     return motion._replace(turn=motion.turn / multiplier)

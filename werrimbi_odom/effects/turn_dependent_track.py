@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from werrimbi_odom.effects.functions import limited, share
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.effect import Parameter, body_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
 
 STRAIGHT = 0.05
@@ -15,6 +15,9 @@ counters' jitter turns the robot to and fro, and must not count as turns."""
 
 
 @body_effect(
+    sketch=Sketch(
+        "two_bases", "spins and wide curves need another base", "each needs another base"
+    ),
     sharpness=Parameter(
         "",
         null=0.0,

@@ -5,11 +5,14 @@
 from __future__ import annotations
 
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
 
 @wheel_effect(
+    sketch=Sketch(
+        "unequal", "one wheel is larger than the other", "equal counts, unequal ways: a line bends"
+    ),
     ratio=Parameter(
         "", null=1.0, typical=1.005, bounds=(1e-4, 1e4), says="right over left radius (E_d)"
     ),

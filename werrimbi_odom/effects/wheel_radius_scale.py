@@ -4,12 +4,17 @@
 
 from __future__ import annotations
 
+from werrimbi_odom.effects.twins import radii_over_base
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
 
 @wheel_effect(
+    twins=(radii_over_base("track_width"),),
+    sketch=Sketch(
+        "radius", "both wheels are larger than entered", "each turn goes farther than was entered"
+    ),
     multiplier=Parameter(
         "", null=1.0, typical=1.01, bounds=(1e-4, 1e4), says="true over assumed wheel radius"
     ),

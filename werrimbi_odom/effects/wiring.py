@@ -4,11 +4,17 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.model.effect import wiring_mistake
+from werrimbi_odom.effects.twins import turning_the_wrong_way
+from werrimbi_odom.model.effect import Sketch, wiring_mistake
 from werrimbi_odom.model.wiring import Wiring
 
 
-@wiring_mistake(twins=("reference_mirrored",))
+@wiring_mistake(
+    twins=(turning_the_wrong_way("reference_mirrored"),),
+    sketch=Sketch(
+        "swapped", "left and right counters are exchanged", "left and right counters are exchanged"
+    ),
+)
 def wheels_swapped(wiring: Wiring) -> Wiring:
     """The counter that is recorded as left belongs to the right wheel, and the other way round.
 
@@ -17,14 +23,18 @@ def wheels_swapped(wiring: Wiring) -> Wiring:
     Formula    left, right = right, left
     Signature  left turns come out as right turns of the same size; lines are good
     Ruler      push the robot round its right wheel, by hand: the left counter must run, and grow
-    Twins      reference_mirrored is one and the same to the reference, on any drive (once the radii
-               of left and right are exchanged too): the robot turns the wrong way, or the reference
-               does. Turn the robot to the left by hand and look whose yaw grows
     """
     return wiring._replace(swapped=not wiring.swapped)
 
 
-@wiring_mistake()
+@wiring_mistake(
+    sketch=Sketch(
+        "wrong_sign",
+        "the left counter has the wrong sign",
+        "driving forwards, the left counter falls",
+        ("left",),
+    ),
+)
 def left_wheel_reversed(wiring: Wiring) -> Wiring:
     """The left counter counts backwards while its wheel rolls forwards.
 
@@ -40,7 +50,14 @@ def left_wheel_reversed(wiring: Wiring) -> Wiring:
     return wiring._replace(left_sign=-wiring.left_sign)
 
 
-@wiring_mistake()
+@wiring_mistake(
+    sketch=Sketch(
+        "wrong_sign",
+        "the right counter has the wrong sign",
+        "driving forwards, the right counter falls",
+        ("right",),
+    ),
+)
 def right_wheel_reversed(wiring: Wiring) -> Wiring:
     """The right counter counts backwards while its wheel rolls forwards.
 

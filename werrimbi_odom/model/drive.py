@@ -81,9 +81,9 @@ class Drive(Generic[Number]):
     right_reversals: Number
     """The same for the right wheel."""
     heading: Span[Number]
-    """Of the robot in the odometry frame [rad]."""
+    """Of the robot, in the frame that its pose is given in [rad]."""
     x: Span[Number]
-    """Where the axle's midpoint is, in the odometry frame [m]; NaN but for effects with `pose`."""
+    """Where the axle's midpoint is, in the same frame [m]."""
     y: Span[Number]
     """Likewise, across [m]."""
     channels: Mapping[str, Span[Number]] = field(default_factory=dict)

@@ -4,12 +4,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
 from werrimbi_odom.model.drive import ROLLBACK, Drive, RawStep, Span
+from werrimbi_odom.model.motion import BodyMotion, displacement
+from werrimbi_odom.model.pose import Pose
 
 
 class _Means(NamedTuple):
@@ -85,10 +86,10 @@ class DriveMemory:
     def step(
         self,
         raw: RawStep,
-        heading: float,
+        pose: Pose,
         channels: Mapping[str, Span[float]] | None = None,
     ) -> Drive[float]:
-        """Take one step and tell an effect all that it may know of it."""
+        """Take one step, which begins at `pose`, and tell an effect all that it may know of it."""
         time = Span(self._time, self._time + raw.duration)
         distance = Span(self._distance, self._distance + abs(raw.along))
         means = _Means(
@@ -102,6 +103,8 @@ class DriveMemory:
         right_angle = Span(self.right_angle, self.right_angle + raw.right_angle)
         left, right = self._left.step(raw.left), self._right.step(raw.right)
         middle = self._middle.step(raw.along)
+        x, y, heading = pose
+        dx, dy = displacement(BodyMotion(raw.along, 0.0, raw.turn), heading)
         self._time, self._distance = time.end, distance.end
         self._means = means
         self.left_angle, self.right_angle = left_angle.end, right_angle.end
@@ -125,7 +128,7 @@ class DriveMemory:
             float(self._left.reversals),
             float(self._right.reversals),
             Span(heading, heading + raw.turn),
-            Span(math.nan, math.nan),
-            Span(math.nan, math.nan),
+            Span(x, x + dx),
+            Span(y, y + dy),
             channels or {},
         )

@@ -10,6 +10,7 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.model.drive import ROLLBACK, Drive, Span
+from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Floats
 
 
@@ -28,11 +29,14 @@ def drive_of_run(
 ) -> Drive[Floats]:
     """All steps of a run at once; the same as feeding them to a `drive_memory.DriveMemory`.
 
-    Arrays have shape (n,), as in `RawStep`; the heading starts at zero (`Drive.with_heading`).
+    Arrays have shape (n,), as in `RawStep`. The pose is that of the counters alone, from zero on
+    (`Drive.with_heading`, `Drive.with_place`).
     """
     least = max(flicker, ROLLBACK)
     middle = _shuttled(along, least)
     left_side, right_side = _shuttled(left, least), _shuttled(right, least)
+    heading = _grown(0.0, turn)
+    dx, dy = displacement(BodyMotion(along, np.zeros_like(along), turn), heading.start)
     return Drive(
         duration,
         _grown(0.0, duration),
@@ -52,9 +56,9 @@ def drive_of_run(
         middle.reversals,
         left_side.reversals,
         right_side.reversals,
-        _grown(0.0, turn),
-        _nowhere(turn),
-        _nowhere(turn),
+        heading,
+        _grown(0.0, dx),
+        _grown(0.0, dy),
         channels or {},
     )
 
@@ -69,11 +73,6 @@ def _grown(first: float, steps: Floats) -> Span[Floats]:
     """Running sum before and after each step."""
     sums = np.cumsum(np.concatenate([[first], steps]))
     return Span(sums[:-1], sums[1:])
-
-
-def _nowhere(steps: Floats) -> Span[Floats]:
-    """A place that nobody has told yet."""
-    return Span(np.full_like(steps, np.nan), np.full_like(steps, np.nan))
 
 
 def _lagged(means: Floats) -> Span[Floats]:

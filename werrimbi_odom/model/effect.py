@@ -10,60 +10,44 @@ counters are read (Wiring -> Wiring).
 Laws that every effect keeps (`check_effect` holds them against it, a user's own too): at its null
 values it is the exact identity; a step's result depends on that step's row alone; it changes none
 of its arguments; it is finite at the bounds; splitting a step changes nothing; a turn that depends
-on the heading does so gently.
+on the heading does so gently; a drive comes out alike live, recorded and predicted. What it looks
+at is found by running it (`werrimbi_odom.model.passes`), and need not be declared.
 """
 
 from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
+from werrimbi_odom.model.declared import Parameter, Sketch, Twin
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.view import View
 from werrimbi_odom.model.wiring import Wiring
 
+__all__ = [
+    "AppliedEffect",
+    "Effect",
+    "Parameter",
+    "Sketch",
+    "Stage",
+    "Twin",
+    "after_body_effects",
+    "after_wheel_effects",
+    "always_twins",
+    "body_effect",
+    "reference_effect",
+    "twin_of",
+    "view_of",
+    "wheel_effect",
+    "wiring_mistake",
+    "wiring_of",
+]
+
 Stage = Literal["wiring", "wheels", "body", "reference"]
-
-
-@dataclass(frozen=True, slots=True)
-class Parameter:
-    """A parameter of an effect, declared once.
-
-    Parameters
-    ----------
-    unit : str
-        SI unit, "" for a pure number.
-    null : float
-        The value at which the effect is absent.
-    typical : float
-        A size that real robots show; the scale on which derivatives are taken.
-    bounds : (float, float)
-        What physics allows; a fit that ends there is a finding of its own.
-    says : str
-        What the number is, in plain words.
-    per_run : bool
-        A nuisance that each run has anew (a phase where counters start anywhere).
-    tries : tuple of float
-        Given for a shape (a threshold, a length): it does nothing while the effect's other
-        parameters are null, so no derivative there finds it. A fit begins at each of these values.
-    """
-
-    unit: str
-    null: float
-    typical: float
-    bounds: tuple[float, float]
-    says: str
-    per_run: bool = False
-    tries: tuple[float, ...] = ()
-
-    @property
-    def scale(self) -> float:
-        """Distance from null that real robots show; of a shape, its typical size."""
-        return abs(self.typical) if self.tries else abs(self.typical - self.null)
 
 
 Apply = Callable[..., Any]
@@ -84,17 +68,16 @@ class Effect:
         The law.
     doc : str
         Its page: what it is, then Formula, Signature, Ruler, Twins.
-    twins : tuple of str
-        Effects that no drive can tell from it, by algebra.
+    indistinguishable_from : tuple of Twin
+        Effects that no drive can tell from it, by algebra, and what can.
     quadrature : (str, str), optional
         Names of an amplitude and a phase [rad]. The amplitude alone has no derivative at null (it
         depends on the phase); amplitude * cos(phase) and amplitude * sin(phase) have. See
         `to_fit`.
     channels : tuple of str
         Extra measured channels that it looks at; without them it cannot be applied.
-    pose : bool
-        It looks at where the robot stands (`Drive.x`, `Drive.y`), or acts on the wheels and looks
-        at the heading.
+    sketch : Sketch, optional
+        A drawing of it, for reports.
     """
 
     name: str
@@ -102,10 +85,15 @@ class Effect:
     parameters: Mapping[str, Parameter]
     apply: Apply
     doc: str
-    twins: tuple[str, ...] = ()
+    indistinguishable_from: tuple[Twin, ...] = ()
     quadrature: tuple[str, str] | None = None
     channels: tuple[str, ...] = ()
-    pose: bool = False
+    sketch: Sketch | None = None
+
+    @property
+    def twins(self) -> tuple[str, ...]:
+        """Names of the effects that no drive can tell from it, whatever the reference measures."""
+        return tuple(twin.name for twin in self.indistinguishable_from if not twin.of_headings)
 
     @property
     def summary(self) -> str:
@@ -204,48 +192,52 @@ class AppliedEffect:
 
 def wheel_effect(
     *,
-    twins: tuple[str, ...] = (),
+    twins: Sequence[Twin | str] = (),
     quadrature: tuple[str, str] | None = None,
     channels: tuple[str, ...] = (),
-    pose: bool = False,
+    sketch: Sketch | None = None,
+    pose: bool = False,  # asked for once; what a law looks at is now found by running it
     **parameters: Parameter,
 ) -> Callable[[Apply], Effect]:
     """Declare ``f(travel, drive, **parameters) -> WheelTravel`` as an effect on the wheels."""
-    return _declared("wheels", parameters, 2, twins, quadrature, channels, pose)
+    return _declared("wheels", parameters, 2, twins, sketch, quadrature, channels)
 
 
 def body_effect(
     *,
-    twins: tuple[str, ...] = (),
+    twins: Sequence[Twin | str] = (),
     quadrature: tuple[str, str] | None = None,
     channels: tuple[str, ...] = (),
+    sketch: Sketch | None = None,
     pose: bool = False,
     **parameters: Parameter,
 ) -> Callable[[Apply], Effect]:
     """Declare ``f(motion, drive, **parameters) -> BodyMotion`` as an effect on the body."""
-    return _declared("body", parameters, 2, twins, quadrature, channels, pose)
+    return _declared("body", parameters, 2, twins, sketch, quadrature, channels)
 
 
 def reference_effect(
-    *, twins: tuple[str, ...] = (), **parameters: Parameter
+    *, twins: Sequence[Twin | str] = (), sketch: Sketch | None = None, **parameters: Parameter
 ) -> Callable[[Apply], Effect]:
     """Declare ``f(view, **parameters) -> View`` as an effect of the measurement."""
-    return _declared("reference", parameters, 1, twins)
+    return _declared("reference", parameters, 1, twins, sketch)
 
 
-def wiring_mistake(*, twins: tuple[str, ...] = ()) -> Callable[[Apply], Effect]:
+def wiring_mistake(
+    *, twins: Sequence[Twin | str] = (), sketch: Sketch | None = None
+) -> Callable[[Apply], Effect]:
     """Declare ``f(wiring) -> Wiring`` as a set-up mistake: it is made, or it is not."""
-    return _declared("wiring", {}, 1, twins)
+    return _declared("wiring", {}, 1, twins, sketch)
 
 
 def _declared(
     stage: Stage,
     parameters: Mapping[str, Parameter],
     looked_at: int,
-    twins: tuple[str, ...],
+    twins: Sequence[Twin | str],
+    sketch: Sketch | None,
     quadrature: tuple[str, str] | None = None,
     channels: tuple[str, ...] = (),
-    pose: bool = False,
 ) -> Callable[[Apply], Effect]:
     def declare(apply: Apply) -> Effect:
         name = apply.__name__
@@ -263,9 +255,24 @@ def _declared(
             raise TypeError(
                 f"effect {name}: its quadrature names {quadrature}, no parameters of it"
             )
-        return Effect(name, stage, dict(parameters), apply, doc, twins, quadrature, channels, pose)
+        others = tuple(Twin(each) if isinstance(each, str) else each for each in twins)
+        return Effect(
+            name, stage, dict(parameters), apply, doc, others, quadrature, channels, sketch
+        )
 
     return declare
+
+
+def twin_of(one: Effect, other: Effect) -> Twin | None:
+    """What the one says of the other as its twin, or the other of the one; None: no twins."""
+    found = [twin for twin in one.indistinguishable_from if twin.name == other.name]
+    found += [twin for twin in other.indistinguishable_from if twin.name == one.name]
+    return max(found, key=lambda twin: bool(twin.do), default=None)
+
+
+def always_twins(one: Effect, other: Effect) -> bool:
+    """Whether no drive can tell them apart, whatever the reference measures."""
+    return other.name in one.twins or one.name in other.twins
 
 
 def after_wheel_effects(

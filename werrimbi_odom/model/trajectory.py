@@ -19,11 +19,12 @@ from werrimbi_odom.model.covariance import (
 )
 from werrimbi_odom.model.cutting import Cut, cut
 from werrimbi_odom.model.drive import Span
-from werrimbi_odom.model.driving import Driven, acts, driven, features
+from werrimbi_odom.model.driving import acts, features
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder import Counts, EncoderLimits, EncoderTally
 from werrimbi_odom.model.moments import PathMoments
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
+from werrimbi_odom.model.passes import Driven, driven
 from werrimbi_odom.model.pieces import Piece, PieceRule, PieceTolerance, kind_of
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.recorded_counts import wheel_steps
@@ -134,7 +135,7 @@ def _driven(
     if not acts(robot):
         return Driven(raw, wheels_to_body(raw, robot.track))
     drive = features(robot, duration, raw, first_counts, channels)
-    return driven(robot, raw, drive, start.yaw, (start.x, start.y))
+    return driven(robot, raw, drive, start)
 
 
 def channel_spans(

@@ -11,8 +11,10 @@ import numpy as np
 
 from werrimbi_odom.effects.contract.demands import Values, corners, demand, settings, told, typical
 from werrimbi_odom.effects.contract.rehearsal import TRACK, Rehearsal, rows, seal, sealed
+from werrimbi_odom.effects.contract.three_ways import drives_alike
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
+from werrimbi_odom.model.passes import PLACE, watched
 from werrimbi_odom.model.pose import Floats
 
 Moved = WheelTravel[Floats] | BodyMotion[Floats]
@@ -95,9 +97,11 @@ def _does_not_mind_splitting(effect: Effect, rehearsal: Rehearsal) -> None:
     shape = (-1, len(_PARTS))
     for values in settings(effect):
         whole, pieces = _applied(effect, rehearsal, values), _applied(effect, parts, values)
+        seen = watched(rehearsal.drive)
+        effect.apply(_before(effect, rehearsal), seen, **values)
         if isinstance(whole, WheelTravel):
             apart = [abs(p.reshape(shape).sum(1) - w) for p, w in zip(pieces, whole, strict=True)]
-            if effect.pose:  # places lie on the chords of steps, and an arc has chords of its own
+            if seen.asked & PLACE:  # places lie on chords, and an arc has chords of its own
                 turn = abs(rehearsal.motion.turn)
                 sides = zip(apart, rehearsal.travel, strict=True)
                 apart = [np.maximum(a - abs(side) * turn, 0.0) for a, side in sides]
@@ -234,6 +238,7 @@ LAWS: tuple[Callable[[Effect, Rehearsal], None], ...] = (
     _does_not_mind_splitting,
     _turns_gently_with_heading,
     _live_equals_recorded,
+    drives_alike,
     _is_differentiable,
 )
 

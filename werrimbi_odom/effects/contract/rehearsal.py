@@ -15,7 +15,7 @@ from werrimbi_odom.model.drive import Drive, RawStep, Span
 from werrimbi_odom.model.drive_memory import DriveMemory
 from werrimbi_odom.model.drive_of_run import drive_of_run
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.pose import Floats, Pose
 
 TRACK, RADIUS, FLICKER = 0.35, 0.05, 2.5e-4
 FIRST_ANGLES = (0.3, -1.1)
@@ -90,7 +90,7 @@ class Rehearsal:
             self.right / RADIUS,
             flicker=FLICKER,
             first_angles=FIRST_ANGLES,
-            channels=self._measured(),
+            channels=self.measured,
         )
         x, y = self._places()
         moved = displacement(motion, drive.heading.start)
@@ -107,16 +107,15 @@ class Rehearsal:
         """Step by step, through the causal memory that the node has."""
         memory = DriveMemory(FLICKER, *FIRST_ANGLES)
         motion, heading = self.motion, 0.0
-        measured, (x, y) = self._measured(), self._places()
+        measured, (x, y) = self.measured, self._places()
         for i, (duration, left, right) in enumerate(
             zip(self.duration.tolist(), self.left.tolist(), self.right.tolist(), strict=True)
         ):
             one = BodyMotion(*(float(part[i]) for part in motion))
             raw = RawStep(duration, left, right, one.along, one.turn, left / RADIUS, right / RADIUS)
             now = {name: Span(float(s.start[i]), float(s.end[i])) for name, s in measured.items()}
-            seen = memory.step(raw, heading, now)
-            moved = displacement(one, heading)
-            seen = seen.with_place(float(x[i]), float(y[i]), moved)
+            pose = Pose(float(x[i]), float(y[i]), heading)
+            seen = memory.step(raw, pose, now).with_place(*pose[:2], displacement(one, heading))
             yield Moment(WheelTravel(left, right), one, seen)
             heading += one.turn
 
@@ -130,7 +129,9 @@ class Rehearsal:
             right=np.outer(self.right, parts).ravel(),
         )
 
-    def _measured(self) -> dict[str, Span[Floats]]:
+    @property
+    def measured(self) -> dict[str, Span[Floats]]:
+        """The channels at the start and end of each step."""
         time = np.concatenate([[0.0], np.cumsum(self.duration)])
         found = {}
         for number, name in enumerate(self.channels):

@@ -89,7 +89,6 @@ class Form:
     """Free numbers."""
     constants: tuple[str, ...] = ()
     quadrature: tuple[str, str] | None = None
-    pose: bool = False
     needs_span: bool = False
     extra: dict[str, str] = field(default_factory=dict)
 
@@ -315,5 +314,4 @@ def spot_form(
         ("share_inside", "standing"),
         4,
         (f"HALF = {half:.4g}  # m, from the axle's midpoint to a wheel",),
-        pose=True,
     )

@@ -55,8 +55,6 @@ def source_of(name: str, amount: Amount, seen: Seen, form: Form, drives: int, st
         body.append(f'{INDENT}quadrature=("{form.quadrature[0]}", "{form.quadrature[1]}"),')
     if seen.channel is not None:
         body.append(f'{INDENT}channels=("{seen.channel}",),')
-    if form.pose or (on_wheels and seen.name == "heading"):
-        body.append(f"{INDENT}pose=True,")
     body += [item.source() for item in form.parameters]
     body += [")", f"def {name}("]
     body += [f"{INDENT}{first}: {moved}[Number], drive: Drive[Number], {given}"]

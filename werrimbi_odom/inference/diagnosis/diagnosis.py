@@ -22,7 +22,6 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.holdout import begin
 from werrimbi_odom.inference.diagnosis.lasting import lasting, lasting_effect
-from werrimbi_odom.inference.diagnosis.ownership import Grasp, grasp_of
 from werrimbi_odom.inference.diagnosis.search import (
     Instead,
     Round,
@@ -32,6 +31,7 @@ from werrimbi_odom.inference.diagnosis.search import (
     search_round,
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.support import Support, support_of
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, chance, told
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.together import Together, together
@@ -157,14 +157,14 @@ def _beyond_the_library(
     )
     certain = [cell for cell in this.dependences if cell.p_value < VERY_SURE]
     if score is not None and best is not None:
-        grasp = _grasp(score, runs, this.before.point.model)
+        support = _support(score, runs, this.before.point.model)
         data, penalty = runs.data, this.before.price_of_one
         fall = max(_fall(score.gain, data), this.before.cost - best.cost)
         worth = fall - (best.price - this.before.price)
 
         def more_than_a_law_leaves(cell: Dependence) -> bool:
-            own = cell.channel in grasp.channels and bool(
-                grasp.fields & set(cell.variable.looks_at)
+            own = cell.channel in support.outputs and bool(
+                support.inputs & set(cell.variable.looks_at)
             )
             share = OWN_LAW_SHARE if own else LAW_SHARE
             return share * (_fall(cell.gain, data) - penalty * cell.degrees) > worth + RIVAL
@@ -180,5 +180,5 @@ def _fall(gain: float, data: int) -> float:
     return -data * math.log1p(-min(max(gain / data, 0.0), 0.999))
 
 
-def _grasp(score: Score, runs: Together, model: Model) -> Grasp:
-    return grasp_of(score.candidate, runs.drive(model.robot))
+def _support(score: Score, runs: Together, model: Model) -> Support:
+    return support_of(score.candidate, runs.drive(model.robot))

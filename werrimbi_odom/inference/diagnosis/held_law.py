@@ -28,9 +28,9 @@ from werrimbi_odom.inference.diagnosis.candidates import (
 )
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
 from werrimbi_odom.inference.diagnosis.lasting import lasting
-from werrimbi_odom.inference.diagnosis.ownership import Grasp, grasp_of
 from werrimbi_odom.inference.diagnosis.search import Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted, rise_without
+from werrimbi_odom.inference.diagnosis.support import Support, support_of
 from werrimbi_odom.inference.diagnosis.variables import functions_of
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob
@@ -66,11 +66,11 @@ def misfit_of_held_law(
         The dependence that no effect explains, which would end the search.
     """
     before = this.before
-    for law, grasp, explained in _laws(before, runs):
-        own = (cell for cell in this.dependences if _shares(grasp, cell))
+    for law, support, explained in _laws(before, runs):
+        own = (cell for cell in this.dependences if _shares(support, cell))
         if beyond is not None:
             share = beyond.gain / explained
-            if _shares(grasp, beyond) and share < LITTLE_OF_A_LAW:
+            if _shares(support, beyond) and share < LITTLE_OF_A_LAW:
                 return Misfit(law.name, beyond, share)
             continue
         if best is None:
@@ -102,14 +102,14 @@ def misfit_of_found(
     asked = [cell for cell in worth if cell.gain > cell.degrees * fit.price_of_one][:LEFT_ASKED]
     for cell, p_value in lasting(runs, fit.point, kind, knobs, asked):
         if p_value < LASTS:
-            for law, grasp, explained in _laws(fit, runs):
-                if _shares(grasp, cell):
+            for law, support, explained in _laws(fit, runs):
+                if _shares(support, cell):
                     return Misfit(law.name, cell, cell.gain / explained)
             return Misfit(None, cell, None)
     return None
 
 
-def _laws(fit: Fitted, runs: Together) -> Iterator[tuple[AppliedEffect, Grasp, float]]:
+def _laws(fit: Fitted, runs: Together) -> Iterator[tuple[AppliedEffect, Support, float]]:
     """Laws of a model with their reach, and by how much each lowers the cost."""
     robot = fit.point.model.robot
     drive = runs.drive(fit.point.model.laid_out(runs.run_of_step))
@@ -118,15 +118,15 @@ def _laws(fit: Fitted, runs: Together) -> Iterator[tuple[AppliedEffect, Grasp, f
             continue
         parameters = applied.effect.parameters
         shape = {name: applied.values[name] for name, item in parameters.items() if item.tries}
-        grasp = grasp_of(Candidate(applied.effect, shape), drive)
+        support = support_of(Candidate(applied.effect, shape), drive)
         explained = rise_without(applied.name, fit.design, fit.covariance, fit.point)
-        if grasp.channels and explained > 0.0:
-            yield applied, grasp, explained
+        if support.outputs and explained > 0.0:
+            yield applied, support, explained
 
 
-def _shares(grasp: Grasp, cell: Dependence) -> bool:
+def _shares(support: Support, cell: Dependence) -> bool:
     """Whether a dependence is in a variable that a law looks at, where it acts."""
-    return cell.channel in grasp.channels and bool(grasp.fields & set(cell.variable.looks_at))
+    return cell.channel in support.outputs and bool(support.inputs & set(cell.variable.looks_at))
 
 
 def _gain_beside(

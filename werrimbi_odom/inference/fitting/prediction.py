@@ -6,8 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from types import ModuleType
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +19,10 @@ from werrimbi_odom.model.covariance import (
     noise_of_wheel_variances,
     piece_covariance,
 )
-from werrimbi_odom.model.driving import acts, after_effects, looks_at_pose
+from werrimbi_odom.model.driving import acts
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
+from werrimbi_odom.model.passes import Driven, driven_from_measured
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.view import View
@@ -70,12 +69,6 @@ def predict(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Pr
     """
     own = {} if start_yaw is None else {START_YAW: start_yaw}
     return predict_all(Model(robot, (own,)), together([run]))
-
-
-def relative_poses(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Floats:
-    """Relative pose of every leg of one run as the reference shows it, (m, 3) [m, m, rad]."""
-    own = {} if start_yaw is None else {START_YAW: start_yaw}
-    return legs_shown(Model(robot, (own,)), together([run]))
 
 
 def legs_shown(model: Model, runs: Together, looked_at: Robot | None = None) -> Floats:
@@ -160,41 +153,14 @@ def _path(
     if not acts(robot):
         return _from_motion(raw, wheels_to_body(raw, robot.track))
     drive = runs.drive(looked_at or robot)
-    placed = looks_at_pose(robot)
-    if placed:
-        path = _from_motion(raw, wheels_to_body(raw, robot.track))
-    else:
-        path = _from_motion(*after_effects(robot, raw, drive))
-        if not _looks_at_heading(robot):
-            return path
-    # Heading and place contain the effects, and effects may look at them. Few effects turn the
-    # robot by its heading, so a pass with the heading of the first pass is mostly the answer.
-    plain = wheels_to_body(raw, robot.track)
-    for _ in range(_PASSES):
-        heading = headings_of(path, runs, view, start_yaws)
-        seen = drive.with_heading(heading, drive.heading.change)
-        if placed:
-            x, y = places_of(path, heading, runs, view)
-            seen = seen.with_place(x, y, displacement(plain, heading))
-        before, path = path, _from_motion(*after_effects(robot, raw, seen))
-        if _same(before, path, placed):
-            break
-    return path
 
+    def headings(found: Driven) -> Floats:
+        return headings_of(_from_motion(*found), runs, view, start_yaws)
 
-_PASSES = 30
+    def places(found: Driven, heading: Floats) -> tuple[Floats, Floats]:
+        return places_of(_from_motion(*found), heading, runs, view)
 
-
-def _same(before: DrivenPath, after: DrivenPath, placed: bool) -> bool:
-    """Whether another pass would find the same poses."""
-    if not placed and np.array_equal(before.motion.turn, after.motion.turn):
-        return True
-    parts = after.motion if placed else (after.motion.turn,)
-    olds = before.motion if placed else (before.motion.turn,)
-    return all(
-        not np.max(np.abs(new - old), initial=0.0) > 1e-10
-        for new, old in zip(parts, olds, strict=True)
-    )
+    return _from_motion(*driven_from_measured(robot, raw, drive, headings, places))
 
 
 def places_of(
@@ -214,21 +180,6 @@ def places_of(
     arm = complex(view.ahead, view.left) * np.exp(1j * heading[begin])
     placed = np.nan_to_num(start[anchor, 0] + 1j * start[anchor, 1]) - arm + moved
     return np.asarray(placed.real), np.asarray(placed.imag)
-
-
-def _looks_at_heading(robot: Robot) -> bool:
-    """Whether any law mentions the heading: itself, or a function that it calls."""
-    return any(_mentions(applied.effect.apply, "heading", 3) for applied in robot.effects)
-
-
-def _mentions(law: Any, name: str, deep: int) -> bool:
-    code = getattr(law, "__code__", None)
-    if code is None:
-        return not isinstance(law, (ModuleType, type)) and callable(law) and deep == 3
-    if name in code.co_names or "getattr" in code.co_names:
-        return True
-    called = (law.__globals__.get(other) for other in code.co_names)
-    return deep > 0 and any(_mentions(other, name, deep - 1) for other in called if callable(other))
 
 
 def _from_motion(travel: WheelTravel[Floats], motion: BodyMotion[Floats]) -> DrivenPath:

@@ -54,17 +54,16 @@ def adding_page(added: Added, made: Mapping[str, str]) -> Page:
             {"": held_out_legs_figure(added)},
         ),
     ]
-    cards = "".join(effect_card(effect.name) for effect in added.effects)
-    if cards:
-        shown.append(
-            Shown(
-                "physics",
-                "What was added",
-                "The physics, what it does to the data, and how to check it on the robot.",
-                html=f'<div class="cards">{cards}</div>',
-                main=False,
-            )
+    cards = "".join(effect_card(effect) for effect in added.effects)
+    shown.append(
+        Shown(
+            "physics",
+            "What was added",
+            "The physics, what it does to the data, and how to check it on the robot.",
+            html=f'<div class="cards">{cards}</div>',
+            main=False,
         )
+    )
     if added.remaining:
         shown.append(
             Shown(

@@ -12,7 +12,7 @@ import numpy as np
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.ownership import grasp_of
+from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, Model
@@ -105,12 +105,12 @@ def _own_cell(diagnosis: Diagnosis, effect: str | None) -> Dependence | None:
             if score.candidate.name != effect:
                 continue
             drive = diagnosis.runs.drive(this.before.point.model.robot)
-            grasp = grasp_of(score.candidate, drive)
+            support = support_of(score.candidate, drive)
             own = [
                 cell
                 for cell in by_worth
-                if cell.channel in grasp.channels
-                and set(cell.variable.looks_at) & grasp.fields
+                if cell.channel in support.outputs
+                and set(cell.variable.looks_at) & support.inputs
                 and cell.form != "place"
             ]
             return own[0] if own else by_worth[0]

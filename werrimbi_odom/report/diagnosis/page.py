@@ -8,13 +8,13 @@ import html
 from collections.abc import Mapping
 from pathlib import Path
 
-from werrimbi_odom.effects.collection import find
 from werrimbi_odom.effects.page import page_of
-from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.evidence_figures import variable_words
 from werrimbi_odom.report.diagnosis.figures import (
     before_after,
@@ -85,7 +85,7 @@ def diagnosis_page(told: Told, steps: NextSteps, made: Mapping[str, str]) -> Pag
 def _effects(diagnosis: Diagnosis) -> list[Shown]:
     """What was found, or its rivals, drawn and described."""
     names = list(dict.fromkeys([*diagnosis.rivals, *diagnosis.found]))
-    cards = [card for name in names if (card := effect_card(name))]
+    cards = [effect_card(each) for name in names if (each := effect_named(diagnosis, name))]
     if not cards:
         return []
     many = len(diagnosis.rivals) > 1
@@ -106,14 +106,10 @@ def _effects(diagnosis: Diagnosis) -> list[Shown]:
     ]
 
 
-def effect_card(name: str) -> str:
-    """An effect as a small panel: sketch, summary, how to check it; empty where it is unknown."""
-    try:
-        effect = find(name)
-    except InputError:
-        return ""
+def effect_card(effect: Effect) -> str:
+    """An effect as a small panel: sketch, summary, how to check it."""
     page = page_of(effect)
-    parts = [f"<h3>{html.escape(name)}</h3>", effect_sketch(name) or ""]
+    parts = [f"<h3>{html.escape(effect.name)}</h3>", effect_sketch(effect) or ""]
     if page.physics:
         parts.append(f"<p>{html.escape(page.physics[0])}</p>")
     for section, word in (("Signature", "In the data"), ("Ruler", "On the robot")):
@@ -233,9 +229,9 @@ def _sketches(diagnosis: Diagnosis) -> list[Shown]:
     """All other effects that were weighed, to look up."""
     said = {*diagnosis.found, *diagnosis.rivals}
     cards = [
-        card
+        effect_card(effect)
         for item in diagnosis.ranking
-        if item.effect not in said and (card := effect_card(item.effect))
+        if item.effect not in said and (effect := effect_named(diagnosis, item.effect))
     ]
     if not cards:
         return []

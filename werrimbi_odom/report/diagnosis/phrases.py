@@ -12,6 +12,7 @@ from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, chance
 from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
@@ -20,7 +21,7 @@ from werrimbi_odom.inference.rules import ONE_WHEEL
 from werrimbi_odom.inference.set_up.mistakes import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
-from werrimbi_odom.report.diagnosis.values import Value, effect_named, ranked_of, values_of
+from werrimbi_odom.report.diagnosis.values import Value, ranked_of, values_of
 from werrimbi_odom.report.numbers import chance_words, length, quantity
 from werrimbi_odom.report.sizes import sizes_words
 

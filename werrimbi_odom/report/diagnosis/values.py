@@ -17,7 +17,6 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.manoeuvres.proposal import sizes_of_calibration
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES
-from werrimbi_odom.model.effect import Effect
 
 _SHARES = {
     "track_width": (1.0, 0.0, 0.0),
@@ -66,20 +65,6 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
             per_run,
         )
     return found
-
-
-def effect_named(diagnosis: Diagnosis, name: str) -> Effect | None:
-    """The effect of a name, a user's own among them; None for a finding that is no effect."""
-    if name == IN_DEGREES:
-        return None
-    for this in diagnosis.rounds:
-        for score in this.scores:
-            if score.candidate.name == name:
-                return score.candidate.effect
-    for applied in diagnosis.robot.effects:
-        if applied.name == name:
-            return applied.effect
-    return find(name)
 
 
 def ranked_of(diagnosis: Diagnosis, name: str) -> Ranked | None:

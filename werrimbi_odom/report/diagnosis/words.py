@@ -9,7 +9,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.diagnosis import VERY_SURE, Diagnosis
+from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
+from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.diagnosis.as_json import significant
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import (
@@ -26,7 +28,6 @@ from werrimbi_odom.report.diagnosis.phrases import (
     sizes_found,
     whole,
 )
-from werrimbi_odom.report.diagnosis.values import effect_named
 from werrimbi_odom.report.numbers import chance_words, length, listed
 from werrimbi_odom.report.printed import filled
 
@@ -152,7 +153,8 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
             f"All drives together speak for {rivals[0]}; halves of them, taken by themselves, for "
             f"{listed(diagnosis.torn, 'or')}. A verdict that half of the data would change is none."
         )
-    twins = [name for name in rivals[1:] if first is not None and name in first.twins]
+    others = [effect_named(diagnosis, name) for name in rivals[1:]]
+    twins = [each.name for each in others if each and first and always_twins(first, each)]
     if twins:
         lines.append(
             f"To the reference {listed([rivals[0], *twins])} are one and the same, on any drive."

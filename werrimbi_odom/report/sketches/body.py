@@ -36,7 +36,6 @@ def _track_width() -> Parts:
         words(93, 82, "true", colour=ORANGE, anchor="end"),
         line((100, 40), (150, 40), colour=ORANGE, dash="2 4"),
         line((100, 116), (150, 116), colour=ORANGE, dash="2 4"),
-        words(170, 155, "the wheels stand on the floor wider apart"),
     ]
 
 
@@ -49,7 +48,6 @@ def _unequal_radii() -> Parts:
         words(95, 40, "left", colour=BLUE),
         words(205, 50, "right", colour=ORANGE),
         arc(300, 30, 80, 215, 275, colour=ORANGE, head=True),
-        words(170, 150, "equal counts, unequal ways: a line bends"),
     ]
 
 
@@ -63,29 +61,24 @@ def _radius_scale() -> Parts:
         words(125, 82, "entered", colour=GREY, anchor="start"),
         arrow((130, 108), (300, 108)),
         arrow((130, 118), (255, 118), colour=GREY),
-        words(170, 155, "each turn goes farther than was entered"),
     ]
 
 
-def _eccentric(side: str) -> Callable[[], Parts]:
+def _eccentric(side: str) -> Parts:
     colour = BLUE if side == "left" else ORANGE
 
-    def draw() -> Parts:
-        return [
-            floor(125, 145),
-            circle(80, 85, 40, colour=colour),
-            circle(80, 85, 3, colour=GREY, fill=GREY),
-            circle(93, 75, 4, colour=INK, fill=INK),
-            line((80, 85), (93, 75), colour=INK),
-            words(76, 74, "axle", anchor="end"),
-            arc(80, 85, 50, 150, 100, colour=GREY, head=True),
-            line((165, 85), (315, 85), colour=GREY),
-            wave(165, 85, 150, 24, colour=colour),
-            words(240, 130, "turns of the wheel", colour=GREY),
-            words(170, 158, f"the {side} wheel leads and lags once a turn"),
-        ]
-
-    return draw
+    return [
+        floor(125, 145),
+        circle(80, 85, 40, colour=colour),
+        circle(80, 85, 3, colour=GREY, fill=GREY),
+        circle(93, 75, 4, colour=INK, fill=INK),
+        line((80, 85), (93, 75), colour=INK),
+        words(76, 74, "axle", anchor="end"),
+        arc(80, 85, 50, 150, 100, colour=GREY, head=True),
+        line((165, 85), (315, 85), colour=GREY),
+        wave(165, 85, 150, 24, colour=colour),
+        words(240, 130, "turns of the wheel", colour=GREY),
+    ]
 
 
 def _longitudinal_slip() -> Parts:
@@ -98,7 +91,6 @@ def _longitudinal_slip() -> Parts:
         arrow((95, 128), (58, 128)),
         words(110, 137, "the tyre creeps back", colour=ORANGE, anchor="start"),
         line((240, 105), (265, 75), (295, 75), (318, 105), colour=GREY),
-        words(170, 160, "lost while speeding up, back while braking"),
     ]
 
 
@@ -110,7 +102,6 @@ def _lateral_slip() -> Parts:
         arrow((175, 38), (182, 8)),
         words(192, 20, "outwards", colour=ORANGE, anchor="start"),
         words(240, 96, "predicted", colour=GREY, anchor="start"),
-        words(150, 160, "in a curve the tyres creep outwards"),
     ]
 
 
@@ -122,7 +113,6 @@ def _turn_dependent() -> Parts:
         robot(225, 100, size=0.8),
         arc(225, 20, 80, 235, 305, colour=ORANGE, head=True),
         words(225, 143, "wide curve", colour=ORANGE),
-        words(170, 162, "each needs another base"),
     ]
 
 
@@ -134,7 +124,6 @@ def _sideways_drift() -> Parts:
         words(322, 125, "faces", colour=GREY, anchor="end"),
         words(322, 50, "goes", colour=ORANGE, anchor="end"),
         line((80, 68), (86, 142), colour=ORANGE, dash="2 4"),
-        words(180, 160, "the axle is not square to the body"),
     ]
 
 
@@ -147,7 +136,6 @@ def _floor_slope() -> Parts:
         circle(170, 88, 9),
         arrow((200, 80), (275, 91)),
         words(240, 72, "downhill", colour=ORANGE),
-        words(170, 150, "drifts to one side of the room, whatever it faces"),
     ]
 
 
@@ -164,28 +152,23 @@ def _castor_kick() -> Parts:
         arc(180, 72, 62, -40, -85, colour=ORANGE, head=True),
         words(262, 122, "kick", colour=ORANGE),
         words(60, 76, "castor", colour=GREY),
-        words(170, 158, "the castor swings round and kicks the robot aside"),
     ]
 
 
-def _backlash(side: str) -> Callable[[], Parts]:
+def _backlash(side: str) -> Parts:
     colour = BLUE if side == "left" else ORANGE
 
-    def draw() -> Parts:
-        return [
-            circle(90, 78, 34, colour=INK),
-            words(90, 83, "encoder"),
-            circle(215, 78, 44, colour=colour),
-            words(215, 83, f"{side} wheel", colour=colour),
-            line((124, 70), (148, 70), (148, 86), (124, 86)),
-            line((171, 58), (155, 58), (155, 66), (171, 66), colour=colour),
-            line((171, 92), (155, 92), (155, 100), (171, 100), colour=colour),
-            arrow((137, 112), (137, 90), colour=GREEN),
-            words(137, 127, "free play", colour=GREEN),
-            words(170, 155, "after each reversal the encoder turns alone first"),
-        ]
-
-    return draw
+    return [
+        circle(90, 78, 34, colour=INK),
+        words(90, 83, "encoder"),
+        circle(215, 78, 44, colour=colour),
+        words(215, 83, f"{side} wheel", colour=colour),
+        line((124, 70), (148, 70), (148, 86), (124, 86)),
+        line((171, 58), (155, 58), (155, 66), (171, 66), colour=colour),
+        line((171, 92), (155, 92), (155, 100), (171, 100), colour=colour),
+        arrow((137, 112), (137, 90), colour=GREEN),
+        words(137, 127, "free play", colour=GREEN),
+    ]
 
 
 def _radius_drift() -> Parts:
@@ -196,24 +179,21 @@ def _radius_drift() -> Parts:
         circle(280, 88, 27, colour=ORANGE),
         arrow((30, 130), (310, 130), colour=GREY),
         words(170, 146, "time, distance", colour=GREY),
-        words(170, 164, "the wheels wear, warm or lose pressure"),
     ]
 
 
-SKETCHES: Mapping[str, tuple[str, Callable[[], Parts]]] = {
-    "track_width": ("the wheels' contact points are farther apart than entered", _track_width),
-    "unequal_wheel_radii": ("one wheel is larger than the other", _unequal_radii),
-    "wheel_radius_scale": ("both wheels are larger than entered", _radius_scale),
-    "eccentric_left_wheel": ("the axle is off the left wheel's centre", _eccentric("left")),
-    "eccentric_right_wheel": ("the axle is off the right wheel's centre", _eccentric("right")),
-    "longitudinal_slip": ("a driving tyre rolls more than it travels", _longitudinal_slip),
-    "lateral_slip": ("in a curve the robot creeps outwards", _lateral_slip),
-    "turn_dependent_track": ("spins and wide curves need another base", _turn_dependent),
-    "sideways_drift": ("the robot goes askew of where it faces", _sideways_drift),
-    "floor_slope": ("the floor leans", _floor_slope),
-    "castor_kick": ("after a reversal the castor swings round", _castor_kick),
-    "left_backlash": ("play between the left encoder and its wheel", _backlash("left")),
-    "right_backlash": ("play between the right encoder and its wheel", _backlash("right")),
-    "radius_drift": ("the wheels get smaller with time", _radius_drift),
+DRAWINGS: Mapping[str, Callable[..., Parts]] = {
+    "track": _track_width,
+    "unequal": _unequal_radii,
+    "radius": _radius_scale,
+    "eccentric": _eccentric,
+    "slip_ahead": _longitudinal_slip,
+    "slip_outwards": _lateral_slip,
+    "two_bases": _turn_dependent,
+    "sideways": _sideways_drift,
+    "slope": _floor_slope,
+    "castor": _castor_kick,
+    "backlash": _backlash,
+    "shrinking": _radius_drift,
 }
-"""For each effect what the drawing shows, and the drawing."""
+"""By name; what they are called with are the labels of a `Sketch`."""

@@ -24,13 +24,14 @@ Point = tuple[float, float]
 Parts = list[str]
 
 
-def drawing(name: str, says: str, parts: Sequence[str]) -> str:
+def drawing(name: str, says: str, caption: str, parts: Sequence[str]) -> str:
     """The whole sketch; `says` is for those who do not see it."""
+    below = words(WIDTH / 2, HEIGHT - 11, caption)
     return (
         f'<svg class="sketch" viewBox="0 0 {WIDTH} {HEIGHT}" width="{WIDTH}" height="{HEIGHT}" '
         f'role="img" aria-label="{html.escape(f"{name}: {says}")}" fill="none" '
         f'stroke-linecap="round" stroke-linejoin="round" font-family="system-ui, sans-serif" '
-        f'font-size="13">{"".join(parts)}</svg>'
+        f'font-size="13">{"".join(parts)}{below}</svg>'
     )
 
 

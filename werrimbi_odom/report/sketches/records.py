@@ -24,37 +24,33 @@ from werrimbi_odom.report.sketches.parts import (
 )
 
 
-def _missed_ticks(side: str) -> Callable[[], Parts]:
+def _missed_ticks(side: str) -> Parts:
     colour = BLUE if side == "left" else ORANGE
 
-    def draw() -> Parts:
-        parts: Parts = []
-        x = 25.0
-        for number in range(13):
-            width = 17.0 if number < 5 else 9.0
-            lost = number in (7, 10)
-            parts.append(
-                line(
-                    (x, 95),
-                    (x, 60),
-                    (x + width, 60),
-                    (x + width, 95),
-                    (x + 2 * width, 95),
-                    colour=GREY if lost else colour,
-                    dash="2 4" if lost else "",
-                )
+    parts: Parts = []
+    x = 25.0
+    for number in range(13):
+        width = 17.0 if number < 5 else 9.0
+        lost = number in (7, 10)
+        parts.append(
+            line(
+                (x, 95),
+                (x, 60),
+                (x + width, 60),
+                (x + width, 95),
+                (x + 2 * width, 95),
+                colour=GREY if lost else colour,
+                dash="2 4" if lost else "",
             )
-            if lost:
-                parts.append(words(x + 5, 52, "×", colour=INK))
-            x += 2 * width
-        return [
-            *parts,
-            words(105, 120, "slow", colour=GREY),
-            words(265, 120, "fast", colour=GREY),
-            words(170, 150, f"above a speed the {side} encoder loses counts"),
-        ]
-
-    return draw
+        )
+        if lost:
+            parts.append(words(x + 5, 52, "×", colour=INK))
+        x += 2 * width
+    return [
+        *parts,
+        words(105, 120, "slow", colour=GREY),
+        words(265, 120, "fast", colour=GREY),
+    ]
 
 
 def _lever_arm() -> Parts:
@@ -65,7 +61,6 @@ def _lever_arm() -> Parts:
         arrow((140, 78), (195, 51)),
         words(212, 46, "what is measured", colour=GREEN, anchor="start"),
         words(104, 83, "axle's middle", anchor="end"),
-        words(170, 150, "spinning on the spot moves the measured point"),
     ]
 
 
@@ -77,7 +72,6 @@ def _yaw_offset() -> Parts:
         arrow((120, 90), (240, 45)),
         words(246, 44, "reference", colour=ORANGE, anchor="start"),
         arc(120, 90, 85, 0, 20, colour=ORANGE),
-        words(170, 155, "the marker is mounted askew"),
     ]
 
 
@@ -94,30 +88,25 @@ def _mirrored() -> Parts:
         words(215, 126, "y", colour=ORANGE),
         words(295, 44, "x", colour=ORANGE),
         arc(215, 40, 35, -10, -80, colour=ORANGE, head=True),
-        words(170, 158, "the reference's y points the other way"),
     ]
 
 
-def _late(first: str, second: str, caption: str) -> Callable[[], Parts]:
+def _late(first: str, second: str) -> Parts:
     def step(y: float, at: float, colour: str) -> str:
         return line(
             (20, y), (at, y), (at + 40, y - 38), (at + 130, y - 38), colour=colour, width=2.5
         )
 
-    def draw() -> Parts:
-        return [
-            step(68, 70, BLUE),
-            words(322, 34, first, colour=BLUE, anchor="end"),
-            step(128, 112, ORANGE),
-            words(322, 118, second, colour=ORANGE, anchor="end"),
-            line((70, 22), (70, 134), colour=GREY, dash="2 4"),
-            line((112, 22), (112, 134), colour=GREY, dash="2 4"),
-            arrow((70, 26), (112, 26), colour=GREEN),
-            words(120, 20, "late", colour=GREEN, anchor="start"),
-            words(170, 158, caption),
-        ]
-
-    return draw
+    return [
+        step(68, 70, BLUE),
+        words(322, 34, first, colour=BLUE, anchor="end"),
+        step(128, 112, ORANGE),
+        words(322, 118, second, colour=ORANGE, anchor="end"),
+        line((70, 22), (70, 134), colour=GREY, dash="2 4"),
+        line((112, 22), (112, 134), colour=GREY, dash="2 4"),
+        arrow((70, 26), (112, 26), colour=GREEN),
+        words(120, 20, "late", colour=GREEN, anchor="start"),
+    ]
 
 
 def _swapped() -> Parts:
@@ -129,46 +118,28 @@ def _swapped() -> Parts:
         words(270, 115, "right", colour=INK),
         line((102, 54), (150, 54), (200, 110), (235, 110), colour=BLUE, width=2.5),
         line((102, 106), (150, 106), (200, 50), (235, 50), colour=ORANGE, width=2.5),
-        words(170, 155, "left and right counters are exchanged"),
     ]
 
 
-def _reversed(side: str) -> Callable[[], Parts]:
-    def draw() -> Parts:
-        left, right = (ORANGE, INK) if side == "left" else (INK, ORANGE)
-        wrong, good = (54, 106) if side == "left" else (106, 54)
-        return [
-            robot(110, 80, left=left, right=right),
-            arrow((150, good), (230, good), colour=BLUE),
-            words(240, good + 4, "counts up", colour=BLUE, anchor="start"),
-            arrow((230, wrong), (150, wrong)),
-            words(240, wrong + 4, "counts down", colour=ORANGE, anchor="start"),
-            words(170, 155, f"driving forwards, the {side} counter falls"),
-        ]
-
-    return draw
+def _reversed(side: str) -> Parts:
+    left, right = (ORANGE, INK) if side == "left" else (INK, ORANGE)
+    wrong, good = (54, 106) if side == "left" else (106, 54)
+    return [
+        robot(110, 80, left=left, right=right),
+        arrow((150, good), (230, good), colour=BLUE),
+        words(240, good + 4, "counts up", colour=BLUE, anchor="start"),
+        arrow((230, wrong), (150, wrong)),
+        words(240, wrong + 4, "counts down", colour=ORANGE, anchor="start"),
+    ]
 
 
-SKETCHES: Mapping[str, tuple[str, Callable[[], Parts]]] = {
-    "left_missed_ticks": ("the left encoder loses counts", _missed_ticks("left")),
-    "right_missed_ticks": ("the right encoder loses counts", _missed_ticks("right")),
-    "reference_lever_arm": ("another point than the axle's middle is measured", _lever_arm),
-    "reference_yaw_offset": ("the reference's forward axis is askew", _yaw_offset),
-    "reference_delay": (
-        "the reference's stamps are late",
-        _late("counters", "reference", "the reference tells the same, later"),
-    ),
-    "reference_heading_delay": (
-        "the reference's heading is later than its position",
-        _late("its position", "its heading", "the reference's heading comes after its position"),
-    ),
-    "encoder_skew": (
-        "the right counter is read later than the left",
-        _late("left counter", "right counter", "the two counters are not read at one instant"),
-    ),
-    "wheels_swapped": ("left and right counters are exchanged", _swapped),
-    "left_wheel_reversed": ("the left counter has the wrong sign", _reversed("left")),
-    "right_wheel_reversed": ("the right counter has the wrong sign", _reversed("right")),
-    "reference_mirrored": ("the reference's frame is left-handed", _mirrored),
+DRAWINGS: Mapping[str, Callable[..., Parts]] = {
+    "lost_counts": _missed_ticks,
+    "lever_arm": _lever_arm,
+    "yaw_offset": _yaw_offset,
+    "mirrored": _mirrored,
+    "late": _late,
+    "swapped": _swapped,
+    "wrong_sign": _reversed,
 }
-"""For each effect what the drawing shows, and the drawing."""
+"""By name; what they are called with are the labels of a `Sketch`."""

@@ -8,6 +8,7 @@ from nicegui import ui
 
 from werrimbi_odom.effects.page import MEANING, numbers, page_of
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.sketches.library import effect_sketch
 from werrimbi_odom.workbench.html import box, text
 from werrimbi_odom.workbench.tab import Tab
@@ -22,7 +23,7 @@ def why(tab: Tab, name: str) -> None:
     page = page_of(effect)
     with box("section", "why", aria_label=f"About {name}", tabindex="0"):
         text("h3", f"What is {name}?", tabindex="-1", data_key=f"page-{name}")
-        _sketch(name)
+        _sketch(effect)
         for paragraph in page.physics:
             text("p", paragraph)
         with box("dl"):
@@ -39,8 +40,8 @@ def why(tab: Tab, name: str) -> None:
                 text("dd", f"{item.says}; {numbers(effect, parameter)}")
 
 
-def _sketch(name: str) -> None:
+def _sketch(effect: Effect) -> None:
     """Its sketch, where there is one: our own drawing, no text of a record in it."""
-    drawn = effect_sketch(name)
+    drawn = effect_sketch(effect)
     if drawn is not None:
         ui.html(drawn, sanitize=False)

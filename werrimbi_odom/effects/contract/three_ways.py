@@ -1,0 +1,82 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The law that a whole drive comes out alike live, recorded and predicted, however it is written.
+
+Live a step knows the pose that it begins at. A recorded run is done at once, and a predicted one
+from the poses that were measured: there the pose is told in further passes, to laws that look at
+it. What a law looks at is noted while it runs (`werrimbi_odom.model.passes`).
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from werrimbi_odom.effects.contract.demands import demand, settings, told
+from werrimbi_odom.effects.contract.rehearsal import RADIUS, TRACK, Rehearsal
+from werrimbi_odom.model.driving import Driving, features
+from werrimbi_odom.model.effect import AppliedEffect, Effect
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
+from werrimbi_odom.model.passes import Driven, Headings, Places, driven, driven_from_measured
+from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.model.robot import Robot
+
+_START = Pose(0.4, -0.3, 2.1)
+"""Elsewhere than where counters begin: at zero, a law that was not told the pose might be right."""
+
+_EVERY = 25
+"""Steps from one measured pose to the next."""
+
+_TICKS = 2000.0
+
+
+def drives_alike(effect: Effect, rehearsal: Rehearsal) -> None:
+    """Drive the rehearsal in the three ways."""
+    for values in settings(effect):
+        robot = Robot(TRACK, RADIUS, _TICKS, _TICKS, effects=(AppliedEffect(effect, values),))
+        poses, live = _live(robot, rehearsal)
+        drive = features(
+            robot, rehearsal.duration, rehearsal.travel, (0.0, 0.0), rehearsal.measured
+        )
+        recorded = driven(robot, rehearsal.travel, drive, _START)
+        predicted = driven_from_measured(robot, rehearsal.travel, drive, *_measured(poses))
+        for way, found in (("recorded", recorded), ("predicted", predicted)):
+            apart = float(np.max(np.abs(np.array(found.motion) - live)))
+            demand(
+                apart <= 1e-9,
+                effect,
+                "live, recorded and predicted are the same",
+                f"with {told(values)} the drive comes out differently by {apart:g} when {way}: "
+                "look at the drive's quantities by their names, and nowhere else",
+            )
+
+
+def _measured(poses: Floats) -> tuple[Headings, Places]:
+    """What is told in the passes where the `poses` (3, n) of some steps were measured."""
+    first = np.arange(poses.shape[1]) // _EVERY * _EVERY
+
+    def headings(found: Driven) -> Floats:
+        gone = np.cumsum(found.motion.turn) - found.motion.turn
+        return np.asarray(poses[2, first] + gone - gone[first])
+
+    def places(found: Driven, heading: Floats) -> tuple[Floats, Floats]:
+        x, y = (np.cumsum(part) - part for part in displacement(found.motion, heading))
+        return poses[0, first] + x - x[first], poses[1, first] + y - y[first]
+
+    return headings, places
+
+
+def _live(robot: Robot, rehearsal: Rehearsal) -> tuple[Floats, Floats]:
+    """Poses (3, n) at the steps' starts, and motions (3, n), step by step."""
+    measured = rehearsal.measured
+    driving, pose = Driving(robot), _START
+    driving.begin(0.0, 0.0, {name: float(span.start[0]) for name, span in measured.items()})
+    poses, motions = [], []
+    rows = zip(*(part.tolist() for part in (rehearsal.duration, *rehearsal.travel)), strict=True)
+    for i, (duration, left, right) in enumerate(rows):
+        now = {name: float(span.end[i]) for name, span in measured.items()}
+        _, motion = driving.step(duration, WheelTravel(left, right), pose, now)
+        poses.append(pose)
+        motions.append(motion)
+        dx, dy = displacement(BodyMotion(*motion), pose.yaw)
+        pose = Pose(pose.x + dx, pose.y + dy, pose.yaw + motion.turn)
+    return np.array(poses).T, np.array(motions).T

@@ -1,0 +1,46 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Pairs of effects that no drive can tell apart, and what can: said once for both of a pair."""
+
+from __future__ import annotations
+
+from werrimbi_odom.model.declared import Twin
+
+
+def askew(name: str) -> Twin:
+    """An axle askew under the body, or a marker askew on it: `name` is the other of the two."""
+    return Twin(
+        name,
+        told_apart_by="no drive can tell a robot that crabs from a marker mounted askew by the "
+        "opposite angle; turned by 90 degrees, the mount's angle turns with it and a crab's stays",
+        do="take the reference's marker or sensor off, mount it anew turned by 90 degrees, enter "
+        "that, and drive again",
+        manoeuvre="remount_reference",
+        values={"angle": ("angle", -1.0)},
+    )
+
+
+def turning_the_wrong_way(name: str) -> Twin:
+    """Counters exchanged, or a reference in a left-handed frame."""
+    return Twin(
+        name,
+        told_apart_by="no drive can tell a robot that turns the wrong way from a reference that "
+        "does (once the radii of left and right are exchanged too); a hand can",
+        do="turn the robot to the left by hand: the reference's yaw must grow, and so must right "
+        "minus left counts; whichever does not is wrong",
+        manoeuvre="turn_by_hand",
+    )
+
+
+def radii_over_base(name: str) -> Twin:
+    """The base, or both radii, where headings alone are measured."""
+    return Twin(
+        name,
+        told_apart_by="where headings alone are measured only radii over base shows; a taped "
+        "distance tells the radii",
+        do="drive 10 m straight by the odometry beside a tape, or use a reference that measures "
+        "positions",
+        manoeuvre="out_and_back",
+        minutes=2.0,
+        of_headings=True,
+    )

@@ -1,0 +1,52 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What an effect looks at and what it acts on, found by trying it: nobody has to declare it."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from werrimbi_odom.inference.diagnosis.candidates import Candidate
+from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel
+from werrimbi_odom.model.passes import watched
+from werrimbi_odom.model.pose import Floats
+
+
+class Support(NamedTuple):
+    """How far an effect's law reaches."""
+
+    inputs: frozenset[str]
+    """Quantities of `Drive`, and extra channels, that it looks at."""
+    outputs: frozenset[str]
+    """Error channels that it can explain: left, right, along, sideways, heading."""
+
+
+def support_of(candidate: Candidate, drive: Drive[Floats]) -> Support:
+    """What a candidate looks at and acts on, tried on the steps of recorded runs."""
+    effect = candidate.effect
+    if effect.stage not in ("wheels", "body"):
+        return Support(frozenset(), frozenset())
+    seen = watched(drive)
+    one = np.ones_like(drive.duration)
+    before: Any = WheelTravel(one, one) if effect.stage == "wheels" else BodyMotion(one, one, one)
+    outputs: set[str] = set()
+    for coordinate in candidate.coordinates:
+        after = effect.apply(before, seen, **candidate.with_value(coordinate, 1.0).values)
+        changed = [not np.allclose(part, one, rtol=0.0, atol=1e-15) for part in after]
+        if effect.stage == "wheels":
+            outputs |= _OF_WHEELS[changed[0], changed[1]]
+        else:
+            names = ("along", "sideways", "heading")
+            outputs |= {name for name, is_so in zip(names, changed, strict=True) if is_so}
+    return Support(frozenset(seen.asked), frozenset(outputs))
+
+
+_OF_WHEELS = {
+    (False, False): frozenset[str](),
+    (True, False): frozenset({"left"}),
+    (False, True): frozenset({"right"}),
+    (True, True): frozenset({"left", "right", "along", "heading"}),
+}

@@ -1,0 +1,228 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Effects over a recorded run: one pass, and more where they look at the pose that they lead to.
+
+What an effect looks at is found by running it, on the very steps and values that count: a law that
+did not ask for the pose cannot depend on it, however it is written, and one that asked is given
+poses of its own making until nothing changes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from werrimbi_odom.model.drive import Drive, Span
+from werrimbi_odom.model.effect import after_body_effects, after_wheel_effects
+from werrimbi_odom.model.motion import (
+    BodyMotion,
+    Number,
+    WheelTravel,
+    displacement,
+    wheels_to_body,
+)
+from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.model.robot import Robot
+
+PLACE = frozenset({"x", "y"})
+POSE = PLACE | {"heading"}
+
+_PASSES = 30
+_SAME = 1e-10  # m, rad
+_BLOCK = 256
+_SETTLED = 1e-13  # m, rad
+
+
+class Driven(NamedTuple):
+    """All steps of a run after the effects; arrays of shape (n,)."""
+
+    travel: WheelTravel[Floats]
+    motion: BodyMotion[Floats]
+
+
+class WatchedDrive(Drive[Floats]):
+    """A `Drive` that notes what is asked of it: quantities, and extra channels, by name.
+
+    Copies of it, however made, read all of it, and that is noted too.
+    """
+
+    __slots__ = ("asked",)
+    asked: set[str]
+
+    def __init__(self, *quantities: Any, **named: Any) -> None:
+        object.__setattr__(self, "asked", set())
+        super().__init__(*quantities, **named)
+
+    def __getattribute__(self, name: str) -> Any:
+        value = object.__getattribute__(self, name)
+        if name in _QUANTITIES:
+            self.asked.add(name)
+        return _WatchedChannels(value, self.asked) if name == "channels" else value
+
+
+_QUANTITIES = frozenset(item.name for item in fields(Drive)) - {"channels"}
+
+
+class _WatchedChannels(Mapping[str, Span[Floats]]):
+    def __init__(self, channels: Mapping[str, Span[Floats]], asked: set[str]) -> None:
+        self._channels, self._asked = channels, asked
+
+    def __getitem__(self, name: str) -> Span[Floats]:
+        self._asked.add(name)
+        return self._channels[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._channels)
+
+    def __len__(self) -> int:
+        return len(self._channels)
+
+
+def watched(drive: Drive[Floats]) -> WatchedDrive:
+    """The same drive, watched."""
+    return WatchedDrive(*(getattr(drive, item.name) for item in fields(drive)))
+
+
+def after_effects(
+    robot: Robot, raw: WheelTravel[Number], drive: Drive[Number]
+) -> tuple[WheelTravel[Number], BodyMotion[Number]]:
+    """Travel and motion once all effects have acted, in their order."""
+    travel = after_wheel_effects(robot.effects, raw, drive)
+    motion = wheels_to_body(travel, robot.track)
+    return travel, after_body_effects(robot.effects, motion, drive)
+
+
+def driven(robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], start: Pose) -> Driven:
+    """A whole run after the effects, the same as `driving.Driving` step by step.
+
+    Parameters
+    ----------
+    raw : WheelTravel
+        Before the effects, shape (n,).
+    drive : Drive
+        Of the run (`driving.features`).
+    start : Pose
+        Of the robot before the first step.
+    """
+    seen = watched(drive)
+    first = Driven(*after_effects(robot, raw, seen))
+    if not seen.asked & POSE:
+        return first
+    # Few effects turn the robot by its heading, so a second pass with the heading of the first is
+    # mostly the answer.
+    heading = np.cumsum(np.concatenate([[start.yaw], first.motion.turn[:-1]]))
+    again = watched(drive.with_heading(heading, drive.heading.change))
+    second = Driven(*after_effects(robot, raw, again))
+    if not again.asked & PLACE and np.array_equal(first.motion.turn, second.motion.turn):
+        return second
+    return _settled(robot, raw, drive, start)
+
+
+def _settled(robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], start: Pose) -> Driven:
+    """The same where motion depends on the pose that it leads to, some hundred steps at a time.
+
+    In each pass the poses come from the last pass's motion. A step depends on those before it
+    alone, so every pass settles at least one step more for good; a gentle dependence settles all
+    of them in a few.
+    """
+    parts = []
+    x, y, yaw = start
+    unmoved = wheels_to_body(raw, robot.track)
+    for first in range(0, raw.left.size, _BLOCK):
+        steps = slice(first, first + _BLOCK)
+        own, seen = WheelTravel(raw.left[steps], raw.right[steps]), _rows_of(drive, steps)
+        plain = BodyMotion(*(part[steps] for part in unmoved))
+        motion, poses = plain, np.zeros((3, 0))
+        for _ in range(own.left.size + 1):
+            before = poses
+            heading = yaw + np.concatenate([[0.0], np.cumsum(motion.turn)])
+            dx, dy = displacement(motion, heading[:-1])
+            poses = np.stack(
+                [
+                    x + np.concatenate([[0.0], np.cumsum(dx)]),
+                    y + np.concatenate([[0.0], np.cumsum(dy)]),
+                    heading,
+                ]
+            )
+            if before.size and not np.max(np.abs(poses - before)) >= _SETTLED:
+                break
+            here = seen.with_heading(heading[:-1], plain.turn).with_place(
+                poses[0, :-1], poses[1, :-1], displacement(plain, heading[:-1])
+            )
+            travel, motion = after_effects(robot, own, here)
+        x, y, yaw = poses[:, -1].tolist()
+        parts.append((travel, motion))
+    return Driven(
+        WheelTravel(
+            *(np.concatenate(side) for side in zip(*(part[0] for part in parts), strict=True))
+        ),
+        BodyMotion(
+            *(np.concatenate(part) for part in zip(*(part[1] for part in parts), strict=True))
+        ),
+    )
+
+
+def _rows_of(drive: Drive[Floats], steps: slice) -> Drive[Floats]:
+    """Some steps of a drive."""
+
+    def some(value: Any) -> Any:
+        if isinstance(value, Span):
+            return Span(value.start[steps], value.end[steps])
+        if isinstance(value, np.ndarray):
+            return value[steps]
+        return {name: some(span) for name, span in value.items()}
+
+    return Drive(*(some(getattr(drive, item.name)) for item in fields(drive)))
+
+
+Headings = Callable[[Driven], Floats]
+"""Heading at the start of each step [rad], from what the steps do."""
+
+Places = Callable[[Driven, Floats], tuple[Floats, Floats]]
+"""Place at the start of each step [m], from what the steps do and the headings."""
+
+
+def driven_from_measured(
+    robot: Robot,
+    raw: WheelTravel[Floats],
+    drive: Drive[Floats],
+    headings: Headings,
+    places: Places,
+) -> Driven:
+    """The same where the pose is measured now and then, so that a run is not one long chain.
+
+    Parameters
+    ----------
+    headings, places
+        From the motion of the last pass and what was measured, the poses for the next; asked for
+        only where an effect looks at them.
+    """
+    seen = watched(drive)
+    found = Driven(*after_effects(robot, raw, seen))
+    plain, placed = wheels_to_body(raw, robot.track), False
+    if not seen.asked & POSE:
+        return found
+    for _ in range(_PASSES):
+        if seen.asked & PLACE and not placed:
+            found, placed = Driven(raw, plain), True
+        heading = headings(found)
+        here = drive.with_heading(heading, drive.heading.change)
+        if placed:
+            here = here.with_place(*places(found, heading), displacement(plain, heading))
+        seen = watched(here)
+        before, found = found, Driven(*after_effects(robot, raw, seen))
+        if _same(before, found, placed) and (placed or not seen.asked & PLACE):
+            break
+    return found
+
+
+def _same(before: Driven, after: Driven, placed: bool) -> bool:
+    """Whether another pass would find the same poses."""
+    olds, parts = (each.motion if placed else (each.motion.turn,) for each in (before, after))
+    return all(
+        not np.max(np.abs(new - old), initial=0.0) > _SAME
+        for new, old in zip(parts, olds, strict=True)
+    )
