@@ -14,10 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate, orthonormal
+from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.knobs import STEP
+from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.inference.manoeuvres.imagined import imagined
 from werrimbi_odom.inference.manoeuvres.rivals import Drives, Look, look_at
@@ -92,15 +93,15 @@ def _sight(candidate: Candidate, look: Look) -> Sight:
         others = [
             look.white[name] for name in CALIBRATED if name in look.white and name != candidate.name
         ]
-    frame = orthonormal(np.concatenate([look.own, *others], axis=-1))
+    frame = nuisance(np.concatenate([look.own, *others], axis=-1))
     marks = look.white[candidate.name]
     if candidate.per_run:
         marks = look.drives.each_run(marks)
-    free = marks - frame @ (frame.T @ marks)
+    free = frame.residual(marks)
     width = look.white[candidate.name].shape[-1]
     heard = np.sum(free**2, axis=0).reshape(-1, width).sum(axis=0)
     before = np.sum(marks**2, axis=0).reshape(-1, width).sum(axis=0)
-    heard = np.where(heard > 1e-8 * np.maximum(before, 1e-12), heard, 0.0)
+    heard = np.where(heard > DETERMINED**2 * np.maximum(before, SILENT), heard, 0.0)
     if effect.quadrature is not None:
         names = [effect.quadrature[0]]
         heard = np.array([heard.min()])
