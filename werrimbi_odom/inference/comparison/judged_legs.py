@@ -26,6 +26,7 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     measured_alike,
     reference_noise,
     residuals_of,
+    stamp_noise,
 )
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.matching import (
@@ -56,6 +57,8 @@ class ReferenceNoise:
     xy_told: str
     """given (an option), stated (in the record), estimated, or assumed (too few poses)."""
     yaw_told: str
+    sigma_stamp: float = 0.0
+    """Of the stamps of a reference of headings alone [s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -206,7 +209,7 @@ def _group(
         every,
         tuple(whole for _, _, whole in members),
         tuple(jumps_of(residual) for residual in residuals),
-        ReferenceNoise(position, heading, told, yaw_told),
+        ReferenceNoise(position, heading, told, yaw_told, stamp_noise(every, residuals, measure)),
         of_position,
         of_heading,
     )
@@ -241,6 +244,7 @@ def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
             group.sigma_yaw[runs.run_of_leg],
             prepared.kind,
             by_position=by_position,
+            sigma_stamp=group.noise.sigma_stamp,
         )
         parts.append(_table(prepared, group, runs, errors, leg))
     return _in_order(parts)

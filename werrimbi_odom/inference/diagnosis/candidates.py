@@ -21,11 +21,15 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.directions import CALIBRATED as CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import STEP, Knob, Model, knobs_of
+from werrimbi_odom.inference.fitting.likelihood import headings_alone
 from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import Floats
+
+BESIDE_POSITIONS = ("reference_heading_delay",)
+"""Effects that are of headings against positions: of headings alone they are another effect."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -144,6 +148,8 @@ def signatures(
     tried: Sequence[Candidate],
 ) -> tuple[Floats, Iterator[Signature]]:
     """Innovations (n,) that `knobs` cannot explain, and what each candidate does to them."""
+    if headings_alone(runs):
+        tried = [candidate for candidate in tried if candidate.name not in BESIDE_POSITIONS]
     prediction = predict_all(point.model, runs)
     columns, owners = [], []
     for number, candidate in enumerate(tried):

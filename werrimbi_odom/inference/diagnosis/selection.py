@@ -73,6 +73,16 @@ class Fitted:
     """Shared directions (of `CALIBRATED`, or knobs) that the runs do not determine: as given."""
 
     @property
+    def told(self) -> bool:
+        """Whether the runs determine what its newest effect is for; else it is no finding."""
+        if not self.names or self.names[-1] in CALIBRATED:
+            return True
+        name = self.names[-1]
+        applied = next(item for item in self.point.model.robot.effects if item.name == name)
+        own = [f"{name}.{key}" for key, item in applied.effect.parameters.items() if not item.tries]
+        return any(key not in self.held for key in own)
+
+    @property
     def total(self) -> float:
         """Cost, price and what the needless multipliers were worth."""
         return self.cost + self.needless + self.price * self.scatter

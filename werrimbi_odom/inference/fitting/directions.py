@@ -86,13 +86,15 @@ def determined(design: Design, robot: Robot) -> Directions:
         index for index in range(len(every.names)) if index not in shared and marks[:, index].any()
     ]
     beside = nuisance(marks[:, own])
-    kept = [shared[index] for index in admitted(marks[:, shared], beside)]
-    while kept:
-        covariance = covariance_of(beside.residual(marks[:, kept]))
-        excess = np.sqrt(np.diag(covariance)) / every.limits[kept]
-        if excess.max() <= 1.0:
-            break
-        kept.pop(int(np.argmax(excess)))
+    free = beside.residual(marks[:, shared])
+    # One after the other: what comes first has precedence over what is much like it.
+    kept: list[int] = []
+    for index in admitted(marks[:, shared], beside):
+        tried = [*kept, index]
+        spread = np.sqrt(np.diag(covariance_of(free[:, tried])))
+        if np.all(spread <= every.limits[[shared[number] for number in tried]]):
+            kept = tried
+    kept = [shared[index] for index in kept]
     chosen = [*kept, *own]
     return Directions(
         tuple(every.names[index] for index in chosen),

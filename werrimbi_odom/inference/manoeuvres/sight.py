@@ -82,17 +82,17 @@ def _typical(effect: Effect) -> Candidate:
 
 def _seen(drives: Drives, candidates: Sequence[Candidate], final: Fitted) -> dict[str, Sight]:
     look = look_at(drives, candidates, final.knobs)
-    return {item.name: _sight(item, look) for item in candidates}
+    return {item.name: _sight(item, look, final.held) for item in candidates}
 
 
-def _sight(candidate: Candidate, look: Look) -> Sight:
+def _sight(candidate: Candidate, look: Look, held: Sequence[str]) -> Sight:
     """The parameter of an effect that shows best, beside what calibration may explain."""
     effect = candidate.effect
-    others = [look.white[name] for name in CALIBRATED if name in look.white]
+    beside = [name for name in CALIBRATED if name in look.white and name != candidate.name]
     if candidate.name in CALIBRATED:
-        others = [
-            look.white[name] for name in CALIBRATED if name in look.white and name != candidate.name
-        ]
+        # What the runs do not determine is held, so that it hides nothing (`Fitted.held`).
+        beside = [name for name in beside if name not in held]
+    others = [look.white[name] for name in beside]
     frame = nuisance(np.concatenate([look.own, *others], axis=-1))
     marks = look.white[candidate.name]
     if candidate.per_run:
@@ -130,7 +130,7 @@ def _shown_by(diagnosis: Diagnosis, hidden: Sequence[Candidate], *, better: bool
         beside = [item for item in _calibrated(diagnosis) if item.name not in _names(wanted)]
         look = look_at(drives, [*wanted, *beside], final.knobs)
         for item in list(wanted):
-            if not _sight(item, look).hidden:
+            if not _sight(item, look, final.held).hidden:
                 found[item.name] = ideal.name
                 wanted.remove(item)
         if not wanted:
