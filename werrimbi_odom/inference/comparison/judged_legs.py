@@ -25,6 +25,7 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     measured_alike,
     reference_noise,
     residuals_of,
+    stamp_noise,
 )
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.together import Together, together
@@ -61,6 +62,8 @@ class ReferenceNoise:
     xy_told: str
     """given (an option), stated (in the record), estimated, or assumed (too few poses)."""
     yaw_told: str
+    sigma_stamp: float = 0.0
+    """Of the stamps of a reference of headings alone [s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -283,7 +286,7 @@ def _group(
         every,
         tuple(whole for _, _, whole in members),
         jumps,
-        ReferenceNoise(position, heading, told, yaw_told),
+        ReferenceNoise(position, heading, told, yaw_told, stamp_noise(every, residuals, measure)),
         of_position,
         of_heading,
         residuals,
@@ -319,6 +322,7 @@ def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
             group.sigma_yaw[runs.run_of_leg],
             prepared.kind,
             by_position=by_position,
+            sigma_stamp=group.noise.sigma_stamp,
         )
         parts.append(_table(prepared, group, runs, errors, leg))
     return _in_order(parts)

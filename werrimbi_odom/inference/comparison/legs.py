@@ -13,7 +13,7 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.position_filter import position_errors
 from werrimbi_odom.inference.fitting.joined_legs import predict_joined
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.likelihood import errors_between, reading_noise
+from werrimbi_odom.inference.fitting.likelihood import errors_between, reading_noise, stamp_noise
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
@@ -114,6 +114,7 @@ def errors_of(
     kind: ReferenceKind = "absolute",
     *,
     by_position: bool = False,
+    sigma_stamp: float = 0.0,
 ) -> LegErrors:
     """Errors of all legs of several runs.
 
@@ -123,6 +124,8 @@ def errors_of(
         Noise of the reference: of each pose (absolute) or each interval (incremental) [m, rad].
     by_position : bool
         The reference gives positions alone; headings then come from those before the leg.
+    sigma_stamp : float
+        Of the stamps of a reference of headings alone [s].
     """
     robot = model.robot
     prediction = predict_joined(model, runs)
@@ -149,6 +152,7 @@ def errors_of(
         heading = start[:, 2]
         error = errors_between(start, finish, prediction)
         reference = _reference_part(robot, runs, prediction, sigma_xy, sigma_yaw, kind)
+        reference[:, 2, 2] += 2.0 * sigma_stamp**2 * stamp_noise(prediction, runs.duration)
     return LegErrors(
         error,
         wheels + reference,

@@ -22,7 +22,6 @@ from werrimbi_odom.inference.diagnosis.candidates import (
     Candidate,
     Score,
     of_each_run,
-    orthonormal,
     signatures,
     unexplained,
 )
@@ -36,6 +35,7 @@ from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import LASTS, LEFT_ASKED, LITTLE_OF_A_LAW, REST_EXPLAINED
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
@@ -141,10 +141,11 @@ def _gain_beside(
     prediction = predict_all(point.model, runs)
     turned, rest = unexplained(runs, point, kind, knobs, prediction)
     pattern = _pattern(runs, point, kind, cell)
-    freer = orthonormal(pattern - turned @ (turned.T @ pattern))
+    freer = nuisance(turned.residual(pattern))
     signature = next(signatures(runs, point, kind, knobs, [score.candidate])[1])
-    basis = orthonormal(signature.free - freer @ (freer.T @ signature.free))
-    return float(np.sum((basis.T @ (rest - freer @ (freer.T @ rest))) ** 2))
+    free, left = freer.residual(signature.free), freer.residual(rest)
+    found = score_test(signature.flat, free, left)
+    return 0.0 if found is None else found.gain
 
 
 def _pattern(runs: Together, point: Point, kind: ReferenceKind, cell: Dependence) -> Floats:

@@ -90,7 +90,7 @@ def lasting(
         if cell.variable.per_run:
             own = of_each_run(runs, own)
         flat = own.reshape(rest.size, -1)
-        free = flat - frame @ (frame.T @ flat)
+        free = frame.residual(flat)
         yield cell, _chance(cell.gain, cell.degrees, free, rest, parts)
 
 

@@ -232,7 +232,8 @@ def search_round(
             knobs = (*before.knobs, *knobs_of_candidate(option.candidate))
             names = (*before.names, option.candidate.name)
             fits.append(fitted(runs, start, kind, names, knobs, given, sigma=sigma))
-        tried.append(min(fits, key=lambda fit: fit.total))
+        fits = [fit for fit in fits if fit.told]
+        tried += [min(fits, key=lambda fit: fit.total)] if fits else []
     tried.sort(key=lambda fit: fit.total)
     return Round(
         before,

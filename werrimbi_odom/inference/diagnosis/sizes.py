@@ -15,7 +15,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.diagnosis.candidates import orthonormal
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.design import Design, stacked
@@ -29,6 +28,7 @@ from werrimbi_odom.inference.fitting.knobs import (
     shared_of,
 )
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.linear import nuisance
 from werrimbi_odom.inference.rules import RIVAL, STILL
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -170,9 +170,9 @@ def _at_given(design: Design, robot: Robot, given: Robot) -> tuple[Floats, Float
     now = np.array([getattr(robot, name) for name in MULTIPLIERS])
     before = np.array([getattr(given, name) for name in MULTIPLIERS])
     marks = flat[:, [names.index(name) for name in MULTIPLIERS]] * now
-    others = orthonormal(flat[:, [name not in MULTIPLIERS for name in names]])
-    marks = marks - others @ (others.T @ marks)
-    return marks, white - others @ (others.T @ white) - marks @ np.log(now / before)
+    others = nuisance(flat[:, [name not in MULTIPLIERS for name in names]])
+    marks = others.residual(marks)
+    return marks, others.residual(white) - marks @ np.log(now / before)
 
 
 def _solved(marks: Floats, sizes: Sizes, rest: Floats) -> Floats:

@@ -14,10 +14,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate, orthonormal
+from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.knobs import STEP
+from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.inference.manoeuvres.imagined import imagined
 from werrimbi_odom.inference.manoeuvres.rivals import Drives, Look, look_at
@@ -81,26 +82,26 @@ def _typical(effect: Effect) -> Candidate:
 
 def _seen(drives: Drives, candidates: Sequence[Candidate], final: Fitted) -> dict[str, Sight]:
     look = look_at(drives, candidates, final.knobs)
-    return {item.name: _sight(item, look) for item in candidates}
+    return {item.name: _sight(item, look, final.held) for item in candidates}
 
 
-def _sight(candidate: Candidate, look: Look) -> Sight:
+def _sight(candidate: Candidate, look: Look, held: Sequence[str]) -> Sight:
     """The parameter of an effect that shows best, beside what calibration may explain."""
     effect = candidate.effect
-    others = [look.white[name] for name in CALIBRATED if name in look.white]
+    beside = [name for name in CALIBRATED if name in look.white and name != candidate.name]
     if candidate.name in CALIBRATED:
-        others = [
-            look.white[name] for name in CALIBRATED if name in look.white and name != candidate.name
-        ]
-    frame = orthonormal(np.concatenate([look.own, *others], axis=-1))
+        # What the runs do not determine is held, so that it hides nothing (`Fitted.held`).
+        beside = [name for name in beside if name not in held]
+    others = [look.white[name] for name in beside]
+    frame = nuisance(np.concatenate([look.own, *others], axis=-1))
     marks = look.white[candidate.name]
     if candidate.per_run:
         marks = look.drives.each_run(marks)
-    free = marks - frame @ (frame.T @ marks)
+    free = frame.residual(marks)
     width = look.white[candidate.name].shape[-1]
     heard = np.sum(free**2, axis=0).reshape(-1, width).sum(axis=0)
     before = np.sum(marks**2, axis=0).reshape(-1, width).sum(axis=0)
-    heard = np.where(heard > 1e-8 * np.maximum(before, 1e-12), heard, 0.0)
+    heard = np.where(heard > DETERMINED**2 * np.maximum(before, SILENT), heard, 0.0)
     if effect.quadrature is not None:
         names = [effect.quadrature[0]]
         heard = np.array([heard.min()])
@@ -129,7 +130,7 @@ def _shown_by(diagnosis: Diagnosis, hidden: Sequence[Candidate], *, better: bool
         beside = [item for item in _calibrated(diagnosis) if item.name not in _names(wanted)]
         look = look_at(drives, [*wanted, *beside], final.knobs)
         for item in list(wanted):
-            if not _sight(item, look).hidden:
+            if not _sight(item, look, final.held).hidden:
                 found[item.name] = ideal.name
                 wanted.remove(item)
         if not wanted:
