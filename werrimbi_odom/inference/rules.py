@@ -13,7 +13,7 @@ Of messages that come at random with a steady mean one interval in 1000 is as lo
 variable is above ten medians with a chance of 2^-10); of those that come at a rate none is.
 """
 
-GAP_WAYS = 5.0
+GAP_WAYS = 3.0
 """Times the usual way of an interval, that must have been gone in a gap.
 
 A localisation that speaks every quarter of a metre is silent for as long as the robot stands, and

@@ -9,11 +9,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.inference.adding.values import FittedParameter
-from werrimbi_odom.inference.comparison.judged_legs import Legs
-from werrimbi_odom.inference.comparison.legs import LegStatistics, statistics
+from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
+from werrimbi_odom.inference.comparison.legs import LegStatistics
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
+from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
@@ -33,9 +34,8 @@ class Side:
     after: Legs
 
     def figures(self, which: str) -> LegStatistics:
-        """Over legs on which the reference did not jump."""
-        legs: Legs = getattr(self, which)
-        return statistics(legs.errors.chosen(~legs.outlier))
+        """Over legs on which the reference did not jump, the median over all."""
+        return statistics_of(getattr(self, which))
 
     @property
     def sides(self) -> Sides:
@@ -87,3 +87,5 @@ class Added:
     """Of as much of a better fit by chance, against calibration alone."""
     objection: str | None
     """Why it should not be added; None: nothing speaks against it."""
+    left_out: tuple[LeftOut, ...] = ()
+    """Stretches of all runs that none of it is about."""

@@ -35,12 +35,17 @@ from werrimbi_odom.inference.adding.values import (
     without_phases_stuck,
 )
 from werrimbi_odom.inference.calibration.any_driving import MISFIT_P, STRANGE_NOISE
-from werrimbi_odom.inference.comparison.judged_legs import Legs, Prepared, judged_legs
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
+from werrimbi_odom.inference.comparison.judged_legs import (
+    Legs,
+    Prepared,
+    in_runs,
+    judged_legs,
+)
 from werrimbi_odom.inference.diagnosis.diagnosis import chance
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.diagnosis.holdout import Judge, at_home, judge_of
+from werrimbi_odom.inference.diagnosis.holdout import Judge, judge_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
@@ -63,6 +68,7 @@ def add_effect(
     robot: Robot,
     kind: ReferenceKind = "absolute",
     *,
+    given: Robot | None = None,
     holdout: Sequence[Run] = (),
     leg: float = 1.0,
     limits: EncoderLimits | None = None,
@@ -74,6 +80,9 @@ def add_effect(
 
     Parameters
     ----------
+    given : Robot, optional
+        By whose travel legs are cut, and whose errors are those before; `robot` where there is none
+        other that the fit begins with.
     holdout
         Runs to judge on alone. None given: some of `runs` are put aside for it.
     leg : float
@@ -95,7 +104,7 @@ def add_effect(
         )
     show(0.0, "set-up")
     set_up = look_for_mistakes([*runs, *holdout], robot, kind, limits)
-    judge = judge_of(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+    judge = judge_of(runs, holdout, given or robot, kind, leg, limits, sigma_xy, sigma_yaw)
     begun, also = with_set_up(effect, robot, set_up)
     sigma = (sigma_xy or _stated(judge, "xy_told"), sigma_yaw or _stated(judge, "yaw_told"))
     show(0.15, "calibration")
@@ -103,7 +112,7 @@ def add_effect(
     base, fit = _fits(effect, drives, begun, robot, also, show)
     parameters = parameters_of(effect, fit, robot)
     show(0.75, "judging")
-    train, kept = _judged(judge, drives, robot, base, fit)
+    train, kept = _judged(judge, base, fit)
     noises, remaining, honest = _noise(drives, fit, sigma)
     model = fit.point.model
     per_run = tuple(sorted(set(model.own[0]) - set(NUISANCES))) if model.own else ()
@@ -137,6 +146,7 @@ def add_effect(
         per_run,
         p_value,
         against,
+        judge.left_out,
     )
 
 
@@ -217,13 +227,11 @@ def _pruned(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitted
     return fit
 
 
-def _judged(
-    judge: Judge, drives: Drives, given: Robot, base: Fitted, fit: Fitted
-) -> tuple[Side, Side]:
+def _judged(judge: Judge, base: Fitted, fit: Fitted) -> tuple[Side, Side]:
     """The legs of both sides; what each run has of its own is learnt in that run alone."""
-    plain = Model(given, judge.nothing_of_own)
+    plain = Model(judge.given, judge.nothing_of_own)
     train = Side(
-        _legs(judge.train, at_home(plain, drives.laid, judge.kind).model),
+        _legs(judge.train, in_runs(judge.train, plain)),
         _legs(judge.train, base.point.model),
         _legs(judge.train, _noisy(fit)),
     )

@@ -15,6 +15,7 @@ from werrimbi_odom.inference.comparison.groups import ByVariable, Cell, by_varia
 from werrimbi_odom.inference.comparison.judged_legs import (
     Legs,
     Prepared,
+    in_runs,
     judged_legs,
     paths,
     prepare,
@@ -33,6 +34,7 @@ from werrimbi_odom.inference.comparison.systematic import (
     systematic_parts,
 )
 from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats, wrap
 from werrimbi_odom.model.robot import Robot
@@ -98,6 +100,8 @@ class Comparison:
     left: Floats
     """Their errors less what is systematic, shape (m, 3)."""
     paths: tuple[Residual, ...]
+    left_out: tuple[LeftOut, ...]
+    """Stretches of the runs that none of it is about."""
 
     @property
     def main(self) -> OfLength:
@@ -121,7 +125,8 @@ def compare(
     Parameters
     ----------
     robot : Robot or Model
-        A `Model` brings values that each run has of its own (phases, start headings).
+        A `Model` brings values that each run has of its own (phases, start headings); those that a
+        robot file does not say are learnt in each run.
     kind
         Whether each pose of the reference has noise of its own, or noise adds up along the way.
     leg : float
@@ -159,7 +164,7 @@ def judged(
     show: Callable[[float, str], None] = lambda share, words: None,
 ) -> Comparison:
     """Compare a model over runs that were prepared: before and after over the same legs."""
-    model = robot if isinstance(robot, Model) else Model(robot, tuple({} for _ in prepared.runs))
+    model = robot if isinstance(robot, Model) else in_runs(prepared, robot)
     lengths, main = [], None
     for number, leg in enumerate(sorted(prepared.cuts)):
         show(number / (len(prepared.cuts) + 1), f"legs of {leg:g} m")
@@ -202,6 +207,7 @@ def judged(
         legs,
         spread,
         driven,
+        prepared.left_out,
     )
 
 

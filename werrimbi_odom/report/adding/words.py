@@ -10,8 +10,9 @@ from typing import Any
 
 from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.values import FittedParameter
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.report.left_out import jumps_words, left_out_json, left_out_words
 from werrimbi_odom.report.numbers import scaled_with_std
 from werrimbi_odom.report.printed import WIDTH, filled, table
 
@@ -108,6 +109,7 @@ def _remarks(added: Added) -> list[str]:
         )
     else:
         texts.append("The written values are fitted on RUN alone; --holdout only judged them.")
+    texts += [*left_out_words(added.left_out), *jumps_words(added.left_out)]
     return ["\n".join(filled(text) for text in texts)]
 
 
@@ -187,6 +189,7 @@ def json_of(added: Added) -> dict[str, Any]:
         ],
         "p_value": added.p_value,
         "objection": added.objection,
+        "left_out": left_out_json(added.left_out),
     }
 
 

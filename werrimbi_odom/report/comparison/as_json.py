@@ -20,6 +20,7 @@ from werrimbi_odom.inference.comparison.groups import ByVariable, Cell
 from werrimbi_odom.inference.comparison.judged_legs import Legs
 from werrimbi_odom.inference.comparison.systematic import Systematic
 from werrimbi_odom.inference.comparison.verdict import verdict_of
+from werrimbi_odom.report.left_out import left_out_json
 
 
 def json_of(comparison: Comparison) -> dict[str, Any]:
@@ -50,6 +51,7 @@ def json_of(comparison: Comparison) -> dict[str, Any]:
         "reference": [
             {"measures": measure, **asdict(noise)} for measure, noise in comparison.prepared.noises
         ],
+        "left_out": left_out_json(comparison.left_out),
         "outliers": _outliers(comparison),
         "each_leg": _each_leg(comparison),
     }

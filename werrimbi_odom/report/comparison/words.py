@@ -9,6 +9,7 @@ import math
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
 from werrimbi_odom.inference.comparison.verdict import FEWEST, Depends, Verdict, verdict_of
 from werrimbi_odom.report.comparison.phrases import systematic_told
+from werrimbi_odom.report.left_out import left_out_words
 from werrimbi_odom.report.printed import filled
 
 NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
@@ -244,7 +245,7 @@ def _reference(comparison: Comparison) -> list[str]:
     if outliers:
         total = outliers + comparison.main.all.figures.count
         lines.append(f"On {outliers} of {total} legs the reference jumped; they are left out.")
-    return lines
+    return [*lines, *left_out_words(comparison.left_out)]
 
 
 def _next(verdict: Verdict, next_step: str) -> str:

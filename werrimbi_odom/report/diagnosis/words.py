@@ -23,6 +23,7 @@ from werrimbi_odom.report.diagnosis.phrases import (
     whole,
 )
 from werrimbi_odom.report.diagnosis.values import effect_named
+from werrimbi_odom.report.left_out import jumps_words, left_out_words
 from werrimbi_odom.report.numbers import chance_words, length, listed
 from werrimbi_odom.report.printed import filled
 
@@ -49,6 +50,10 @@ def words_of(told: Told, steps: NextSteps) -> str:
         "unknown": _unknown,
     }[diagnosis.verdict]
     paragraphs = tell(told, steps)
+    left_out = [*left_out_words(diagnosis.left_out), *jumps_words(diagnosis.left_out)]
+    last = (index for index, text in enumerate(paragraphs) if text.startswith("Next: "))
+    place = next(last, len(paragraphs))
+    paragraphs[place:place] = left_out
     return "\n".join(_filled(text) for text in paragraphs if text)
 
 
