@@ -25,3 +25,22 @@ GAP_LEG = 0.25
 
 GAP_FEWEST = 20
 """Intervals with travel in them, below which nobody knows what is usual: poses taken by hand."""
+
+# ------------------------------------------------------------------------- honest covariances
+
+HONEST_WITHIN = 1.5
+"""Times one, and part of one, between which the NEES of an honest covariance lies.
+
+Errors are then within 22 % of what is promised: a fuser weighs the odometry about as it should, and
+the noise of no wheel is known better than to that. A rule without it would call any covariance
+wrong, were there legs enough.
+"""
+
+HONEST_CHANCE = 0.9999
+"""Share of samples of an honest covariance that chance leaves within its bounds.
+
+Some ten numbers are looked at in a comparison, and the node's window slides over thousands of legs.
+"""
+
+ALIKE = 1.3
+"""Times by which intervals of the noise at short and at long legs must be apart to be two."""

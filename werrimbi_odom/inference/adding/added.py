@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.inference.adding.values import FittedParameter
+from werrimbi_odom.inference.comparison.consistency import AtLength, Consistency, of_all
 from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
 from werrimbi_odom.inference.comparison.legs import LegStatistics
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
@@ -89,3 +90,10 @@ class Added:
     """Why it should not be added; None: nothing speaks against it."""
     left_out: tuple[LeftOut, ...] = ()
     """Stretches of all runs that none of it is about."""
+    lengths: tuple[AtLength, ...] = ()
+    """What the held-out legs of each length say of its covariance."""
+
+    @property
+    def covariance(self) -> Consistency:
+        """Whether the final model's is honest on the held-out drives."""
+        return of_all(self.lengths)

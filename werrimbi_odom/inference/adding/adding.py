@@ -38,6 +38,7 @@ from werrimbi_odom.inference.calibration.any_driving import MISFIT_P, STRANGE_NO
 from werrimbi_odom.inference.comparison.judged_legs import (
     Legs,
     Prepared,
+    consistency_by_length,
     in_runs,
     judged_legs,
 )
@@ -147,6 +148,7 @@ def add_effect(
         p_value,
         against,
         judge.left_out,
+        consistency_by_length(judge.holdout, judge.at_home(_noisy(fit)).model),
     )
 
 

@@ -5,12 +5,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference.comparison.consistency import AtLength
 from werrimbi_odom.inference.comparison.groups import ByVariable, Cell, by_variables, cells_of
 from werrimbi_odom.inference.comparison.judged_legs import (
     Legs,
@@ -65,6 +66,17 @@ class OfLength:
     all: LegFigures
     by_motion: Mapping[str, LegFigures]
     systematic: tuple[Systematic, ...]
+
+    @property
+    def consistency(self) -> AtLength:
+        """What all these legs say of the covariance."""
+        figures = self.all.figures
+        return AtLength(self.leg, figures.count, figures.nees, figures.freedom)
+
+    @property
+    def of_scatter(self) -> AtLength:
+        """The same without what is systematic in their errors."""
+        return replace(self.consistency, nees=self.all.scatter_nees)
 
 
 @dataclass(frozen=True, slots=True)
@@ -231,14 +243,7 @@ def _figures_of(
     freedom = int(np.isfinite(spread).sum())
     scatter = squared_deviation(spread, chosen.covariance).sum() / freedom if freedom else np.nan
     return LegFigures(
-        LegStatistics(
-            figures.count,
-            figures.rmse_position_m,
-            whole.median_position_m,
-            figures.rmse_yaw_rad,
-            figures.nees,
-            figures.coverage_95,
-        ),
+        replace(figures, median_position_m=whole.median_position_m),
         int((which & legs.outlier).sum()),
         root_mean_square(every.distance),
         float(scatter),

@@ -16,8 +16,6 @@ from werrimbi_odom.report.left_out import jumps_words, left_out_json, left_out_w
 from werrimbi_odom.report.numbers import scaled_with_std
 from werrimbi_odom.report.printed import WIDTH, filled, table
 
-_HONEST = (0.8, 1.25)  # NEES
-
 
 def words_of(added: Added) -> str:
     """A few sentences, the parameters and the errors, in 80 columns."""
@@ -116,14 +114,19 @@ def _remarks(added: Added) -> list[str]:
 def _rest(added: Added) -> str:
     nees = added.holdout.figures("after").nees
     if not added.remaining:
-        if _HONEST[0] < nees < _HONEST[1]:
+        if added.covariance == "honest":
             return (
                 f"What remains is noise: nothing more is seen in the errors, and they are as large "
                 f"as the covariance says (NEES {nees:.2f}, honest is 1)."
             )
+        seen = "Nothing more is seen in the errors of the fitted drives"
+        off = [item for item in added.lengths if item.says == added.covariance != "unknown"]
+        if not off:
+            return f"{seen}; the held-out ones have too few legs to judge the covariance by."
+        worst = max(off, key=lambda item: abs(math.log(item.nees)))
         return (
-            f"Nothing more is seen in the errors of the fitted drives; those of the held-out ones "
-            f"are {math.sqrt(nees):.1f} times what the covariance says (NEES {nees:.2f})."
+            f"{seen}; those of the held-out ones are {math.sqrt(worst.nees):.1f} times what the "
+            f"covariance says over legs of {worst.leg:g} m (NEES {worst.nees:.2f}, honest is 1)."
         )
     first = added.remaining[0]
     return (
@@ -189,6 +192,7 @@ def json_of(added: Added) -> dict[str, Any]:
         ],
         "p_value": added.p_value,
         "objection": added.objection,
+        "covariance": added.covariance,
         "left_out": left_out_json(added.left_out),
     }
 

@@ -36,6 +36,7 @@ def json_of(comparison: Comparison) -> dict[str, Any]:
             "enough": verdict.enough,
             "mean_is_right": verdict.mean_is_right,
             "gross": verdict.gross,
+            "covariance": verdict.covariance,
             "noise": verdict.noise,
             "noise_factor": [verdict.factor.value, verdict.factor.low, verdict.factor.high],
             "systematic": [_systematic(part) for part in verdict.systematic],
