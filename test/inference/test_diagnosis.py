@@ -14,11 +14,11 @@ import pytest
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.diagnosis.candidates import candidates, scores
 from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS, Amount, legs_pushed, pushes_of
 from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.support import support_of
+from werrimbi_odom.inference.fitting.candidates import candidates, scores
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, path_of, predict, predict_all

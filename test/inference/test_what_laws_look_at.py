@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from werrimbi_odom.inference.fitting.matching import match
 
 from test.model.drives import ROBOT
 from test.model.test_effects_live_and_recorded import assert_alike, drive, estimates
@@ -24,6 +23,7 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
 from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.effect import Effect, Parameter, body_effect, wheel_effect
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.pose import Pose

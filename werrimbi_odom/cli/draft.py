@@ -68,6 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
             draft.effect,
             given.runs,
             diagnosis.robot,
+            given=robot,
             holdout=given.holdout,
             show=show,
             **given.judging,

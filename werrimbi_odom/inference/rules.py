@@ -91,7 +91,7 @@ Of messages that come at random with a steady mean one interval in 1000 is as lo
 variable is above ten medians with a chance of 2^-10); of those that come at a rate none is.
 """
 
-GAP_WAYS = 5.0
+GAP_WAYS = 3.0
 """Times the usual way of an interval, that must have been gone in a gap.
 
 A localisation that speaks every quarter of a metre is silent for as long as the robot stands, and
@@ -161,3 +161,21 @@ FAR_ABOVE_NOISE = 5.0
 """How many times what noise promises the errors of legs must be for the model to be wrong whatever
 the likelihood says: a wheels' noise five times too small is that of another floor, and the robot
 file's stated noise is seldom wrong by more."""
+# ------------------------------------------------------------------------- honest covariances
+
+HONEST_WITHIN = 1.5
+"""Times one, and part of one, between which the NEES of an honest covariance lies.
+
+Errors are then within 22 % of what is promised: a fuser weighs the odometry about as it should, and
+the noise of no wheel is known better than to that. A rule without it would call any covariance
+wrong, were there legs enough.
+"""
+
+HONEST_CHANCE = 0.9999
+"""Share of samples of an honest covariance that chance leaves within its bounds.
+
+Some ten numbers are looked at in a comparison, and the node's window slides over thousands of legs.
+"""
+
+ALIKE = 1.3
+"""Times by which intervals of the noise at short and at long legs must be apart to be two."""

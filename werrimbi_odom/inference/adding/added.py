@@ -10,13 +10,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.inference.adding.values import FittedParameter
-from werrimbi_odom.inference.comparison.judged_legs import Legs
-from werrimbi_odom.inference.comparison.legs import LegStatistics, statistics
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
+from werrimbi_odom.inference.comparison.consistency import AtLength, Consistency, of_all
+from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
+from werrimbi_odom.inference.comparison.legs import LegStatistics
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
+from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
@@ -36,9 +38,8 @@ class Side:
     after: Legs
 
     def figures(self, which: str) -> LegStatistics:
-        """Over legs on which the reference did not jump."""
-        legs: Legs = getattr(self, which)
-        return statistics(legs.errors.chosen(~legs.outlier))
+        """Over legs on which the reference did not jump, the median over all."""
+        return statistics_of(getattr(self, which))
 
     @property
     def sides(self) -> Sides:
@@ -101,6 +102,15 @@ class Added:
     None for calibration and for mistakes, which are not tested so."""
     objections: Mapping[str, str]
     """By effect, why it should not be added; empty where nothing speaks against any."""
+    left_out: tuple[LeftOut, ...]
+    """Stretches of all runs that none of it is about."""
+    lengths: tuple[AtLength, ...]
+    """What the held-out legs of each length say of its covariance."""
+
+    @property
+    def covariance(self) -> Consistency:
+        """Whether the final model's is honest on the held-out drives."""
+        return of_all(self.lengths)
 
     @property
     def name(self) -> str:

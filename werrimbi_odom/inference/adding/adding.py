@@ -30,15 +30,21 @@ from werrimbi_odom.inference.adding.values import (
     to_write,
 )
 from werrimbi_odom.inference.calibration.any_driving import MISFIT_P, STRANGE_NOISE
-from werrimbi_odom.inference.comparison.judged_legs import Legs, Prepared, judged_legs
-from werrimbi_odom.inference.comparison.legs import statistics
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
+from werrimbi_odom.inference.comparison.judged_legs import (
+    Legs,
+    Prepared,
+    consistency_by_length,
+    in_runs,
+    judged_legs,
+    statistics_of,
+)
 from werrimbi_odom.inference.diagnosis.diagnosis import chance
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found
-from werrimbi_odom.inference.diagnosis.holdout import Judge, at_home, begin
+from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, sizes_needed, with_sizes
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
@@ -60,6 +66,7 @@ def add_effect(
     robot: Robot,
     kind: ReferenceKind = "absolute",
     *,
+    given: Robot | None = None,
     holdout: Sequence[Run] = (),
     leg: float = 1.0,
     limits: EncoderLimits | None = None,
@@ -73,6 +80,7 @@ def add_effect(
         runs,
         robot,
         kind,
+        given=given,
         holdout=holdout,
         leg=leg,
         limits=limits,
@@ -88,6 +96,7 @@ def add_effects(
     robot: Robot,
     kind: ReferenceKind = "absolute",
     *,
+    given: Robot | None = None,
     holdout: Sequence[Run] = (),
     leg: float = 1.0,
     limits: EncoderLimits | None = None,
@@ -101,6 +110,9 @@ def add_effects(
     ----------
     effects
         None twice; calibration effects and set-up mistakes may be among them.
+    given : Robot, optional
+        By whose travel legs are cut, and whose errors are those before; `robot` where there is none
+        other that the fit begins with.
     holdout
         Runs to judge on alone. None given: parts of `runs` are put aside for it.
     leg : float
@@ -123,7 +135,7 @@ def add_effects(
                 "again"
             )
     show(0.0, "set-up")
-    started = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+    started = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw, given=given)
     judge, set_up = started.judge, started.set_up
     begun, also = with_set_up(effects, robot, set_up)
     sigma = (sigma_xy or _stated(judge, "xy_told"), sigma_yaw or _stated(judge, "yaw_told"))
@@ -134,7 +146,7 @@ def add_effects(
     sizes = sizes_needed(fit, robot, _calibrations_wanted(effects, set_up))
     fit = with_sizes(drives.laid, kind, fit, robot, sizes)
     show(0.75, "judging")
-    train, kept = _judged(judge, drives, robot, fits.none, fit)
+    train, kept = _judged(judge, fits.none, fit)
     chances = {effect.name: _chance(effect, fits, also) for effect in effects}
     alone = {name: _error_at_home(judge, each) for name, each in fits.without.items()}
     objections = {}
@@ -176,6 +188,8 @@ def add_effects(
         per_run=per_run,
         chances=chances,
         objections=objections,
+        left_out=judge.left_out,
+        lengths=consistency_by_length(judge.holdout, judge.at_home(_noisy(fit)).model),
     )
 
 
@@ -211,13 +225,11 @@ def _stated(judge: Judge, told: str) -> float | None:
     return max(float(getattr(noise, name)) for noise in noises)
 
 
-def _judged(
-    judge: Judge, drives: Drives, given: Robot, base: Fitted, fit: Fitted
-) -> tuple[Side, Side]:
+def _judged(judge: Judge, base: Fitted, fit: Fitted) -> tuple[Side, Side]:
     """The legs of both sides; what each run has of its own is learnt in that run alone."""
-    plain = Model(given, judge.nothing_of_own)
+    plain = Model(judge.given, judge.nothing_of_own)
     train = Side(
-        _legs(judge.train, at_home(plain, drives.laid, judge.kind).model),
+        _legs(judge.train, in_runs(judge.train, plain)),
         _legs(judge.train, base.point.model),
         _legs(judge.train, _noisy(fit)),
     )
@@ -233,7 +245,7 @@ def _judged(
 def _error_at_home(judge: Judge, fit: Fitted) -> float:
     """Position error of the held-out drives with a model [m]."""
     legs = _legs(judge.holdout, judge.at_home(_noisy(fit)).model)
-    return statistics(legs.errors.chosen(~legs.outlier)).rmse_position_m
+    return statistics_of(legs).rmse_position_m
 
 
 def _noisy(fit: Fitted) -> Model:

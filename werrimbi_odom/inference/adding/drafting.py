@@ -24,11 +24,11 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.draft_laws import Form, Seen, forms_of, spot_form
 from werrimbi_odom.inference.adding.draft_source import name_of, source_of
 from werrimbi_odom.inference.adding.start import Drives, scored, start_at
-from werrimbi_odom.inference.diagnosis.candidates import Score
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.variables import Variable, variables_of
+from werrimbi_odom.inference.fitting.candidates import Score
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.rules import MOST_FITTED, RIVAL, WORTH_FITTING
 from werrimbi_odom.model.effect import Effect

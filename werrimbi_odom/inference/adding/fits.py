@@ -17,8 +17,8 @@ from werrimbi_odom.inference.adding.start import (
     starts,
 )
 from werrimbi_odom.inference.adding.values import parameters_of, weakest, without_phases_stuck
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import Model, changed
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot

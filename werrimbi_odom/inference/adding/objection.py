@@ -11,8 +11,8 @@ import numpy as np
 
 from werrimbi_odom.inference.adding.start import is_of_set_up
 from werrimbi_odom.inference.adding.values import FittedParameter
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 

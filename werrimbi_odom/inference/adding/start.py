@@ -16,7 +16,8 @@ import numpy as np
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.judged_legs import Prepared
 from werrimbi_odom.inference.comparison.jumps import jumped_legs
-from werrimbi_odom.inference.diagnosis.candidates import (
+from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     Score,
     candidates,
@@ -24,11 +25,10 @@ from werrimbi_odom.inference.diagnosis.candidates import (
     put_in,
     scores,
 )
-from werrimbi_odom.inference.diagnosis.search import with_own_values
-from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, knobs_of
+from werrimbi_odom.inference.fitting.own_values import with_own_values
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUp

@@ -93,6 +93,8 @@ class LegStatistics:
     """Mean of error' Σ⁻¹ error over its degrees of freedom: 1 where the covariance is honest."""
     coverage_95: float
     """Share of legs inside the 95 % ellipsoid."""
+    freedom: int = 0
+    """Measured coordinates of all errors."""
 
 
 def leg_errors(
@@ -228,6 +230,7 @@ def statistics(legs: LegErrors) -> LegStatistics:
         root_mean_square(legs.error[:, 2]),
         float(deviation.sum() / freedom.sum()),
         float(np.mean((deviation <= CHI2_95[freedom])[measured])),
+        int(freedom.sum()),
     )
 
 

@@ -18,7 +18,6 @@ import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
-from werrimbi_odom.inference.diagnosis.candidates import of_each_run, unexplained
 from werrimbi_odom.inference.diagnosis.variables import (
     CELL,
     CONSTANT,
@@ -28,6 +27,7 @@ from werrimbi_odom.inference.diagnosis.variables import (
     functions_of,
     variables_of,
 )
+from werrimbi_odom.inference.fitting.candidates import of_each_run, unexplained
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import DrivenPath, path_of, predict_all

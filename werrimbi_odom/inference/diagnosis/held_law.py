@@ -17,7 +17,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.diagnosis.candidates import (
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
+from werrimbi_odom.inference.diagnosis.lasting import lasting
+from werrimbi_odom.inference.diagnosis.search import Round
+from werrimbi_odom.inference.diagnosis.selection import Fitted, rise_without
+from werrimbi_odom.inference.diagnosis.support import Support, support_of
+from werrimbi_odom.inference.diagnosis.variables import functions_of
+from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     Candidate,
     Score,
@@ -25,12 +31,6 @@ from werrimbi_odom.inference.diagnosis.candidates import (
     signatures,
     unexplained,
 )
-from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
-from werrimbi_odom.inference.diagnosis.lasting import lasting
-from werrimbi_odom.inference.diagnosis.search import Round
-from werrimbi_odom.inference.diagnosis.selection import Fitted, rise_without
-from werrimbi_odom.inference.diagnosis.support import Support, support_of
-from werrimbi_odom.inference.diagnosis.variables import functions_of
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all

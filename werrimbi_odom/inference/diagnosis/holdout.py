@@ -5,19 +5,25 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.comparison.judged_legs import Prepared, finely, judged_legs, prepare
-from werrimbi_odom.inference.comparison.legs import statistics
+from werrimbi_odom.inference.comparison.judged_legs import (
+    Prepared,
+    finely,
+    in_runs,
+    judged_legs,
+    prepare,
+    statistics_of,
+)
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise, recorded_otherwise
-from werrimbi_odom.inference.diagnosis.search import with_own_values
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.design import Point
-from werrimbi_odom.inference.fitting.fit import fit_model, start_point
-from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model, knobs_of
+from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.own_values import at_home, known_at_home
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.set_up.mistakes import SetUp, look_for_mistakes
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
@@ -61,48 +67,20 @@ class Judge:
         """For a model that has no values of the runs' own."""
         return tuple({} for _ in self.fitted_on)
 
+    @property
+    def left_out(self) -> tuple[LeftOut, ...]:
+        """Stretches of all runs that nothing is judged on."""
+        return (*self.train.left_out, *self.holdout.left_out)
+
     def of(self, model: Model) -> Errors:
         """Errors of a model; what each held-out run has of its own is fitted to that run alone."""
-        train = _figures(self.train, model.without_nuisances())
+        train = _figures(self.train, in_runs(self.train, model))
         holdout = _figures(self.holdout, known_at_home(model, self.fine, self.kind))
         return Errors(train[0], holdout[0], train[1], holdout[1], holdout[2])
 
     def at_home(self, model: Model) -> Point:
         """The model in the held-out runs: shared values as they are, the runs' own learnt."""
         return at_home(model, self.fine, self.kind)
-
-
-def known_at_home(model: Model, runs: Together, kind: ReferenceKind) -> Model:
-    """A model in other runs, without what belongs to the references alone."""
-    plain = model.without_nuisances()
-    if not any(plain.own) and all(applied.ready for applied in plain.robot.effects):
-        return Model(plain.robot, tuple({} for _ in runs.runs))
-    return at_home(model, runs, kind).model.without_nuisances()
-
-
-def at_home(model: Model, runs: Together, kind: ReferenceKind) -> Point:
-    """A model in other runs: shared values stay, what those runs have of their own is fitted."""
-    own = sorted({name for mine in model.own for name in mine if name not in NUISANCES})
-    effects = tuple(
-        replace(
-            applied,
-            unknown=tuple(
-                name for name in applied.effect.parameters if f"{applied.name}.{name}" in own
-            )
-            or applied.unknown,
-        )
-        for applied in model.robot.effects
-    )
-    point = start_point(runs, replace(model.robot, effects=effects))
-    point, _ = with_own_values(runs, point, kind)
-    knobs = point.model.nuisance_knobs
-    for applied in effects:
-        knobs += [
-            knob
-            for knob in knobs_of(applied.effect)
-            if knob.per_run and knob.name in point.model.own[0]
-        ]
-    return fit_model(runs, point, kind, knobs, find_jumps=False, rounds=1).point
 
 
 @dataclass(frozen=True)
@@ -125,8 +103,15 @@ def begin(
     limits: EncoderLimits | None,
     sigma_xy: float | None,
     sigma_yaw: float | None,
+    *,
+    given: Robot | None = None,
 ) -> Begun:
     """Split the drives, find the set-up of the fitted ones, and leave out what is not like them.
+
+    Parameters
+    ----------
+    given : Robot, optional
+        By whose travel legs are cut, where that is not `robot`.
 
     Raises
     ------
@@ -138,7 +123,7 @@ def begin(
         set_up = look_for_mistakes(kept, robot, kind, limits)
         if set_up.to_convert is not None:
             raise InputError(f"{kept[0].path}: {set_up.to_convert}")
-        return set_up, judge_of(kept, held, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+        return set_up, judge_of(kept, held, given or robot, kind, leg, limits, sigma_xy, sigma_yaw)
 
     fitted, held = (tuple(runs), tuple(holdout)) if holdout else set_aside(runs)
     set_up, judge = split(fitted, held)
@@ -172,7 +157,5 @@ def judge_of(
 
 
 def _figures(prepared: Prepared, model: Model) -> tuple[float, float, float]:
-    legs = judged_legs(prepared, model, prepared.leg)
-    figures = statistics(legs.errors.chosen(~legs.outlier))
-    whole = statistics(legs.errors)
-    return figures.rmse_position_m, whole.median_position_m, figures.rmse_yaw_rad
+    figures = statistics_of(judged_legs(prepared, model, prepared.leg))
+    return figures.rmse_position_m, figures.median_position_m, figures.rmse_yaw_rad

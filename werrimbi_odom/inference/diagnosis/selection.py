@@ -18,7 +18,7 @@ from itertools import combinations
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
 from werrimbi_odom.inference.fitting.directions import Directions, determined, every_direction
 from werrimbi_odom.inference.fitting.fit import FEW, fit_model

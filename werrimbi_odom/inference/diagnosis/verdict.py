@@ -10,7 +10,6 @@ from typing import Literal
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge, Sides
@@ -18,8 +17,10 @@ from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.stability import rivals_in_halves
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.rules import CALIBRATION_WORTH, RIVAL, SIMPLER
 from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding
 from werrimbi_odom.model.robot import Robot
@@ -73,6 +74,8 @@ class Diagnosis:
     """Median position error on the held-out runs, outliers and all [m]."""
     headings: Sides
     """Heading error on the held-out runs [rad]: a reference of headings alone is judged by it."""
+    left_out: tuple[LeftOut, ...] = ()
+    """Stretches of all runs that none of it is about."""
     misfit: Misfit | None = None
     """What is left because a law's form is not quite nature's, or beside everything found."""
 
@@ -148,6 +151,7 @@ def told(
         Sides(start.holdout, last.holdout),
         Sides(start.holdout_median, last.holdout_median),
         Sides(start.holdout_yaw, last.holdout_yaw),
+        judge.left_out,
     )
 
 

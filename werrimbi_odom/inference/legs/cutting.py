@@ -273,8 +273,8 @@ def _driven(robot: Robot, counters: Counters, begin: float, end: float) -> str:
     left, right = (np.diff(counters.at(time), axis=0) * [robot.left_tick, robot.right_tick]).T
     path = float(np.abs(0.5 * (left + right)).sum())
     turned = math.degrees(float(np.abs(right - left).sum()) / robot.track)
-    words = [f"drives {path:.1f} m"] if path >= 0.05 else []
-    words += [f"turns {turned:.0f}°"] if turned >= 20.0 or not words else []
+    words = [f"drove {path:.1f} m"] if path >= 0.05 else []
+    words += [f"turned {turned:.0f}°"] if turned >= 20.0 or not words else []
     return f"the robot {' and '.join(words)}"
 
 

@@ -16,9 +16,9 @@ from itertools import combinations
 import numpy as np
 
 from werrimbi_odom.effects import find
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.search import Round
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, pace_of
 from werrimbi_odom.inference.manoeuvres.imagined import imagined
 from werrimbi_odom.inference.manoeuvres.rivals import (

@@ -14,9 +14,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.fitting.knobs import STEP
 from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of

@@ -11,11 +11,10 @@ from typing import Any
 from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.values import FittedParameter
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.report.left_out import jumps_words, left_out_json, left_out_words
 from werrimbi_odom.report.numbers import listed, quantity, scaled_with_std
 from werrimbi_odom.report.printed import WIDTH, filled, table
 from werrimbi_odom.report.sizes import sizes_words
-
-_HONEST = (0.8, 1.25)  # NEES
 
 
 def words_of(added: Added) -> str:
@@ -125,20 +124,26 @@ def _remarks(added: Added) -> list[str]:
         )
     else:
         texts.append("The written values are fitted on RUN alone; --holdout only judged them.")
+    texts += [*left_out_words(added.left_out), *jumps_words(added.left_out)]
     return ["\n".join(filled(text) for text in texts)]
 
 
 def _rest(added: Added) -> str:
     nees = added.holdout.figures("after").nees
     if not added.remaining:
-        if _HONEST[0] < nees < _HONEST[1]:
+        if added.covariance == "honest":
             return (
                 f"What remains is noise: nothing more is seen in the errors, and they are as large "
                 f"as the covariance says (NEES {nees:.2f}, honest is 1)."
             )
+        seen = "Nothing more is seen in the errors of the fitted drives"
+        off = [item for item in added.lengths if item.says == added.covariance != "unknown"]
+        if not off:
+            return f"{seen}; the held-out ones have too few legs to judge the covariance by."
+        worst = max(off, key=lambda item: abs(math.log(item.nees)))
         return (
-            f"Nothing more is seen in the errors of the fitted drives; those of the held-out ones "
-            f"are {math.sqrt(nees):.1f} times what the covariance says (NEES {nees:.2f})."
+            f"{seen}; those of the held-out ones are {math.sqrt(worst.nees):.1f} times what the "
+            f"covariance says over legs of {worst.leg:g} m (NEES {worst.nees:.2f}, honest is 1)."
         )
     first = added.remaining[0] if added.misfit is None else added.misfit.cell
     if added.misfit is not None and added.misfit.effect is not None:
@@ -221,6 +226,8 @@ def json_of(added: Added) -> dict[str, Any]:
         "p_values": dict(added.chances),
         "objection": added.objection,
         "objections": dict(added.objections),
+        "covariance": added.covariance,
+        "left_out": left_out_json(added.left_out),
     }
 
 

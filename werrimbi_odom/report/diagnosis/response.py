@@ -17,8 +17,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.diagnosis.candidates import unexplained
 from werrimbi_odom.inference.diagnosis.evidence import Amount, legs_pushed, pushes_of
+from werrimbi_odom.inference.fitting.candidates import unexplained
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.effects import find
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.manoeuvres.proposal import sizes_of_calibration
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES

@@ -28,6 +28,7 @@ from werrimbi_odom.report.diagnosis.phrases import (
     sizes_found,
     whole,
 )
+from werrimbi_odom.report.left_out import jumps_words, left_out_words
 from werrimbi_odom.report.numbers import chance_words, length, listed
 from werrimbi_odom.report.printed import filled
 
@@ -56,6 +57,10 @@ def words_of(told: Told, steps: NextSteps) -> str:
         "unknown": _unknown,
     }[diagnosis.verdict]
     paragraphs = [*tell(told, steps), *_otherwise(diagnosis)]
+    left_out = [*left_out_words(diagnosis.left_out), *jumps_words(diagnosis.left_out)]
+    last = (index for index, text in enumerate(paragraphs) if text.startswith("Next: "))
+    place = next(last, len(paragraphs))
+    paragraphs[place:place] = left_out
     return "\n".join(_filled(text) for text in paragraphs if text)
 
 
