@@ -10,11 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.cli.json_file import write_json
+from werrimbi_odom.cli.next_command import beside, next_command
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.files.asked import Recordings
     from werrimbi_odom.inference.adding.added import Added
     from werrimbi_odom.inference.adding.drafting import Draft
     from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -86,7 +86,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         pages = write_adding_page(tried, arguments.report, made=made_of(arguments))
         print(f"         {', '.join(map(str, pages))}")
-    print(_next(arguments, draft, given))
+    print(_next(arguments, draft))
     return 0
 
 
@@ -98,10 +98,12 @@ def _known(diagnosis: Diagnosis, arguments: argparse.Namespace) -> str:
     if diagnosis.verdict == "ambiguous":
         names = ", ".join(diagnosis.rivals)
         return f"the verdict is ambiguous between effects of the library ({names}){force}"
-    add = shlex.join(["werrimbi", "add", diagnosis.effect or "", "--robot", str(arguments.robot)])
+    better = beside(arguments.robot, "better")
+    add = next_command(["add", diagnosis.effect or ""], arguments, out=better, one_line=True)
     return (
-        f"the verdict is named: {diagnosis.effect}, which the library holds ({add} ...); add it, "
-        f"and draft with the new robot file what then remains{force}"
+        f"the verdict is named: {diagnosis.effect}, which the library holds; add it, and draft "
+        f"with the new robot file what then remains: {add}"
+        f"{force}"
     )
 
 
@@ -132,17 +134,15 @@ def _words(draft: Draft, tried: Added) -> str:
     return filled(text)
 
 
-def _next(arguments: argparse.Namespace, draft: Draft, given: Recordings) -> str:
+def _next(arguments: argparse.Namespace, draft: Draft) -> str:
     """The commands that try it, and that install it."""
-    file = shlex.quote(str(arguments.out / f"{draft.name}.py"))
-    robot, out = shlex.quote(str(arguments.robot)), shlex.quote(str(arguments.out))
-    kind = "" if given.how.kind == "absolute" else f" --reference-kind {given.how.kind}"
-    rest = " RUN..." + (" --holdout RUN..." if given.holdout else "")
+    file = arguments.out / f"{draft.name}.py"
+    explain = shlex.join(["werrimbi", "explain", draft.name, "--effects", str(file)])
+    new = beside(arguments.robot, "new")
+    add = next_command(["add", draft.name], arguments, effects=[file], out=new)
     return (
-        f"\nRead it:     werrimbi explain {draft.name} --effects {file}\n"
-        f"Try it:      werrimbi add {draft.name} --effects {file} \\\n"
-        f"               --robot {robot} --out new.yaml{kind}{rest}\n"
-        f"Install it:  pip install {out}    (then robot files and the node know its name)"
+        f"\nRead it:\n    {explain}\nTry it:\n{add}\nInstall it, and robot files and the node "
+        f"know its name:\n    {shlex.join(['pip', 'install', str(arguments.out)])}"
     )
 
 
