@@ -19,7 +19,9 @@ setup: $(READY)  ## the environment .venv with everything in it
 $(READY): setup.py setup.cfg constraints.txt
 	$(PYTHON) -c 'import sys; sys.exit(0 if (3, 10) <= sys.version_info[:2] <= (3, 13) else "werrimbi_odom needs Python 3.10 to 3.13 (the ROS 2 Jazzy wheels do); try: make PYTHON=python3.12 " + " ".join(sys.argv[1:]))'
 	$(PYTHON) -m venv $(VENV)
-	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[all]'
+	@echo "Setting up $(VENV): ROS 2 Jazzy, scipy, MuJoCo, NiceGUI and what tests need come from PyPI once,"
+	@echo "and fill about 1.2 GB; that takes some minutes. pip shows how far it is."
+	$(BIN)/python -m pip install --disable-pip-version-check --constraint constraints.txt --editable '.[all]'
 	@touch $@
 
 demo: setup  ## recorded ticks through the real node; ROBOT=robot.yaml RUN=folder-or-bag for your own

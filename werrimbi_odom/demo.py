@@ -2,6 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """`make demo`: recorded ticks through the real `odom_node` over DDS, and how far off it ends.
 
+The recording that comes with us is of a robot in a physics engine; its reference is the truth.
+
 The node runs as a process of its own, just as on a robot; the ticks are sent as JointState messages
 faster than real time; everything printed comes from the messages that the node publishes.
 """
@@ -11,6 +13,7 @@ from __future__ import annotations
 import argparse
 import math
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -113,6 +116,9 @@ def demonstrate(robot_path: Path, run_path: Path, out: Path) -> int:
         measured_at(run.reference, answers.time[-1]) if run.reference else None,
     )
     _print(robot_file, run, start, answers, ending, seconds)
+    if ending.deviation is not None and ending.deviation > EXPLAINED:
+        words = ["werrimbi", "diagnose", "--robot", str(robot_path), str(run_path)]
+        print(f"Next:\n    {shlex.join(words)}")
     _draw(run, start, answers, ending, out)
     return 0
 
@@ -220,15 +226,21 @@ def _print(
     )
     console = Console()
     console.print(table)
-    console.print(_final_pose(ending))
-    console.print(_in_words(ending), markup=False)
+    engine = run.path.resolve() == RECORDING.resolve()
+    console.print(_final_pose(ending, "true" if engine else "measured"))
+    console.print(_in_words(ending, "the truth" if engine else "what was measured"), markup=False)
+    if engine:
+        console.print(
+            "The recording is of a robot in a physics engine (docs/simulation.md), so the truth is "
+            "known."
+        )
 
 
-def _final_pose(ending: Ending) -> Table:
+def _final_pose(ending: Ending, known: str) -> Table:
     from rich.table import Table
 
     table = Table(title="final pose")
-    for heading in ("", "odometry", "true", "error", "1σ", "error in σ"):
+    for heading in ("", "odometry", known, "error", "1σ", "error in σ"):
         table.add_column(heading, justify="right" if heading else "left")
     measured = ending.measured or Pose(math.nan, math.nan, math.nan)
     degrees = 180.0 / math.pi
@@ -245,19 +257,18 @@ def _final_pose(ending: Ending) -> Table:
     return table
 
 
-def _in_words(ending: Ending) -> str:
+def _in_words(ending: Ending, known: str) -> str:
     deviation = ending.deviation
     if deviation is None:
         return "Nothing was measured, so nothing can be said about the error."
     if deviation <= EXPLAINED:
         return (
-            f"The end lies {deviation:.1f} σ from the truth, all directions together: "
+            f"The end lies {deviation:.1f} σ from {known}, all directions together: "
             "the covariance promised just that."
         )
     return (
-        f"The end lies {deviation:.1f} σ from the truth, all directions together: far more than "
-        "noise explains. The robot file is not calibrated, or a physical effect is missing. "
-        "Next: werrimbi calibrate fit."
+        f"The end lies {deviation:.1f} σ from {known}, all directions together: far more than "
+        "noise explains. The robot file is not calibrated, or a physical effect is missing."
     )
 
 

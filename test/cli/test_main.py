@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 from werrimbi_odom.cli import main as command
+from werrimbi_odom.cli.examples import EXAMPLES
 from werrimbi_odom.errors import InputError
 
 ROOT = Path(__file__).parents[2]
@@ -44,6 +45,22 @@ def test_every_verb_has_help(verb: str) -> None:
     done = werrimbi(verb, "--help")
     assert done.returncode == 0
     assert done.stdout.startswith(f"usage: werrimbi {verb}")
+
+
+@pytest.mark.parametrize("of", EXAMPLES)
+def test_every_help_ends_with_examples_that_are_right(of: str) -> None:
+    done = werrimbi(*of.split(), "--help")
+    given = done.stdout.split("example:\n")[1].splitlines()
+    assert given == [f"  werrimbi {words}" for words in EXAMPLES[of]]
+    for example in EXAMPLES[of]:
+        words = example.split()
+        assert command._parser(words).parse_args(words).verb == of.split()[0]
+
+
+def test_help_says_what_a_leg_is() -> None:
+    for verb in ("compare", "diagnose", "add", "draft", "workbench"):
+        text = " ".join(werrimbi(verb, "--help").stdout.split())
+        assert "drives are cut into legs, stretches of so much way" in text
 
 
 def test_help_is_quick_and_imports_nothing_heavy() -> None:

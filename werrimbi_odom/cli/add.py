@@ -8,8 +8,8 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.commands import command
 from werrimbi_odom.cli.json_file import write_json
+from werrimbi_odom.cli.next_command import next_command
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.errors import InputError
 
@@ -74,7 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
     print(words_of(added))
     written = _write(arguments, given, added)
     print(f"\nwritten: {', '.join(map(str, written))}")
-    print(f"Is more missing?\n    {_next(arguments)}")
+    print("Is more missing?")
+    print(next_command(["diagnose"], arguments, robot=arguments.out))
     return 0
 
 
@@ -126,8 +127,3 @@ def _write(arguments: argparse.Namespace, given: Recordings, added: Added) -> li
 
         written += write_adding_page(added, arguments.report, made=made_of(arguments))
     return written
-
-
-def _next(arguments: argparse.Namespace) -> str:
-    """The command that looks for more in the same drives, to be pasted."""
-    return command(["diagnose"], arguments, robot=arguments.out)

@@ -7,6 +7,8 @@ from __future__ import annotations
 import argparse
 from importlib import import_module
 
+from werrimbi_odom.cli.examples import Formatter, epilog_of
+
 HELP = "better numbers for the robot file, with error bars"
 
 KINDS = {
@@ -20,7 +22,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the three ways of calibrating and their options."""
     kinds = parser.add_subparsers(dest="kind", metavar="KIND", required=True)
     for kind, says in KINDS.items():
-        below = kinds.add_parser(kind, help=says, allow_abbrev=False)
+        below = kinds.add_parser(
+            kind,
+            help=says,
+            allow_abbrev=False,
+            epilog=epilog_of(f"calibrate {kind}"),
+            formatter_class=Formatter,
+        )
         import_module(_module(kind)).add_arguments(below)
 
 

@@ -46,8 +46,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="squares driven with the new robot file: says what the calibration gained",
     )
-    parser.add_argument("--ticks-topic", metavar="T", help="of a bag, where it has several")
-    parser.add_argument("--reference-topic", metavar="T", help="of a bag, where it has several")
+    parser.add_argument(
+        "--ticks-topic", metavar="T", help="topic of the ticks, in bags with several"
+    )
+    parser.add_argument(
+        "--reference-topic", metavar="T", help="topic of the reference, in bags with several"
+    )
     add_file_arguments(parser)
 
 

@@ -25,8 +25,13 @@ def add_file_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--out", metavar="NEW", type=Path, required=True, help="robot file to write"
     )
-    parser.add_argument("--json", metavar="F", type=Path, help="write the figures to this file")
-    parser.add_argument("--report", metavar="F", type=Path, help="write a page with the plots")
+    parser.add_argument("--json", metavar="F", type=Path, help="write the numbers to this file")
+    parser.add_argument(
+        "--report",
+        metavar="F",
+        type=Path,
+        help="write a page with plots (.html), or the plots (.pdf, .png)",
+    )
     parser.add_argument("--force", action="store_true", help="overwrite --out if it exists")
 
 

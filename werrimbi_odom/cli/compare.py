@@ -5,18 +5,17 @@
 from __future__ import annotations
 
 import argparse
-import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.cli.json_file import write_json
+from werrimbi_odom.cli.next_command import next_command
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 
 if TYPE_CHECKING:
     from werrimbi_odom.inference.comparison.compare import Comparison
 
 HELP = "model against measurement: where it fails, and whether its covariance is honest"
-_LONG = 200  # letters of a command that is worth printing whole
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -49,23 +48,16 @@ def run(arguments: argparse.Namespace) -> int:
             **given.judging,
             show=show,
         )
-    print(words_of(comparison, next_step=_next_step(arguments)))
+    words = words_of(comparison, next_step="`werrimbi diagnose`")
+    print(words)
+    if "`werrimbi diagnose`" in words:
+        print(next_command(["diagnose"], arguments))
     print()
     print(tables_of(comparison))
     written = _write(arguments, comparison)
     if written:
         print(f"\nwritten: {', '.join(map(str, written))}")
     return 0
-
-
-def _next_step(arguments: argparse.Namespace) -> str:
-    """The command that diagnoses the same drives, or its beginning where it is long."""
-    words = ["werrimbi", "diagnose", "--robot", str(arguments.robot)]
-    if arguments.reference_kind != "absolute":
-        words += ["--reference-kind", arguments.reference_kind]
-    runs = [str(path) for path in arguments.runs]
-    whole = shlex.join([*words, *runs])
-    return f"`{whole if len(whole) <= _LONG else shlex.join(words) + ' RUN...'}`"
 
 
 def _write(arguments: argparse.Namespace, comparison: Comparison) -> list[Path]:
@@ -83,7 +75,6 @@ def _write(arguments: argparse.Namespace, comparison: Comparison) -> list[Path]:
         written += write_compare_page(
             comparison,
             arguments.report,
-            next_step=_next_step(arguments),
             made=made_of(arguments),
         )
     return written

@@ -5,12 +5,13 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from werrimbi_odom.cli.commands import command
 from werrimbi_odom.cli.diagnose_fleet import add_fleet_arguments, refuse_mixing, run_fleet
 from werrimbi_odom.cli.json_file import write_json
+from werrimbi_odom.cli.next_command import beside, next_command
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.errors import InputError
 
@@ -78,11 +79,14 @@ def _steps(arguments: argparse.Namespace) -> NextSteps:
     """The commands that follow, for the same files."""
     from werrimbi_odom.report.diagnosis.words import NextSteps
 
-    new = Path(arguments.robot)
-    better = str(new.with_name(f"{new.stem}_better{new.suffix}"))
+    better = beside(arguments.robot, "better")
+
+    def add(names: Sequence[str]) -> str:
+        return next_command(["add", ",".join(names)], arguments, out=better).strip()
+
     return NextSteps(
-        add=lambda names: command(["add", ",".join(names)], arguments, out=better),
-        draft=command(["draft"], arguments, out="my_effect"),
+        add=add,
+        draft=next_command(["draft"], arguments, out="my_effect", holdout=False).strip(),
         diagnose="werrimbi diagnose",
     )
 

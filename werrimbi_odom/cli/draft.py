@@ -9,8 +9,8 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.commands import command
 from werrimbi_odom.cli.json_file import write_json
+from werrimbi_odom.cli.next_command import beside, next_command
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.errors import InputError
 
@@ -99,11 +99,13 @@ def _known(diagnosis: Diagnosis, arguments: argparse.Namespace) -> str:
     if diagnosis.verdict == "ambiguous":
         names = ", ".join(diagnosis.rivals)
         return f"the verdict is ambiguous between effects of the library ({names}){force}"
+    better = beside(arguments.robot, "better")
     names = ",".join(diagnosis.found)
-    add = shlex.join(["werrimbi", "add", names, "--robot", str(arguments.robot)])
+    add = next_command(["add", names], arguments, out=better, one_line=True)
     return (
-        f"the verdict is named: {names}, which the library holds ({add} ...); add it, and draft "
-        f"with the new robot file what then remains{force}"
+        f"the verdict is named: {names}, which the library holds; add it, and draft "
+        f"with the new robot file what then remains: {add}"
+        f"{force}"
     )
 
 
@@ -139,13 +141,12 @@ def _words(draft: Draft, tried: Added) -> str:
 def _next(arguments: argparse.Namespace, draft: Draft) -> str:
     """The commands that try it, and that install it."""
     file = arguments.out / f"{draft.name}.py"
-    shown = shlex.quote(str(file))
-    tried = command(["add", draft.name, "--effects", str(file)], arguments, out="new.yaml")
+    explain = shlex.join(["werrimbi", "explain", draft.name, "--effects", str(file)])
+    new = beside(arguments.robot, "new")
+    add = next_command(["add", draft.name], arguments, effects=[file], out=new)
     return (
-        f"\nRead it:     werrimbi explain {draft.name} --effects {shown}\n"
-        f"Try it:      {tried}\n"
-        f"Install it:  pip install {shlex.quote(str(arguments.out))}    (then robot files and the "
-        "node know its name)"
+        f"\nRead it:\n    {explain}\nTry it:\n{add}\nInstall it, and robot files and the node "
+        f"know its name:\n    {shlex.join(['pip', 'install', str(arguments.out)])}"
     )
 
 

@@ -37,7 +37,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=[],
         help="Python file with effects of your own (it is executed); several times for several",
     )
-    parser.add_argument("--json", metavar="FILE", type=Path, help="write the page to this file")
+    parser.add_argument(
+        "--json", metavar="FILE", type=Path, help="write what is printed to this file, for programs"
+    )
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -13,6 +13,7 @@ from importlib import import_module, metadata
 from types import ModuleType
 from typing import NoReturn
 
+from werrimbi_odom.cli.examples import Formatter, epilog_of
 from werrimbi_odom.cli.outputs import refuse_files
 from werrimbi_odom.cli.packages import EXTRAS, lacking, refuse_lacking
 from werrimbi_odom.errors import InputError
@@ -105,7 +106,13 @@ def _parser(words: Sequence[str]) -> argparse.ArgumentParser:
     for name in VERBS:
         if chosen == name or chosen not in VERBS:
             module = _module(name)
-            below = verbs.add_parser(name, help=module.HELP, allow_abbrev=False)
+            below = verbs.add_parser(
+                name,
+                help=module.HELP,
+                allow_abbrev=False,
+                epilog=epilog_of(name),
+                formatter_class=Formatter,
+            )
             if chosen == name:  # nobody else needs its options, nor what they cost to declare
                 module.add_arguments(below)
     return parser

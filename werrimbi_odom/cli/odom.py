@@ -42,14 +42,17 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("run", metavar="RUN", type=Path, help="run folder, or ROS 2 bag")
     parser.add_argument("--robot", metavar="R", type=Path, required=True, help="robot file")
     parser.add_argument("--out", metavar="CSV", type=Path, required=True, help="file to write")
-    parser.add_argument("--json", metavar="FILE", type=Path, help="write the figures here too")
+    parser.add_argument("--json", metavar="FILE", type=Path, help="write the numbers to this file")
     parser.add_argument(
-        "--ticks-topic", metavar="T", help="of a bag with several; LEFT,RIGHT for one a wheel"
+        "--ticks-topic",
+        metavar="T",
+        help="topic of the ticks, in a bag with several; LEFT,RIGHT for one a wheel",
     )
     parser.add_argument(
         "--reference-topic",
         metavar="T",
-        help="of a bag with several; T:CHILD_FRAME among transforms, `none` for no reference",
+        help="topic of the reference, in a bag with several; T:CHILD_FRAME among transforms, "
+        "`none` for no reference",
     )
     parser.add_argument(
         "--as-reference",

@@ -1,16 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A bar on the terminal while something takes its time; nothing where nobody looks."""
+"""A bar on the terminal while something takes its time; elsewhere a line now and then."""
 
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from typing import TypeVar
 
 Item = TypeVar("Item")
+
+EVERY = 30.0
+"""Seconds from line to line where nobody looks at a bar."""
 
 
 def with_progress(items: Sequence[Item], words: str) -> Iterator[Item]:
@@ -26,9 +30,12 @@ def with_progress(items: Sequence[Item], words: str) -> Iterator[Item]:
 
 @contextmanager
 def share_done(words: str) -> Iterator[Callable[[float, str], None]]:
-    """A bar on stderr, if that is a terminal, to be told the share done and what is being done."""
+    """A bar on stderr, to be told the share done and what is being done.
+
+    Where stderr is no terminal (a log, a service), a line when the work has taken long, and again.
+    """
     if not sys.stderr.isatty() or find_spec("rich") is None:
-        yield lambda share, words: None
+        yield _now_and_then(words)
         return
     from rich.console import Console
     from rich.progress import Progress
@@ -36,3 +43,16 @@ def share_done(words: str) -> Iterator[Callable[[float, str], None]]:
     with Progress(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(words, total=1.0)
         yield lambda share, words: bar.update(task, completed=share, description=words)
+
+
+def _now_and_then(title: str) -> Callable[[float, str], None]:
+    """Tells a line on stderr each time that `EVERY` seconds have gone by."""
+    told = time.monotonic()
+
+    def show(share: float, words: str) -> None:
+        nonlocal told
+        if time.monotonic() - told >= EVERY:
+            told = time.monotonic()
+            print(f"{title}: {100.0 * share:.0f} %, {words}", file=sys.stderr, flush=True)
+
+    return show

@@ -55,28 +55,38 @@ def add_recording_arguments(
         metavar="M",
         type=_positive,
         default=1.0,
-        help="length of a leg [m], 1 if not given",
+        help="length of a leg [m], 1 if not given: drives are cut into legs, stretches of so much "
+        "way (on the spot of a quarter turn), and each is judged by the pose at its end as seen "
+        "from its start",
     )
     parser.add_argument(
         "--reference-kind",
         choices=("absolute", "incremental"),
         default="absolute",
-        help="each pose has noise of its own (motion capture), or noise adds up (scan matcher)",
+        help="absolute, if not given: each pose has noise of its own (motion capture); "
+        "incremental: it adds up along the way (scan matcher)",
     )
     parser.add_argument(
         "--reference-sigma-xy",
         metavar="M",
         type=_positive,
-        help="its noise in x and in y [m], if known",
+        help="noise of the reference in x and in y [m], if known",
     )
     parser.add_argument(
-        "--reference-sigma-yaw", metavar="RAD", type=_positive, help="in heading [rad], if known"
+        "--reference-sigma-yaw",
+        metavar="RAD",
+        type=_positive,
+        help="its noise in heading [rad], if known",
     )
     parser.add_argument(
-        "--ticks-topic", metavar="T", help="of a bag with several; LEFT,RIGHT for one a wheel"
+        "--ticks-topic",
+        metavar="T",
+        help="topic of the ticks, in a bag with several; LEFT,RIGHT for one a wheel",
     )
     parser.add_argument(
-        "--reference-topic", metavar="T", help="of a bag with several; T:CHILD_FRAME of transforms"
+        "--reference-topic",
+        metavar="T",
+        help="topic of the reference, in a bag with several; T:CHILD_FRAME among transforms",
     )
     parser.add_argument(
         "--effects",
@@ -86,9 +96,14 @@ def add_recording_arguments(
         type=Path,
         help="file with effects of your own, to try them; may be given again",
     )
-    parser.add_argument("--json", metavar="F", type=Path, help="write the figures to this file")
+    parser.add_argument("--json", metavar="F", type=Path, help="write the numbers to this file")
     if report:
-        parser.add_argument("--report", metavar="F", type=Path, help="write a page with the plots")
+        parser.add_argument(
+            "--report",
+            metavar="F",
+            type=Path,
+            help="write a page with plots (.html), or the plots (.pdf, .png)",
+        )
 
 
 def read_recordings(arguments: argparse.Namespace) -> Recordings:
