@@ -75,3 +75,39 @@ def test_an_existing_file_is_kept(
     assert main(words(creeping, "lateral_slip", out)) == 2
     assert out.read_text() == "mine"
     assert "--force overwrites it" in capsys.readouterr().err
+
+
+def test_several_effects_are_added_at_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    effects = (find("wheels_swapped").using(), find("lateral_slip").using(creep=0.02))
+    folder = written(tmp_path, [replace(PLAIN, effects=effects)] * 4)
+    out, figures = tmp_path / "new.yaml", tmp_path / "f.json"
+    both = "wheels_swapped,lateral_slip"
+    assert main(words(folder, both, out, "--json", figures)) == 0
+    found = json.loads(figures.read_text())
+    assert found["effect"] == both
+    assert found["effects"] == both.split(",")
+    assert found["parameters"].keys() == {"lateral_slip.creep"}
+    assert found["p_values"]["wheels_swapped"] is None
+    robot = read_robot_file(out).robot
+    assert [item.name for item in robot.effects] == both.split(",")
+    said = capsys.readouterr().out
+    command = said.split("Is more missing?")[1].replace("\\\n", " ").split()
+    assert main(command[1:]) == 0
+    assert capsys.readouterr().out.startswith("Nothing is missing")
+
+    assert main(words(folder, f"{both},left_backlash", tmp_path / "other.yaml")) == 2
+    refused = capsys.readouterr().err
+    assert refused.count("\n") == 1
+    assert "left_backlash does not lower" in refused
+    assert f"without left_backlash: werrimbi add {both} ..." in refused
+    assert main(words(folder, "lateral_slip,lateral_slip", tmp_path / "other.yaml")) == 2
+    assert "names lateral_slip twice" in capsys.readouterr().err
+
+
+def test_what_cannot_be_written_is_found_before_the_work(
+    creeping: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words(creeping, "lateral_slip", Path("/proc/new.yaml"))) == 2
+    assert "--out /proc/new.yaml: " in capsys.readouterr().err

@@ -12,7 +12,10 @@ import pytest
 
 from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
+from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.adding import Added, add_effect
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.words import json_of, words_of
 
@@ -90,3 +93,65 @@ def test_a_phase_of_each_drive_is_not_written() -> None:
     assert found.parameters["amplitude"].value == pytest.approx(2e-3, abs=2e-4)
     gone = np.angle(np.exp(1j * (np.array(found.parameters["phase"].of_runs) - [0.3, 1.9, -2.0])))
     assert np.max(np.abs(gone)) < 0.2
+
+
+def test_sizes_that_nothing_moves_stay_as_the_file_has_them(creep: Added) -> None:
+    for name in (
+        "wheel_separation_multiplier",
+        "left_wheel_radius_multiplier",
+        "right_wheel_radius_multiplier",
+    ):
+        assert getattr(creep.robot, name) == getattr(PLAIN, name)
+        assert json_of(creep)["calibration"][name]["std"] is None
+
+
+def test_a_size_that_is_off_is_moved_alone_and_told_as_one_measures_it() -> None:
+    slip = find("lateral_slip").using(creep=0.02)
+    found = added(
+        "lateral_slip", replace(PLAIN, right_wheel_radius_multiplier=1.03, effects=(slip,))
+    )
+    assert found.robot.wheel_separation_multiplier == 1.0
+    assert found.robot.left_wheel_radius_multiplier == 1.0
+    assert found.robot.right_wheel_radius_multiplier == pytest.approx(1.03, abs=1e-3)
+    words = " ".join(words_of(found).split())
+    assert re.search(
+        r"left wheel right as it is, right wheel (2\.99|3\.0)\S* ± \S+ % larger", words
+    )
+
+
+def test_noise_alone_is_not_known_while_something_is_missing(creep: Added) -> None:
+    assert creep.explained
+    assert json_of(creep)["holdout"]["noise_alone"] == pytest.approx(
+        creep.holdout.promised, abs=1e-12
+    )
+    late = find("right_missed_ticks").using(fraction=0.05, above=0.3)
+    slip = find("lateral_slip").using(creep=0.02)
+    found = added("lateral_slip", replace(PLAIN, effects=(slip, late)))
+    assert not found.explained
+    assert np.isnan(json_of(found)["holdout"]["noise_alone"])
+    assert not json_of(found)["noise"]["written"]
+    assert "noise alone" not in words_of(found).split("Position error")[1].split("\n\n")[0]
+    assert found.robot.left_wheel_noise == PLAIN.left_wheel_noise
+
+
+def test_a_chance_that_nobody_worked_out_is_none() -> None:
+    found = added("track_width", replace(PLAIN, wheel_separation_multiplier=1.02))
+    assert found.chances == {"track_width": None}
+    assert json_of(found)["p_value"] is None
+
+
+def test_a_reference_in_millimetres_is_to_be_converted_and_nothing_else() -> None:
+    runs = []
+    for run in runs_of(PLAIN, (1, 2, 3, 4)):
+        assert run.reference is not None
+        seen = replace(run.reference, x=1e3 * run.reference.x, y=1e3 * run.reference.y)
+        runs.append(replace(run, reference=seen))
+    for asked in (
+        lambda: diagnose(runs[:3], PLAIN, LIBRARY, holdout=runs[3:]),
+        lambda: add_effect(find("wheel_radius_scale"), runs[:3], PLAIN, holdout=runs[3:]),
+    ):
+        with pytest.raises(InputError) as refused:
+            asked()
+        words = str(refused.value)
+        assert words.count("millimetres") == 1
+        assert "divide by 1000" in words

@@ -15,6 +15,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.verdict import Verdict
+from werrimbi_odom.report.numbers import listed
 from werrimbi_odom.workbench.job import CancelledError, Job
 from werrimbi_odom.workbench.opened import Look, Opened
 from werrimbi_odom.workbench.parts import Part
@@ -103,16 +104,17 @@ class Tab:
             self.tell("Diagnosis done.")
             self.go("diagnose")
 
-    async def add(self, effect: str) -> None:
-        """Fit an effect; taken where nothing speaks against it."""
+    async def add(self, *effects: str) -> None:
+        """Fit effects together; taken where nothing speaks against any."""
         at = self.session.now
         self.view = "add"
-        step = await self._done(Add(effect, at.look.robot), f"fit of {effect}")
+        effect = listed(effects)
+        step = await self._done(Add(effects, at.look.robot), f"fit of {effect}")
         if step is None or at is not self.session.now:
             return
         self.session = self.session.fitted(step)
         if self.session.proposed is not None:
-            self.tell(f"{effect} was fitted, but something speaks against it.", trouble=True)
+            self.tell(f"{effect}: fitted, but something speaks against it.", trouble=True)
         else:
             self.tell(f"{effect} added: {self.error_told()}")
         self.go("add")

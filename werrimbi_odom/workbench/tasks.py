@@ -20,9 +20,9 @@ class Diagnose:
 
 @dataclass(frozen=True)
 class Add:
-    """Fit one more effect, and compare."""
+    """Fit more effects together, and compare."""
 
-    effect: str
+    effects: tuple[str, ...]
     robot: Robot
 
 

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is missing, and one more effect: the long work of the page, on the drives it judges on."""
+"""What is missing, and more effects: the long work of the page, on the drives it judges on."""
 
 from __future__ import annotations
 
 from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.adding.adding import add_effect
+from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
@@ -65,8 +65,8 @@ def added(task: Add, opened: Opened, collection: Collection, show: Show) -> Step
         When the drives do not allow it; the message says why.
     """
     runs, holdout = _split(opened.given)
-    fitted = add_effect(
-        collection.find(task.effect),
+    fitted = add_effects(
+        [collection.find(name) for name in task.effects],
         runs,
         task.robot,
         holdout=holdout,

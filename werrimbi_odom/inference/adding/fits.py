@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 
@@ -141,8 +142,9 @@ def _well(drives: Drives, start: Start, given: Robot) -> Fitted:
 
 
 def _pruned(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitted:
-    """The fit without parameters that the data do not show, one after the other."""
-    while (name := weakest(effect, parameters_of(effect, fit, given))) is not None:
+    """The fit without parameters that are not worth the price of a number, one after the other."""
+    limit = math.sqrt(fit.price_of_one)
+    while (name := weakest(effect, parameters_of(effect, fit, given), limit)) is not None:
         key = f"{effect.name}.{name}"
         model = fit.point.model
         at_null = changed(model.robot, {key: effect.parameters[name].null})

@@ -169,8 +169,14 @@ def _forgotten(applied: AppliedEffect, own: set[str]) -> AppliedEffect:
     return AppliedEffect(applied.effect, values, names)
 
 
-def weakest(effect: Effect, found: Mapping[str, FittedParameter]) -> str | None:
-    """The parameter that the data show least of, if others remain without it."""
+def weakest(
+    effect: Effect, found: Mapping[str, FittedParameter], limit: float = SIGNIFICANT
+) -> str | None:
+    """The parameter that the data show least of, if others remain without it; or None.
+
+    `limit` is in standard deviations. Of two that the drives hardly tell apart (a drift with the
+    distance, and one with the time) the weaker goes first, and the other one then stands alone.
+    """
     phases = effect.quadrature or ()
     free = {
         name: item
@@ -184,7 +190,7 @@ def weakest(effect: Effect, found: Mapping[str, FittedParameter]) -> str | None:
         for name, item in free.items()
     }
     name = min(doubt, key=lambda key: doubt[key])
-    return name if doubt[name] < SIGNIFICANT else None
+    return name if doubt[name] < limit else None
 
 
 def without_phases_stuck(model: Model, knobs: Sequence[Knob]) -> Model | None:

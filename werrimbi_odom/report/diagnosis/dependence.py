@@ -30,6 +30,19 @@ _VARIABLES = {
     "position": "the place on the floor",
 }
 
+_SHORT = {
+    CONSTANT: "always",
+    "wheel_speed": "wheel's speed",
+    "yaw_rate": "turn rate",
+    "yaw_rate_size": "turn rate, size",
+    "travel_since_reversal": "travel since reversal",
+    "left_wheel_angle": "left wheel's angle",
+    "right_wheel_angle": "right wheel's angle",
+    "left_wheel_angle_twice": "left wheel's angle, twice",
+    "right_wheel_angle_twice": "right wheel's angle, twice",
+    "position": "place on the floor",
+}
+
 _AMOUNTS = {
     ("left", "travel"): "how far the left wheel rolls",
     ("right", "travel"): "how far the right wheel rolls",
@@ -44,6 +57,17 @@ _AMOUNTS = {
     ("heading", "path"): "how far the robot turns as it drives",
     ("heading", "duration"): "how far the robot turns as time goes by",
 }
+
+
+def short_name(variable: str) -> str:
+    """A variable's name for tables and figures; the same wherever it stands."""
+    return _SHORT.get(variable, variable.replace("_", " "))
+
+
+def short_words(cell: Dependence) -> str:
+    """The same of a cell; an error that is always there is told with what it is per."""
+    name = short_name(cell.variable.name)
+    return f"{name}, per {cell.amount.per}" if cell.variable.name == CONSTANT else name
 
 
 def variable_words(cell: Dependence) -> str:

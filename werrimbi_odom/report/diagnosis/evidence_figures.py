@@ -12,6 +12,7 @@ import numpy as np
 from werrimbi_odom.inference.diagnosis.diagnosis import VERY_SURE
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Amount, Dependence
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
+from werrimbi_odom.report.diagnosis.dependence import short_name
 from werrimbi_odom.report.style import RISING, escaped, plain
 
 if TYPE_CHECKING:
@@ -20,25 +21,12 @@ if TYPE_CHECKING:
 FAINTEST = 150.0
 """Fall of chi-squared that is given full colour at the least: noise alone stays pale."""
 
-_WORDS = {
-    CONSTANT: "always",
-    "wheel_speed": "wheel's speed",
-    "yaw_rate": "turn rate",
-    "yaw_rate_size": "turn rate, size",
-    "travel_since_reversal": "travel since reversal",
-    "left_wheel_angle": "left wheel's angle",
-    "right_wheel_angle": "right wheel's angle",
-    "left_wheel_angle_twice": "left wheel's angle, twice",
-    "right_wheel_angle_twice": "right wheel's angle, twice",
-    "position": "place on the floor",
-}
-
 _CHANNELS = {"left": "left wheel", "right": "right wheel"}
 
 
 def variable_words(name: str) -> str:
     """A variable's name for a figure."""
-    return escaped(_WORDS.get(name, name.replace("_", " ")))
+    return escaped(short_name(name))
 
 
 def amount_words(amount: Amount) -> str:

@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.effects.page import page_of
+from werrimbi_odom.inference.adding.values import SIGNIFICANT
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, chance
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.diagnosis.named import effect_named
@@ -22,7 +23,7 @@ from werrimbi_odom.inference.set_up.mistakes import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
 from werrimbi_odom.report.diagnosis.values import Value, ranked_of, values_of
-from werrimbi_odom.report.numbers import chance_words, length, quantity
+from werrimbi_odom.report.numbers import chance_words, length, listed, quantity
 from werrimbi_odom.report.sizes import sizes_words
 
 
@@ -71,19 +72,27 @@ def also(told: Told, name: str) -> list[str]:
 
 
 def _large(diagnosis: Diagnosis, name: str) -> list[str]:
-    values = values_of(diagnosis, name)
-    if not values:
+    every = values_of(diagnosis, name)
+    if not every:
         return []
+    values = {key: value for key, value in every.items() if not _unseen(value)} or every
     parts = [
         f"{parameter} is another one in each drive ({value.says})"
         if value.per_run
         else f"{parameter} = {_value(value)} ({value.says})"
         for parameter, value in values.items()
     ]
-    late = ""
+    unseen = [key for key in every if key not in values]
+    late = f" None is seen of {listed(unseen)}." if unseen else ""
     if name == "reference_delay" and values["delay"].value < 0.0:
-        late = " Negative: it is the encoders' stamps that are late against the reference's."
+        late += " Negative: it is the encoders' stamps that are late against the reference's."
     return [f"How large: {'; '.join(parts)}.{late}"]
+
+
+def _unseen(value: Value) -> bool:
+    """Whether a parameter may as well be null, by as much as `add` would put it there."""
+    away = abs(value.value - value.null)
+    return not value.per_run and value.std > 0.0 and away < SIGNIFICANT * value.std
 
 
 def _deviations(diagnosis: Diagnosis, name: str) -> str:

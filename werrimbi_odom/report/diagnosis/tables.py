@@ -10,6 +10,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.manoeuvres.sight import Sight
+from werrimbi_odom.report.diagnosis.dependence import short_words
 from werrimbi_odom.report.diagnosis.values import values_of
 from werrimbi_odom.report.numbers import in_unit, length, p_words
 from werrimbi_odom.report.printed import table
@@ -65,7 +66,7 @@ def _map(diagnosis: Diagnosis) -> str:
     """How strongly each error goes with each variable: the logarithm of the chance, in marks."""
     title = "What the errors go with, before anything is put in"
     cells = list(diagnosis.depends_on)
-    sure = list(dict.fromkeys(cell.name for cell in cells if cell.p_value < SURE))
+    sure = list(dict.fromkeys(short_words(cell) for cell in cells if cell.p_value < SURE))
     if not sure:
         return f"{title}: nothing."
     rows = [
@@ -80,7 +81,7 @@ def _map(diagnosis: Diagnosis) -> str:
 def _strength(cells: Iterable[Dependence], channel: str, name: str) -> str:
     best = max(
         (cell.gain - cell.degrees for cell in cells
-         if cell.channel == channel and cell.name == name and cell.p_value < SURE),
+         if cell.channel == channel and short_words(cell) == name and cell.p_value < SURE),
         default=0.0,
     )  # fmt: skip
     return f"{best:.0f}" if best > 0.0 else "."

@@ -8,10 +8,10 @@ from functools import partial
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
-from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
 from werrimbi_odom.report.diagnosis.phrases import at_bounds
 from werrimbi_odom.report.diagnosis.words import NextSteps, Told, words_of
-from werrimbi_odom.report.numbers import chance_words
+from werrimbi_odom.report.numbers import chance_words, listed
 from werrimbi_odom.report.page_text import unwrapped
 from werrimbi_odom.workbench.figure import figure
 from werrimbi_odom.workbench.html import box, button, paragraphs, text
@@ -47,6 +47,7 @@ def diagnose_view(tab: Tab) -> None:
     with box("div", "columns"):
         with box("div", "left"):
             _verdict(tab, found)
+            _add_all(tab, found.diagnosis)
             _ranking(tab, found.diagnosis)
             _response(tab, found)
         with box("div", "right"):
@@ -103,6 +104,24 @@ def _verdict(tab: Tab, found: Diagnosed) -> None:
             with box("details"):
                 text("summary", "More words")
                 paragraphs("\n".join(lines[SHORT:]))
+
+
+def _add_all(tab: Tab, diagnosis: Diagnosis) -> None:
+    """One button for everything that was found, fitted together."""
+    names = [name for name in diagnosis.found if _can(tab, name)]
+    if diagnosis.verdict != "named" or len(names) < 2:
+        return
+    with box("p", "following"):
+        button(
+            tab,
+            "Add all",
+            lambda: tab.add(*names),
+            key="add-all",
+            classes="primary",
+            disabled=tab.job is not None,
+            aria_label=f"Add {listed(names)} together",
+        )
+        text("span", f"{listed(names)}, fitted together")
 
 
 def _ranking(tab: Tab, diagnosis: Diagnosis) -> None:
@@ -218,7 +237,8 @@ def _map(tab: Tab, diagnosis: Diagnosis) -> None:
     for cell in diagnosis.depends_on:
         if cell.p_value < SURE:
             best.setdefault((cell.name, cell.channel), cell)
-    names = list(dict.fromkeys(name for name, _ in best))[:MOST_ROWS]
+    labels = {name: short_words(cell) for (name, _), cell in best.items()}
+    names = list(labels)[:MOST_ROWS]
     if not names:
         text("p", "The errors go with nothing that was measured.")
         return
@@ -238,7 +258,7 @@ def _map(tab: Tab, diagnosis: Diagnosis) -> None:
             with box("tbody"):
                 for name in names:
                     with box("tr"):
-                        text("th", name.replace("_", " "), scope="row")
+                        text("th", labels[name], scope="row")
                         for channel in CHANNELS:
                             with box("td"):
                                 _cell(tab, name, channel, best.get((name, channel)))
@@ -265,7 +285,7 @@ def _cell(tab: Tab, name: str, channel: str, cell: Dependence | None) -> None:
         lambda: tab.point(part, key),
         key=key,
         classes=f"cell level{marks}",
-        aria_label=f"{channel} error with {name.replace('_', ' ')}: {sure}",
+        aria_label=f"{channel} error with {short_words(cell)}: {sure}",
         aria_pressed="true" if tab.part == part else "false",
         title=dependence_words(cell),
     )

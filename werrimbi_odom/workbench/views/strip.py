@@ -72,7 +72,7 @@ def _state(tab: Tab, view: str) -> str:
             found.verdict, "unknown"
         )
     if view == "add":
-        count = session.at
+        count = sum(len(step.added.effects) for step in session.past if step.added is not None)
         return "nothing yet" if not count else "1 effect" if count == 1 else f"{count} effects"
     if session.is_saved:
         return "saved"

@@ -1,0 +1,55 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a ruler is said to show is what a robot with that effect does."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from test.model.drives import ROBOT, read
+from werrimbi_odom.effects import find
+from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.model.trajectory import trajectory
+from werrimbi_odom.report.diagnosis.expected import expected_words
+
+
+def number(words: str) -> float:
+    found = re.search(r"[\d.]+", words)
+    assert found is not None, words
+    return float(found[0])
+
+
+@pytest.mark.parametrize("multiplier", [0.98, 1.02, 1.68])
+def test_ten_turns_fall_short_by_as_much_as_is_said(multiplier: float) -> None:
+    count = 50 * 60
+    spin = read(ROBOT, 50.0, np.zeros(count), np.full(count, 20.0 * np.pi / 60.0))
+    applied = find("track_width").using(multiplier=multiplier)
+    path = trajectory(replace(ROBOT, effects=(applied,)), *spin)
+    short = 3600.0 - np.degrees(path.yaw[-1])
+    words = expected_words("track_width", applied.values, ROBOT)
+    assert number(words) == pytest.approx(abs(short), rel=0.06)
+    assert ("short" in words) == (short > 0.0)
+
+
+@pytest.mark.parametrize("ratio", [0.99, 1.03])
+def test_a_larger_wheel_leads_aside_as_far_as_is_said(ratio: float) -> None:
+    line = read(ROBOT, 50.0, np.full(500, 0.3), np.zeros(500))
+    applied = find("unequal_wheel_radii").using(ratio=ratio)
+    path = trajectory(replace(ROBOT, effects=(applied,)), *line)
+    words = expected_words("unequal_wheel_radii", applied.values, ROBOT)
+    unit = 0.01 if "cm" in words else 1e-3
+    assert unit * number(words) == pytest.approx(abs(path.y[-1]), rel=0.06)
+    assert ("left" in words) == (path.y[-1] > 0.0)
+
+
+@pytest.mark.parametrize("effect", [item for item in LIBRARY if item.parameters])
+def test_every_effect_that_can_be_measured_has_its_number(effect: object) -> None:
+    values = {name: item.typical for name, item in effect.parameters.items()}  # type: ignore[attr-defined]
+    words = expected_words(effect.name, values, ROBOT)  # type: ignore[attr-defined]
+    assert words.startswith("expect ")
+    assert re.search(r"\d", words)
+    assert "nan" not in words
