@@ -18,3 +18,77 @@ Reading order
    robot or of many.
 7. `simulation`: a robot in a physics engine; imports nothing of ours, so that tests are honest.
 """
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from werrimbi_odom.api.calibrate_fit import calibrate_fit
+    from werrimbi_odom.api.calibrate_noise import calibrate_noise
+    from werrimbi_odom.api.calibrate_umbmark import calibrate_umbmark
+    from werrimbi_odom.api.drives import read_robot, read_run
+    from werrimbi_odom.api.odometry import odometry
+    from werrimbi_odom.api.verbs import add, compare, diagnose, draft
+    from werrimbi_odom.effects.library import LIBRARY as EFFECTS
+    from werrimbi_odom.errors import InputError
+    from werrimbi_odom.model.effect import (
+        Effect,
+        Parameter,
+        body_effect,
+        reference_effect,
+        wheel_effect,
+    )
+
+_WHERE = {
+    "read_robot": "api.drives",
+    "read_run": "api.drives",
+    "odometry": "api.odometry",
+    "compare": "api.verbs",
+    "diagnose": "api.verbs",
+    "add": "api.verbs",
+    "draft": "api.verbs",
+    "calibrate_fit": "api.calibrate_fit",
+    "calibrate_noise": "api.calibrate_noise",
+    "calibrate_umbmark": "api.calibrate_umbmark",
+    "Effect": "model.effect",
+    "Parameter": "model.effect",
+    "wheel_effect": "model.effect",
+    "body_effect": "model.effect",
+    "reference_effect": "model.effect",
+    "InputError": "errors",
+}
+"""Where each name is; nothing is imported before it is used, so that the node stays light."""
+
+__all__ = [
+    "EFFECTS",
+    "Effect",
+    "InputError",
+    "Parameter",
+    "add",
+    "body_effect",
+    "calibrate_fit",
+    "calibrate_noise",
+    "calibrate_umbmark",
+    "compare",
+    "diagnose",
+    "draft",
+    "odometry",
+    "read_robot",
+    "read_run",
+    "reference_effect",
+    "wheel_effect",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "EFFECTS":
+        return import_module("werrimbi_odom.effects.library").LIBRARY
+    if name not in _WHERE:
+        raise AttributeError(f"module 'werrimbi_odom' has no attribute {name!r}")
+    return getattr(import_module(f"werrimbi_odom.{_WHERE[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -53,8 +53,12 @@ class Result(Generic[Found]):
         return self.words()
 
     def to_dict(self) -> dict[str, Any]:
-        """What `--json` writes: plain numbers, words, lists and dictionaries."""
-        return self.figures_of_json()
+        """What `--json` writes: numbers, words, lists and dictionaries; None for what is not known."""
+        from werrimbi_odom.report.plain import plain
+
+        found = plain(self.figures_of_json())
+        assert isinstance(found, dict)
+        return found
 
     def figures(self) -> dict[str, go.Figure]:
         """The figures of the report, by name; of several to choose from each by NAME: CHOICE."""

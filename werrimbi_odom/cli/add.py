@@ -102,17 +102,11 @@ def _refused(arguments: argparse.Namespace, added: Added) -> str:
 def _write(arguments: argparse.Namespace, given: Recordings, added: Added) -> list[Path]:
     """The robot file, then the JSON and the page that were asked for; returns what was written."""
     from werrimbi_odom.files.robot_file import write_robot_file
-    from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
     from werrimbi_odom.report.adding.words import json_of
 
-    changes = {name: float(getattr(added.robot, name)) for name in MULTIPLIERS}
-    if added.explained:
-        for name in ("left_wheel_noise", "right_wheel_noise"):
-            if added.noises[name].determined:
-                changes[name] = float(f"{added.noises[name].value:.4g}")
     write_robot_file(
         given.source,
-        changes,
+        added.changes,
         arguments.out,
         force=arguments.force,
         effects=added.robot.effects,

@@ -16,7 +16,8 @@ from werrimbi_odom.cli.recordings import add_recording_arguments, read_recording
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.report.diagnosis.words import NextSteps, Told
+    from werrimbi_odom.report.diagnosis.told import Told
+    from werrimbi_odom.report.diagnosis.words import NextSteps
 
 HELP = "which physical effect is missing, how sure that is, and what to do about it"
 
@@ -47,14 +48,14 @@ def run(arguments: argparse.Namespace) -> int:
         return run_fleet(arguments)
     _ask_for_robot_and_runs(arguments)
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.fleet.one import diagnosed
     from werrimbi_odom.report.diagnosis.as_json import json_of
     from werrimbi_odom.report.diagnosis.tables import tables_of
+    from werrimbi_odom.report.diagnosis.told import told_of
     from werrimbi_odom.report.diagnosis.words import words_of
 
     given = read_recordings(arguments)
     with share_done("diagnosing") as show:
-        told = diagnosed(given, show)
+        told = told_of(given, show)
     print(words_of(told, _steps(arguments)))
     print()
     print(tables_of(told.diagnosis, told.sights))

@@ -15,7 +15,6 @@ from werrimbi_odom.cli.recordings import add_recording_arguments, read_recording
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.inference.adding.added import Added
     from werrimbi_odom.inference.adding.drafting import Draft
     from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 
@@ -52,6 +51,7 @@ def run(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.inference.adding.draft_package import package_of
     from werrimbi_odom.inference.adding.drafting import draft_effect
     from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+    from werrimbi_odom.report.adding.draft_words import draft_json, draft_words
 
     given = read_recordings(arguments)
     known = given.collection.effects
@@ -74,12 +74,13 @@ def run(arguments: argparse.Namespace) -> int:
             **given.judging,
         )
     _write(arguments.out, files)
-    print(_words(draft, tried))
+    print(draft_words(draft, tried))
     print()
     print(draft.source.partition("\n\n\n")[2].rstrip())
     print(f"\nwritten: {', '.join(str(arguments.out / name) for name in files)}")
     if arguments.json is not None:
-        _write_json(arguments.json, draft, tried, [str(arguments.out / name) for name in files])
+        written = [str(arguments.out / name) for name in files]
+        write_json(arguments.json, draft_json(draft, tried, written))
         print(f"         {arguments.json}")
     if arguments.report is not None:
         from werrimbi_odom.cli.report_made import made_of
@@ -121,23 +122,6 @@ def _write(folder: Path, files: dict[str, str]) -> None:
             file.write(text)
 
 
-def _words(draft: Draft, tried: Added) -> str:
-    from werrimbi_odom.report.printed import filled
-
-    cell, sides = draft.dependence, tried.holdout.sides
-    alone = tried.noise_alone(tried.holdout)
-    floor = f"noise alone: {1e3 * alone:.2f} mm; " if tried.explained else ""
-    text = (
-        f"No effect of the library explains these drives. Their {cell.channel} error goes with "
-        f"{cell.name}, and a {draft.form} in it explains them best among the simple laws. With it, "
-        f"the error of the held-out drives is {1e3 * sides.after:.2f} mm where it was "
-        f"{1e3 * sides.before:.2f} mm ({floor}rms over "
-        f"legs of {tried.holdout.after.leg:g} m). Why it is so, the data cannot know: read the "
-        "law, find the physics, give it its name."
-    )
-    return filled(text)
-
-
 def _next(arguments: argparse.Namespace, draft: Draft) -> str:
     """The commands that try it, and that install it."""
     file = arguments.out / f"{draft.name}.py"
@@ -148,26 +132,3 @@ def _next(arguments: argparse.Namespace, draft: Draft) -> str:
         f"\nRead it:\n    {explain}\nTry it:\n{add}\nInstall it, and robot files and the node "
         f"know its name:\n    {shlex.join(['pip', 'install', str(arguments.out)])}"
     )
-
-
-def _write_json(path: Path, draft: Draft, tried: Added, files: list[str]) -> None:
-    from werrimbi_odom.report.adding.words import json_of
-
-    cell = draft.dependence
-    figures = {
-        **json_of(tried),
-        "verdict": draft.diagnosis.verdict,
-        "draft": {
-            "channel": cell.channel,
-            "per": cell.amount.per,
-            "variable": cell.name,
-            "p_value": cell.p_value,
-            "form": draft.form,
-            "files": files,
-            "tried": [
-                {"effect": name, "form": form, "cost_beyond_best": cost}
-                for name, form, cost in draft.tried
-            ],
-        },
-    }
-    write_json(path, figures)

@@ -10,9 +10,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO, TypeVar
 
-from werrimbi_odom.cli.json_file import plain
 from werrimbi_odom.cli.recordings import remark
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.report.plain import plain
 
 if TYPE_CHECKING:
     import numpy as np

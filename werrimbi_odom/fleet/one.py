@@ -6,19 +6,15 @@ from __future__ import annotations
 
 import json
 import traceback
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 
 from werrimbi_odom.effects.collection import all_effects
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import Asked, Recordings, read
-from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
-from werrimbi_odom.inference.manoeuvres.sight import sight_of
+from werrimbi_odom.files.asked import Asked, read
 from werrimbi_odom.report.diagnosis.as_json import json_of
-from werrimbi_odom.report.diagnosis.words import Told
+from werrimbi_odom.report.diagnosis.told import told_of
 from werrimbi_odom.report.fleet.rows import Row
 
 _ONE_AT_A_TIME = Lock()
@@ -33,31 +29,6 @@ class Task:
     asked: Asked
 
 
-def diagnosed(
-    given: Recordings, show: Callable[[float, str], None] = lambda share, words: None
-) -> Told:
-    """The diagnosis of one robot, what to do next, and what these drives could have shown.
-
-    Raises
-    ------
-    InputError
-        When the drives do not allow it; the message says why.
-    """
-    effects = given.collection.effects
-    diagnosis = diagnose(
-        given.runs,
-        given.source.robot,
-        effects,
-        holdout=given.holdout,
-        **given.judging,
-        show=show,
-    )
-    show(0.97, "the next step")
-    manoeuvre = next_manoeuvre(diagnosis)
-    sights = sight_of(diagnosis, effects)
-    return Told(diagnosis, manoeuvre, sights, given.how.leg, bool(given.holdout))
-
-
 def row_of(task: Task) -> Row:
     """The diagnosis of a robot; what goes wrong becomes its row, never an exception.
 
@@ -69,7 +40,7 @@ def row_of(task: Task) -> Row:
 
         with _ONE_AT_A_TIME, threadpool_limits(1):
             asked = task.asked
-            told = diagnosed(read(asked, all_effects(asked.how.effects)))
+            told = told_of(read(asked, all_effects(asked.how.effects)))
             figures = json_of(told.diagnosis, told.manoeuvre, told.sights)
         figures = json.loads(json.dumps(figures))  # lists and floats alone, whoever works it out
         return Row(task.name, _drives(task), figures)

@@ -17,6 +17,7 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.set_up.mistakes import SetUp
@@ -106,6 +107,16 @@ class Added:
     """Stretches of all runs that none of it is about."""
     lengths: tuple[AtLength, ...]
     """What the held-out legs of each length say of its covariance."""
+
+    @property
+    def changes(self) -> dict[str, float]:
+        """Parameters of the robot file to be written: sizes, and noise where it is some."""
+        found = {name: float(getattr(self.robot, name)) for name in MULTIPLIERS}
+        if self.explained:
+            for name in ("left_wheel_noise", "right_wheel_noise"):
+                if self.noises[name].determined:
+                    found[name] = float(f"{self.noises[name].value:.4g}")
+        return found
 
     @property
     def covariance(self) -> Consistency:

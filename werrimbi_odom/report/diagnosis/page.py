@@ -29,7 +29,8 @@ from werrimbi_odom.report.diagnosis.figures import (
     set_up_figure,
 )
 from werrimbi_odom.report.diagnosis.tables import tables_of
-from werrimbi_odom.report.diagnosis.words import NextSteps, Told, words_of
+from werrimbi_odom.report.diagnosis.told import Told
+from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.page import Page, Shown
 from werrimbi_odom.report.save import save_report
 

@@ -5,8 +5,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
 
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.adding.values import SIGNIFICANT
@@ -16,28 +14,14 @@ from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
-from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
-from werrimbi_odom.inference.manoeuvres.sight import Sight
 from werrimbi_odom.inference.rules import ONE_WHEEL
 from werrimbi_odom.inference.set_up.mistakes import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
+from werrimbi_odom.report.diagnosis.told import Told
 from werrimbi_odom.report.diagnosis.values import Value, ranked_of, values_of
 from werrimbi_odom.report.numbers import chance_words, length, listed, quantity
 from werrimbi_odom.report.sizes import sizes_words
-
-
-@dataclass(frozen=True)
-class Told:
-    """A diagnosis and all that is told with it."""
-
-    diagnosis: Diagnosis
-    manoeuvre: Manoeuvre | None
-    sights: Sequence[Sight]
-    leg: float = 1.0
-    """Length of the legs that are judged [m]."""
-    held_out: bool = True
-    """Whether drives to judge on were given, or put aside by the diagnosis itself."""
 
 
 def mistakes(diagnosis: Diagnosis) -> dict[str, SetUpFinding]:

@@ -15,7 +15,6 @@ from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.diagnosis.as_json import significant
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import (
-    Told,
     about,
     also,
     at_bounds,
@@ -28,11 +27,10 @@ from werrimbi_odom.report.diagnosis.phrases import (
     sizes_found,
     whole,
 )
+from werrimbi_odom.report.diagnosis.told import Told
 from werrimbi_odom.report.left_out import jumps_words, left_out_words
 from werrimbi_odom.report.numbers import chance_words, length, listed
 from werrimbi_odom.report.printed import filled
-
-__all__ = ["NextSteps", "Told", "words_of"]
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,194 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Base, radii and noise by maximum likelihood, from any driving with a reference."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+from werrimbi_odom.api.calibrate_umbmark import before_after
+from werrimbi_odom.api.drives import Drives, recordings_of
+from werrimbi_odom.api.result import NewRobot, Result
+from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.run import ReferenceKind
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+    from werrimbi_odom.files.run import Run
+    from werrimbi_odom.inference.calibration.any_driving import Calibration
+    from werrimbi_odom.inference.legs.cutting import MatchedRun
+    from werrimbi_odom.inference.legs.gaps import LeftOut
+
+
+def calibrate_fit(
+    robot: RobotFile,
+    runs: Drives,
+    *,
+    holdout: Drives = (),
+    reference_kind: ReferenceKind = "absolute",
+    leg: float = 1.0,
+    reference_sigma_xy: float | None = None,
+    reference_sigma_yaw: float | None = None,
+) -> Result[Calibration]:
+    """Maximum likelihood of multipliers and k_L, k_R, with standard deviations.
+
+    Parameters
+    ----------
+    holdout
+        Drives that report the error before and after, and take no part in the fit.
+
+    Raises
+    ------
+    InputError
+        When the drives cannot be used; the message says why.
+    """
+    given = recordings_of(
+        robot,
+        runs,
+        holdout,
+        reference_kind=reference_kind,
+        leg=leg,
+        reference_sigma_xy=reference_sigma_xy,
+        reference_sigma_yaw=reference_sigma_yaw,
+    )
+    return calibrated(given)
+
+
+def calibrated(given: Recordings) -> Result[Calibration]:
+    """`calibrate_fit` for what was read already."""
+    from werrimbi_odom.inference.calibration.any_driving import calibrate
+    from werrimbi_odom.inference.legs.cutting import match_finely, stated
+    from werrimbi_odom.report.calibration.fit_words import fit_in_words
+    from werrimbi_odom.report.calibration.page import calibration_page
+    from werrimbi_odom.report.left_out import left_out_json, left_out_words
+    from werrimbi_odom.report.page import Page
+    from werrimbi_odom.report.printed import filled
+
+    source, how = given.source, given.how
+    runs = match_finely(given.runs, source.robot, how.leg, source.limits)
+    found = calibrate(
+        runs,
+        source.robot,
+        how.kind,
+        sigma_xy=how.sigma_xy or stated(runs, "sigma_xy"),
+        sigma_yaw=how.sigma_yaw or stated(runs, "sigma_yaw"),
+    )
+    left_out = _left_out(given, runs, found)
+    figures = _json(found)
+    figures["left_out"] = left_out_json(left_out)
+    figures["train"] = _judged(given.runs, given, found)
+    parts = [fit_in_words(found), *map(filled, left_out_words(left_out))]
+    if given.holdout:
+        figures["holdout"] = _judged(given.holdout, given, found)
+        parts.append(_told(figures["holdout"]))
+    words = "\n\n".join(parts)
+    changes = {name: item.value for name, item in found.multipliers.items() if item.determined}
+    for name in ("left_wheel_noise", "right_wheel_noise"):
+        if found.noises[name].determined:
+            changes[name] = found.noises[name].value
+
+    def page() -> Page:
+        return calibration_page(
+            "Calibration by maximum likelihood",
+            words,
+            "Errors of short legs, before and after calibration",
+            "Each mark is a short leg, seen by the robot: the error along, and to its left. After "
+            "the calibration the cloud should be smaller and lie about the origin.",
+            _figure(runs, source, found),
+            before_after(source, changes),
+            {},
+        )
+
+    return Result(
+        found=found,
+        words=lambda: words,
+        figures_of_json=lambda: figures,
+        page=page,
+        new_robot=NewRobot(source, changes),
+    )
+
+
+def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) -> go.Figure:
+    from werrimbi_odom.inference.calibration.any_driving import errors_of_legs
+    from werrimbi_odom.report.calibration.fit_figure import leg_figure
+
+    model = result.fit.point.model
+    headings = [model.start_yaw(index) for index in range(len(runs))]
+    return leg_figure(
+        errors_of_legs(source.robot, runs, headings),
+        errors_of_legs(result.robot, runs, headings),
+    )
+
+
+def _left_out(
+    given: Recordings, runs: Sequence[MatchedRun], result: Calibration
+) -> tuple[LeftOut, ...]:
+    """Gaps of the drives, and the short legs on which the reference jumped."""
+    from werrimbi_odom.inference.legs.gaps import LeftOut
+
+    found: list[LeftOut] = []
+    for run, matched, excluded in zip(given.runs, runs, result.excluded, strict=True):
+        found += matched.record.left_out
+        time = matched.measured.time.tolist()
+        jumped = (excluded & ~matched.gap).nonzero()[0].tolist()
+        found += [
+            LeftOut(run.path, time[leg], time[leg + 1], "reference", "it jumped") for leg in jumped
+        ]
+    return tuple(found)
+
+
+def _judged(runs: Sequence[Run], given: Recordings, result: Calibration) -> dict[str, Any]:
+    """Errors over legs before and after, as every verb has them; NaN where not measured."""
+    from werrimbi_odom.inference.comparison.judged_legs import figures_of, prepare
+
+    prepared = prepare(runs, given.source.robot, **given.judging)
+    before, after = (figures_of(prepared, each) for each in (given.source.robot, result.robot))
+    return {
+        "before": before.rmse_position_m,
+        "after": after.rmse_position_m,
+        "median_before": before.median_position_m,
+        "median_after": after.median_position_m,
+        "rmse_yaw_rad": {"before": before.rmse_yaw_rad, "after": after.rmse_yaw_rad},
+    }
+
+
+def _told(figures: dict[str, Any]) -> str:
+    """Held-out errors in a line: of positions, or of headings where there are no others."""
+    if math.isfinite(figures["before"]):
+        return (
+            f"held-out legs, before and after: "
+            f"rms {1e3 * figures['before']:.2f} and {1e3 * figures['after']:.2f} mm, "
+            f"median {1e3 * figures['median_before']:.2f} and "
+            f"{1e3 * figures['median_after']:.2f} mm"
+        )
+    yaw = (math.degrees(figures["rmse_yaw_rad"][when]) for when in ("before", "after"))
+    return "held-out legs, before and after: rms {:.2f}° and {:.2f}° in heading".format(*yaw)
+
+
+def _json(result: Calibration) -> dict[str, Any]:
+    parameters: dict[str, Any] = {}
+    for name, item in result.multipliers.items():
+        parameters[name] = {"value": item.value, "std": item.std, "determined": item.determined}
+    for name, noise in result.noises.items():
+        parameters[name] = {
+            "value": noise.value,
+            "std": noise.std if noise.determined and result.trusted else None,
+            "determined": noise.determined,
+        }
+    return {
+        "parameters": parameters,
+        "correlation": {
+            "names": [knob.name for knob in result.fit.free],
+            "matrix": result.correlation.tolist(),
+        },
+        "trusted": result.trusted,
+        "something_else_is_missing": [
+            *result.strange,
+            *(f"{item.channel} error goes with {item.name}" for item in result.misfit),
+        ],
+        "outliers": sum(int(legs.sum()) for legs in result.excluded),
+    }

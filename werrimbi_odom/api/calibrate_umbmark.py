@@ -1,0 +1,233 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The paper's section 3: base and radii from squares, by UMBmark."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from werrimbi_odom.api.result import NewRobot, Result
+from werrimbi_odom.api.verbs import Show, silent
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.robot_file import RobotFile
+
+if TYPE_CHECKING:
+    from werrimbi_odom.inference.calibration.squares import Squares
+    from werrimbi_odom.inference.calibration.umbmark import Umbmark
+    from werrimbi_odom.model.robot import Robot
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """How squares are read."""
+
+    side: float
+    """[m]"""
+    ticks_topic: str | None
+    reference_topic: str | None
+    show: Show
+    notes: list[str] = field(default_factory=list)
+    """What readers chose, in words."""
+
+
+def calibrate_umbmark(
+    robot: RobotFile,
+    results: str | Path | Sequence[str | Path],
+    side: float,
+    *,
+    after: str | Path | Sequence[str | Path] = (),
+    ticks_topic: str | None = None,
+    reference_topic: str | None = None,
+    show: Show = silent,
+) -> Result[Umbmark]:
+    """Base and radii from squares driven in both senses: UMBmark, the paper's section 3.
+
+    Parameters
+    ----------
+    results
+        A table `sense,x_m,y_m` (measured minus odometry at the end of each square), or recorded
+        drives of one square each, with a reference.
+    side
+        Of the squares [m].
+    after
+        The same for squares driven with the new robot file: what the calibration gained.
+
+    Raises
+    ------
+    InputError
+        When a table or drive cannot be used; the message says where.
+    """
+    from werrimbi_odom.inference.calibration.umbmark import corrected, recomputed, umbmark
+    from werrimbi_odom.report.calibration.figures import OffsetCloud, umbmark_figure
+    from werrimbi_odom.report.calibration.page import calibration_page
+    from werrimbi_odom.report.calibration.umbmark_words import found_in_words, gained_in_words
+    from werrimbi_odom.report.page import Page
+
+    old = robot.robot
+    read = _Reading(side, ticks_topic, reference_topic, show)
+    squares = _squares(_paths(results), robot, old, read)
+    found = umbmark(squares, old)
+    new = corrected(old, found.factors)
+    driven_after = _paths(after)
+    later = _squares(driven_after, robot, new, read) if driven_after else None
+    again = recomputed(squares, old, found.factors) if squares.driven_cw else None
+    changes = {name: _rounded(each.value) for name, each in found.multipliers(old).items()}
+    words = "\n".join(read.notes) + "\n" if read.notes else ""
+    words += f"{found_in_words(squares, found, old)}\n\n"
+    words += gained_in_words(found, squares, later, again)
+
+    def page() -> Page:
+        shown, name = (later, "after") if later else (again, "same runs, corrected")
+        figure = umbmark_figure(
+            OffsetCloud("before", squares.cw, squares.ccw),
+            OffsetCloud(name, shown.cw, shown.ccw) if shown else None,
+        )
+        return calibration_page(
+            "UMBmark: base and radii from squares",
+            words,
+            f"UMBmark: squares of {squares.side:g} m",
+            "Where squares ended, clockwise and anticlockwise, measured minus odometry. After the "
+            "calibration both clouds should lie about the origin; the circle is the larger offset.",
+            figure,
+            before_after(robot, changes),
+            {},
+        )
+
+    return Result(
+        found=found,
+        words=lambda: words,
+        figures_of_json=lambda: _json(squares, found, old, later, again),
+        page=page,
+        new_robot=NewRobot(robot, changes),
+    )
+
+
+def before_after(robot: RobotFile, changes: dict[str, float]) -> dict[str, tuple[float, float]]:
+    """What a calibration changes, as the robot file has it and new."""
+    return {
+        name: (float(getattr(robot.robot, name)), value)
+        for name, value in changes.items()
+        if hasattr(robot.robot, name)
+    }
+
+
+def _paths(given: str | Path | Sequence[str | Path]) -> list[Path]:
+    several = [given] if isinstance(given, str | Path) else list(given)
+    return [Path(each) for each in several]
+
+
+def _rounded(value: float) -> float:
+    """For the eye; a thousandth of what any tape could tell."""
+    return round(value, 9)
+
+
+def _squares(paths: Sequence[Path], source: RobotFile, robot: Robot, read: _Reading) -> Squares:
+    """From a table, or from recorded runs, whose odometry is worked out with `robot`."""
+    tables = [path for path in paths if path.suffix.lower() == ".csv"]
+    if not tables:
+        return _recorded(paths, source, robot, read)
+    if len(paths) > 1:
+        raise InputError(f"{tables[0]}: give one table, or recorded runs, not both and not several")
+    return _from_table(tables[0], read.side)
+
+
+def _from_table(path: Path, side: float) -> Squares:
+    import numpy as np
+
+    from werrimbi_odom.files.results_table import read_results
+    from werrimbi_odom.inference.calibration.squares import Squares
+
+    table = read_results(path, ("x_m", "y_m"), word="sense", choices=("cw", "ccw"))
+    senses = np.array(table.words, dtype=str)
+    try:
+        return Squares(side, table.numbers[senses == "cw"], table.numbers[senses == "ccw"])
+    except InputError as error:
+        raise InputError(f"{path}: {error}") from None
+
+
+def _recorded(paths: Sequence[Path], source: RobotFile, robot: Robot, read: _Reading) -> Squares:
+    from werrimbi_odom.files.reading import read_run
+    from werrimbi_odom.inference.calibration.recorded_square import (
+        Record,
+        recorded_square,
+        squares_of,
+    )
+
+    found = []
+    for number, path in enumerate(paths):
+        read.show(number / len(paths), f"reading {path.name}")
+        drive = read_run(
+            path,
+            source,
+            ticks_topic=read.ticks_topic,
+            reference_topic=read.reference_topic,
+        )
+        read.notes.extend(f"{path}: {note}" for note in drive.notes)
+        if drive.reference is None:
+            raise InputError(f"{path}: there is no reference to compare the odometry with")
+        ticks, reference = drive.ticks, drive.reference
+        record = Record(
+            str(path),
+            ticks.time,
+            ticks.left,
+            ticks.right,
+            reference.time,
+            reference.x,
+            reference.y,
+            reference.yaw,
+        )
+        found.append(recorded_square(record, robot, read.side, source.limits))
+    return squares_of(found, read.side)
+
+
+def _json(
+    squares: Squares,
+    result: Umbmark,
+    old: Robot,
+    later: Squares | None,
+    again: Squares | None,
+) -> dict[str, Any]:
+    from werrimbi_odom.inference.calibration.squares import e_max_of_scatter, e_max_syst
+
+    def centres(of: Squares) -> dict[str, list[float]]:
+        return {"cw": of.cw.mean(axis=0).tolist(), "ccw": of.ccw.mean(axis=0).tolist()}
+
+    angles, paper = result.angles, result.paper
+    return {
+        "parameters": {name: asdict(each) for name, each in result.multipliers(old).items()},
+        "e_max_syst_m": {
+            "before": result.e_max,
+            "after": e_max_syst(later) if later else None,
+            "same_runs_corrected": e_max_syst(again) if again else None,
+        },
+        "e_max_of_scatter_m": {
+            "before": e_max_of_scatter(squares),
+            "after": e_max_of_scatter(later) if later else None,
+        },
+        "centre_of_gravity": centres(squares),
+        "centre_of_gravity_after": centres(later) if later else None,
+        "side_m": squares.side,
+        "runs": {"cw": len(squares.cw), "ccw": len(squares.ccw)},
+        "alpha_rad": asdict(result.alpha),
+        "beta_rad": asdict(result.beta),
+        "E_d": asdict(result.ratio),
+        "C_B": asdict(result.base),
+        "C_L": asdict(result.left),
+        "C_R": asdict(result.right),
+        "first_order": {
+            "alpha_rad": angles.alpha,
+            "alpha_by_x_rad": angles.alpha_by_x,
+            "alpha_by_y_rad": angles.alpha_by_y,
+            "beta_rad": angles.beta,
+            "beta_by_x_rad": angles.beta_by_x,
+            "beta_by_y_rad": angles.beta_by_y,
+            "E_d": paper.ratio,
+            "C_B": paper.base,
+            "C_L": paper.left,
+            "C_R": paper.right,
+        },
+        "disagreement_p": result.disagreement_p,
+    }

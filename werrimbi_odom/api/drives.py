@@ -1,0 +1,91 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Robot files and recorded drives, read from disk or taken as they are."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.asked import How, Recordings
+from werrimbi_odom.files.held import without_held_poses
+from werrimbi_odom.files.reading import read_run as read_one
+from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.run import ReferenceKind, Run
+
+if TYPE_CHECKING:
+    from werrimbi_odom.effects.collection import Collection
+
+Drives = Run | str | Path | Sequence[Run | str | Path]
+"""One drive or several, read already or to be read."""
+
+
+def read_robot(path: str | Path, effects: Sequence[str | Path] = ()) -> RobotFile:
+    """Read a robot file.
+
+    Parameters
+    ----------
+    effects
+        Files with effects of your own, which the robot file may name.
+
+    Raises
+    ------
+    InputError
+        When it cannot be used; the message says file, line and mend.
+    """
+    return read_robot_file(path, collection_of(effects))
+
+
+def read_run(
+    path: str | Path,
+    robot: RobotFile,
+    *,
+    ticks_topic: str | None = None,
+    reference_topic: str | None = None,
+) -> Run:
+    """Read a recorded drive: a run folder, a rosbag2 or an .mcap.
+
+    Raises
+    ------
+    InputError
+        When it cannot be used; the message says where and how to mend it.
+    """
+    return read_one(Path(path), robot, ticks_topic=ticks_topic, reference_topic=reference_topic)
+
+
+def collection_of(effects: Sequence[str | Path] = ()) -> Collection:
+    """All effects: the library's, those of installed packages, and those of files."""
+    from werrimbi_odom.effects.collection import all_effects
+
+    return all_effects(tuple(Path(file) for file in effects))
+
+
+def recordings_of(
+    robot: RobotFile,
+    runs: Drives,
+    holdout: Drives,
+    *,
+    reference_kind: ReferenceKind,
+    leg: float,
+    reference_sigma_xy: float | None,
+    reference_sigma_yaw: float | None,
+    effects: Sequence[str | Path] = (),
+) -> Recordings:
+    """Everything that a verb needs, as the command line reads it."""
+    if not isinstance(robot, RobotFile):
+        raise TypeError(f"the robot comes first, from read_robot, and not {type(robot).__name__}")
+    how = How(reference_kind, leg, reference_sigma_xy, reference_sigma_yaw)
+    fitted, held = (_read(each, robot, reference_kind) for each in (runs, holdout))
+    if not fitted:
+        raise InputError("no drives were given")
+    return Recordings(robot, collection_of(effects), fitted, held, how)
+
+
+def _read(runs: Drives, robot: RobotFile, kind: ReferenceKind) -> tuple[Run, ...]:
+    several = [runs] if isinstance(runs, Run | str | Path) else list(runs)
+    found = [run if isinstance(run, Run) else read_run(run, robot) for run in several]
+    if kind == "absolute":
+        found = [without_held_poses(run, robot.robot) for run in found]
+    return tuple(found)

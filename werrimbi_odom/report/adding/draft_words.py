@@ -1,0 +1,50 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A draft in words and figures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from werrimbi_odom.inference.adding.added import Added
+from werrimbi_odom.inference.adding.drafting import Draft
+from werrimbi_odom.report.adding.words import json_of
+from werrimbi_odom.report.printed import filled
+
+
+def draft_words(draft: Draft, tried: Added) -> str:
+    """What was drafted, and what the error is with it."""
+    cell, sides = draft.dependence, tried.holdout.sides
+    alone = tried.noise_alone(tried.holdout)
+    floor = f"noise alone: {1e3 * alone:.2f} mm; " if tried.explained else ""
+    text = (
+        f"No effect of the library explains these drives. Their {cell.channel} error goes with "
+        f"{cell.name}, and a {draft.form} in it explains them best among the simple laws. With it, "
+        f"the error of the held-out drives is {1e3 * sides.after:.2f} mm where it was "
+        f"{1e3 * sides.before:.2f} mm ({floor}rms over "
+        f"legs of {tried.holdout.after.leg:g} m). Why it is so, the data cannot know: read the "
+        "law, find the physics, give it its name."
+    )
+    return filled(text)
+
+
+def draft_json(draft: Draft, tried: Added, files: Sequence[str]) -> dict[str, Any]:
+    """The figures of `add` for the draft, and what it was made of."""
+    cell = draft.dependence
+    return {
+        **json_of(tried),
+        "verdict": draft.diagnosis.verdict,
+        "draft": {
+            "channel": cell.channel,
+            "per": cell.amount.per,
+            "variable": cell.name,
+            "p_value": cell.p_value,
+            "form": draft.form,
+            "files": list(files),
+            "tried": [
+                {"effect": name, "form": form, "cost_beyond_best": cost}
+                for name, form, cost in draft.tried
+            ],
+        },
+    }

@@ -1,0 +1,51 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A diagnosis with all that is told with it: the next manoeuvre, and what could have been seen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, next_manoeuvre
+from werrimbi_odom.inference.manoeuvres.sight import Sight, sight_of
+
+
+@dataclass(frozen=True)
+class Told:
+    """A diagnosis and all that is told with it."""
+
+    diagnosis: Diagnosis
+    manoeuvre: Manoeuvre | None
+    sights: Sequence[Sight]
+    leg: float = 1.0
+    """Length of the legs that are judged [m]."""
+    held_out: bool = True
+    """Whether drives to judge on were given, or put aside by the diagnosis itself."""
+
+
+def told_of(
+    given: Recordings, show: Callable[[float, str], None] = lambda share, words: None
+) -> Told:
+    """The diagnosis of one robot, what to do next, and what these drives could have shown.
+
+    Raises
+    ------
+    InputError
+        When the drives do not allow it; the message says why.
+    """
+    effects = given.collection.effects
+    diagnosis = diagnose(
+        given.runs,
+        given.source.robot,
+        effects,
+        holdout=given.holdout,
+        **given.judging,
+        show=show,
+    )
+    show(0.97, "the next step")
+    manoeuvre = next_manoeuvre(diagnosis)
+    sights = sight_of(diagnosis, effects)
+    return Told(diagnosis, manoeuvre, sights, given.how.leg, bool(given.holdout))
