@@ -53,7 +53,7 @@ class Result(Generic[Found]):
         return self.words()
 
     def to_dict(self) -> dict[str, Any]:
-        """What `--json` writes: numbers, words, lists, dictionaries; None where nothing is known."""
+        """What `--json` writes: numbers, words, lists, dictionaries; None: not known."""
         from werrimbi_odom.report.plain import plain
 
         found = plain(self.figures_of_json())
