@@ -24,9 +24,9 @@ def test_limits_of_files() -> None:
 
 def test_limits_of_messages() -> None:
     pytest.importorskip("rclpy")
-    from werrimbi_odom.ros import messages, wheel_side
+    from werrimbi_odom.ros import planar, wheel_side
 
     assert wheel_side.COUNTER_LIMIT == 2**63
     assert "beyond 2⁶³ counts" in PAGE
-    assert messages._FARTHEST == 1e12
+    assert planar.FARTHEST == 1e12
     assert "beyond 10¹² m" in PAGE

@@ -43,7 +43,10 @@ def test_a_clock_that_is_set_while_it_compares_is_told(launch: Any, compare: Any
     before = {item.key: item.value for item in comparing.verdict().values}
     assert int(before["compared"]) > 10
     assert comparing.said[-1].level == DiagnosticStatus.OK
-    both(4.5, 1000.0)
+    for _ in range(20):
+        both(1.0, 1000.0)
+        if comparing.said[-1].message.startswith("no stamp"):
+            break
     status = comparing.said[-1]
     assert status.level == DiagnosticStatus.WARN
     assert status.message.startswith("no stamp of the reference falls between two of the odometry")
@@ -117,7 +120,9 @@ def test_a_covariance_that_stands_for_unknown_is_refused(talk: Any) -> None:
     for second in range(100, 130):
         out.send(odometry(second, 1.6e308))
         out.send(stated(second))
-        comparing.launched.rest(0.1)
+        comparing.launched.rest(0.3)
+        if comparing.said[-1:] and comparing.said[-1].level == DiagnosticStatus.ERROR:
+            break
     status = comparing.said[-1]
     assert status.level == DiagnosticStatus.ERROR
     assert status.message.startswith("nothing to compare: odom refused: covariance out of range (")

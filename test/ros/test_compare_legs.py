@@ -16,6 +16,7 @@ pytest.importorskip("rclpy")
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.inference.comparison.consistency import chi_squared_quantile
 from werrimbi_odom.inference.rules import HONEST_CHANCE as ALARM
+from werrimbi_odom.inference.comparison.reference_noise import USUAL_SIGMA_XY, USUAL_SIGMA_YAW
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Pose
@@ -47,16 +48,24 @@ def believed(noise: float = 1.0) -> Robot:
 
 
 def legs_of(
-    seed: int, noise: float = 1.0, constant: float | None = None, seconds: float = 200.0
+    seed: int,
+    noise: float = 1.0,
+    constant: float | None = None,
+    seconds: float = 200.0,
+    sigmas: tuple[float, float] = (SIGMA_XY, SIGMA_YAW),
+    stated: PoseCovariance[float] = REFERENCE,
 ) -> list[LegError]:
-    """Legs of a wandering drive, with the odometry of a believed robot."""
+    """Legs of a wandering drive, with the odometry of a believed robot.
+
+    The reference errs with `sigmas`, and is said to err with `stated`.
+    """
     random = np.random.default_rng(seed)
     run: Any = drive(
         TRUE,
         wandering(random, seconds),
         random,
-        sigma_xy=SIGMA_XY,
-        sigma_yaw=SIGMA_YAW,
+        sigma_xy=sigmas[0],
+        sigma_yaw=sigmas[1],
         every=7,
     )
     counts = (part.astype(np.int64) for part in (run.ticks.left, run.ticks.right))
@@ -87,7 +96,7 @@ def legs_of(
             row += 1
             if odometry is None:
                 continue
-            leg, ends = cutter.take(Both(odometry, Reading(at, measured, REFERENCE)))
+            leg, ends = cutter.take(Both(odometry, Reading(at, measured, stated)))
             if leg is not None and ends:
                 legs.append(leg)
     return legs
@@ -125,6 +134,17 @@ def test_a_dishonest_covariance_is_said_and_which_way(noise: float, said: str) -
     honest, words = window.verdict()
     assert not honest
     assert said in words
+
+
+def test_a_perfect_reference_with_the_usual_sigmas_is_said_to_be_a_reason() -> None:
+    xy, yaw = USUAL_SIGMA_XY**2, USUAL_SIGMA_YAW**2
+    window = Window(60)
+    for leg in legs_of(1, sigmas=(1e-9, 1e-9), stated=PoseCovariance(xy, 0.0, 0.0, xy, 0.0, yaw)):
+        window.take(leg.deviation, leg.grows)
+    honest, words = window.verdict()
+    assert not honest
+    assert window.nees < 0.3
+    assert "or reference_sigma_xy and _yaw larger than the reference's noise" in words
 
 
 def test_an_honest_window_is_seldom_called_dishonest() -> None:

@@ -38,7 +38,7 @@ from werrimbi_odom.ros.compare_inputs import (
 from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError
 from werrimbi_odom.ros.compare_track import OdometryTrack, Reading
 from werrimbi_odom.ros.compare_window import Window
-from werrimbi_odom.ros.graph import crowds, full_name, namesakes
+from werrimbi_odom.ros.graph import Company, full_name
 from werrimbi_odom.ros.running import run
 
 WAITING = 1_000
@@ -90,7 +90,8 @@ class CompareNode(Node):  # type: ignore[misc]
         self._subscribe(Odometry, "odom", self._on_odometry)
         self._subscribe(REFERENCE_TYPES[kind], "reference", self._on_reference)
         self.create_timer(PERIOD, self._report, clock=self._steady)
-        topics = [self.resolve_topic_name(name) for name in self._heard]
+        topics = tuple(self.resolve_topic_name(name) for name in self._heard)
+        self._company = Company(self, topics)
         self.get_logger().info(
             f"{topics[0]} against {kind} on {topics[1]}, legs of {values['leg']} m"
         )
@@ -222,12 +223,10 @@ class CompareNode(Node):  # type: ignore[misc]
     def _verdict(self) -> tuple[bytes, str]:
         """Level and words: of what is compared, unless who is there makes that meaningless."""
         level, words = self._verdict_on_messages()
-        topics = tuple(self.resolve_topic_name(name) for name in self._heard)
-        wrong = [f"several publish {at} ({names})" for at, names in crowds(self, topics).items()]
-        wrong += namesakes(self)
+        wrong = self._company.look()
         if wrong and level == DiagnosticStatus.OK:
             level = DiagnosticStatus.WARN
-        return level, "; ".join([*wrong, words])
+        return level, "; ".join([words, *wrong])
 
     def _verdict_on_messages(self) -> tuple[bytes, str]:
         now = self._now()

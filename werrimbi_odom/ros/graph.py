@@ -4,7 +4,12 @@
 
 from __future__ import annotations
 
+import time
+
 from rclpy.node import Node
+
+KILLED = 21.0
+"""Seconds after which company is told: DDS lists a killed node for 20 s beside its successor."""
 
 
 def full_name(node: Node) -> str:
@@ -12,23 +17,45 @@ def full_name(node: Node) -> str:
     return str(node.get_fully_qualified_name().lstrip("/"))
 
 
-def crowds(node: Node, topics: tuple[str, ...]) -> dict[str, str]:
-    """Topics with more than one publisher, and their names in words."""
-    return {
-        topic: ", ".join(sorted(_name(each) for each in node.get_publishers_info_by_topic(topic)))
-        for topic in topics
-        if node.count_publishers(topic) > 1
-    }
+class Company:
+    """Others where one should be alone, once they have been there for a while.
 
+    Parameters
+    ----------
+    node : Node
+        Whose name should be its own.
+    topics : tuple of str
+        That should have one publisher each.
+    """
 
-def namesakes(node: Node) -> list[str]:
-    """What is wrong where another node has our name; nothing where none has."""
-    own = (node.get_name(), node.get_namespace())
-    count = sum(each == own for each in node.get_node_names_and_namespaces())
-    if count < 2:
-        return []
-    name = node.get_fully_qualified_name()
-    return [f"{count} nodes are named {name}, and each publishes: end one, or rename it"]
+    def __init__(self, node: Node, topics: tuple[str, ...]) -> None:
+        self.crowded: frozenset[str] = frozenset()
+        """Topics that had several publishers at the last look."""
+        self._node = node
+        self._topics = topics
+        self._since: dict[str, float] = {}
+
+    def look(self, *, others_welcome: bool = False) -> list[str]:
+        """What is wrong, in words; `others_welcome`: several publishers are none of it."""
+        node, now = self._node, time.monotonic()
+        self.crowded = frozenset(each for each in self._topics if node.count_publishers(each) > 1)
+        seen = [] if others_welcome else sorted(self.crowded)
+        own = (node.get_name(), node.get_namespace())
+        namesakes = sum(each == own for each in node.get_node_names_and_namespaces())
+        if namesakes > 1:
+            seen.append("")
+        self._since = {each: self._since.get(each, now) for each in seen}
+        lasting = [each for each, since in self._since.items() if now - since > KILLED]
+        return [self._of_topic(each) if each else self._of_name(namesakes) for each in lasting]
+
+    def _of_topic(self, topic: str) -> str:
+        publishers = self._node.get_publishers_info_by_topic(topic)
+        names = ", ".join(sorted(_name(each) for each in publishers))
+        return f"several publish {topic} ({names}): poses jump from one to the other"
+
+    def _of_name(self, count: int) -> str:
+        name = self._node.get_fully_qualified_name()
+        return f"{count} nodes are named {name}, and each publishes: end one, or rename it"
 
 
 def _name(endpoint: object) -> str:

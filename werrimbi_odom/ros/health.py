@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import time
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
@@ -94,7 +94,7 @@ class Health:
         tally: EncoderTally,
         inputs: Mapping[str, int],
         effects: Mapping[str, str] | None = None,
-        crowds: Mapping[str, str] | None = None,
+        crowded: Collection[str] = (),
         wrong: Sequence[str] = (),
     ) -> DiagnosticStatus:
         """How things stand, and at which rate they went since the last report.
@@ -109,14 +109,14 @@ class Health:
             Further counts of the input.
         effects : mapping, optional
             What each physical effect runs with.
-        crowds : mapping, optional
-            Topics of the input that have several publishers, and who these are.
+        crowded : collection of str
+            Topics of the input that have several publishers.
         wrong : sequence of str
             What else is wrong, in words.
         """
-        now, crowds = time.monotonic(), crowds or {}
+        now = time.monotonic()
         for topic, numbers in zip(self._topics, self._numbers, strict=True):
-            self._missed += numbers.missed(alone=topic not in crowds)
+            self._missed += numbers.missed(alone=topic not in crowded)
         counts = self._counts(tally, inputs)
         new = Counter(counts)
         new.subtract(self._before)
@@ -126,7 +126,7 @@ class Health:
             "input rate": f"{new['messages'] / elapsed:.1f} Hz",
             "output rate": f"{new['published'] / elapsed:.1f} Hz",
         }
-        level, words = self._verdict(now, new, [*self._crowded(crowds, new), *wrong])
+        level, words = self._verdict(now, new, wrong)
         if new["published"]:
             self._answered = list(self._heard)
         told = rates | counts | dict(effects or {})
@@ -163,15 +163,6 @@ class Health:
             **{f"refused set_pose: {cause}": n for cause, n in self._refused_poses.items()},
             **{f"not learnt from: {cause}": n for cause, n in self._not_learnt.items()},
         }
-
-    def _crowded(self, crowds: Mapping[str, str], new: Mapping[str, int]) -> list[str]:
-        """Topics on which several tell of our wheels; another driver may be that of an arm."""
-        if new["messages of other joints"]:
-            return []
-        return [
-            f"several publish {topic} ({names}): the pose jumps between their counters"
-            for topic, names in crowds.items()
-        ]
 
     def _verdict(
         self, now: float, new: Mapping[str, int], wrong: Sequence[str]

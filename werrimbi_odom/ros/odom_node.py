@@ -30,7 +30,7 @@ from visualization_msgs.msg import MarkerArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.ros import inputs, parameters
-from werrimbi_odom.ros.graph import crowds, full_name, namesakes
+from werrimbi_odom.ros.graph import Company, full_name
 from werrimbi_odom.ros.health import Health
 from werrimbi_odom.ros.learning import learning_of, told
 from werrimbi_odom.ros.markers import PieceTrail
@@ -67,6 +67,8 @@ class OdomNode(Node):  # type: ignore[misc]
         self._message = OdometryMessage(self._frame, str(values["base_frame_id"]))
         self._trail = PieceTrail(self._frame, robot.track)
         self._health = Health(self.get_logger(), self._topics, limits.gap_duration)
+        self._company = Company(self, self._topics)
+        self._foreign = 0
         self._viewers = 0
         self._rounds = 0
         self._level = DiagnosticStatus.OK
@@ -202,14 +204,12 @@ class OdomNode(Node):  # type: ignore[misc]
     def _publish_diagnostics(self) -> None:
         name = f"{full_name(self)}: wheel encoders"
         effects = told(self._settings.effects, self._learning)
-        status = self._health.report(
-            name,
-            self._tracker.tally,
-            self._input.tally(),
-            effects,
-            crowds(self, self._topics),
-            namesakes(self),
-        )
+        # Another driver on the topic may be that of an arm, whose joints come too.
+        wrong = self._company.look(others_welcome=self._health.foreign > self._foreign)
+        self._foreign = self._health.foreign
+        crowded = self._company.crowded
+        tally, counts = self._tracker.tally, self._input.tally()
+        status = self._health.report(name, tally, counts, effects, crowded, wrong)
         if status.level != self._level:
             self._level = status.level
             # Two lines, because rclpy knows a logging call by its line and its severity.
