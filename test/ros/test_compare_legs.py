@@ -15,8 +15,8 @@ pytest.importorskip("rclpy")
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.inference.comparison.consistency import chi_squared_quantile
-from werrimbi_odom.inference.rules import HONEST_CHANCE as ALARM
 from werrimbi_odom.inference.comparison.reference_noise import USUAL_SIGMA_XY, USUAL_SIGMA_YAW
+from werrimbi_odom.inference.rules import HONEST_CHANCE as ALARM
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Pose
@@ -124,6 +124,30 @@ def test_legs_share_no_pose_and_are_independent() -> None:
     after = np.concatenate([part[1:] for part in errors])
     together = (before * after).mean(axis=0)
     assert (np.abs(together) < 3.5 / math.sqrt(len(before))).all()
+
+
+def test_no_leg_spans_a_silence_of_the_reference() -> None:
+    """A pose each 4 cm, 3 s without any while the robot drives on, and poses again."""
+    cutter, ended = LegCutter(1.0), []
+    for tick in range(2000):
+        time = 0.02 * tick
+        if tick % 5 or 20.0 < time < 23.0:
+            continue
+        way = 0.4 * time
+        odometry = Reading(
+            time, Pose(way, 0.0, 0.0), PoseCovariance(time, 0, 0, time, 0, time), way
+        )
+        leg, ends = cutter.take(Both(odometry, Reading(time, Pose(way, 0.0, 0.0), REFERENCE)))
+        if ends:
+            assert leg is not None
+            ended.append(leg.time)
+    # A leg each 2.6 s from the first pose and from the first after the silence.
+    lengths = np.diff(ended)
+    spans = (np.array(ended[:-1]) < 20.0) & (np.array(ended[1:]) > 23.0)
+    assert spans.sum() == 1
+    assert lengths[~spans] == pytest.approx(2.6, abs=0.11)
+    first_after = min(end for end in ended if end > 23.0)
+    assert first_after == pytest.approx(23.0 + 2.5, abs=0.11)
 
 
 @pytest.mark.parametrize(("noise", "said"), [(0.25, "too small"), (4.0, "too large")])

@@ -9,17 +9,23 @@ covariances P₁ and P₂ the stretch between them has P₂ - J P₁ Jᵀ (docs/
 from __future__ import annotations
 
 import math
+from collections import deque
 from dataclasses import dataclass
+from statistics import median
 from typing import NamedTuple
 
 import numpy as np
 
 from werrimbi_odom.inference.comparison.legs import squared_deviation
+from werrimbi_odom.inference.legs.cutting import QUARTER_TURN, legs_worth
+from werrimbi_odom.inference.legs.gaps import are_gaps
+from werrimbi_odom.inference.rules import GAP_FEWEST, GAP_LEG
 from werrimbi_odom.model.covariance import PoseCovariance, carried
 from werrimbi_odom.model.pose import Floats, between, wrap
 from werrimbi_odom.ros.compare_track import Reading
 
-QUARTER_TURN = 0.5 * math.pi
+_KEPT = 200
+"""Intervals of the reference by which it is known what is usual."""
 
 _ROUNDING = 1e-9  # of a covariance: what the difference of two large ones may leave
 _SHARE = 0.1  # of its largest entry, which pieces may be off by; a constant's growth is -1 of it
@@ -62,7 +68,8 @@ class LegError:
 class LegCutter:
     """Cuts a drive into legs, each of which begins at the pose after the end of the last.
 
-    No pose of the reference is in two legs, so that their errors are independent.
+    No pose of the reference is in two legs, so that their errors are independent. None spans a gap:
+    a silence much longer than usual in which the robot drove on.
 
     Parameters
     ----------
@@ -75,23 +82,43 @@ class LegCutter:
     def __init__(self, length: float, turn: float = QUARTER_TURN) -> None:
         self._length, self._turn = length, turn
         self._start: Both | None = None
+        self._last: Both | None = None
+        self._intervals: deque[tuple[float, float]] = deque(maxlen=_KEPT)
 
     def restart(self) -> None:
         """Forget the leg that has begun."""
-        self._start = None
+        self._start = self._last = None
 
     def take(self, both: Both) -> tuple[LegError | None, bool]:
         """The error so far of the leg that is being driven, and whether this pose ends it."""
+        last, self._last = self._last, both
+        if last is not None and self._is_gap(last, both):
+            self._start = None
         start = self._start
         if start is None:
             self._start = both
             return None, False
-        path = both.odometry.path - start.odometry.path
-        turned = both.odometry.turned - start.odometry.turned
-        ends = path / self._length + turned / self._turn >= 1.0
+        ends = self._way(start, both) >= 1.0
         if ends:
             self._start = None
         return leg_error(start, both), ends
+
+    def _way(self, start: Both, end: Both) -> float:
+        path = end.odometry.path - start.odometry.path
+        turned = end.odometry.turned - start.odometry.turned
+        return legs_worth(path, turned, self._length, self._turn)
+
+    def _is_gap(self, last: Both, both: Both) -> bool:
+        """Whether the reference fell silent; what is no gap is what is usual."""
+        duration = both.reference.time - last.reference.time
+        way = self._way(last, both)
+        if way >= GAP_LEG and len(self._intervals) >= GAP_FEWEST:
+            usual = (median(column) for column in zip(*self._intervals, strict=True))
+            if are_gaps(np.array(duration), np.array(way), *usual):
+                return True
+        if way > 0.0:
+            self._intervals.append((duration, way))
+        return False
 
 
 def leg_error(start: Both, end: Both) -> LegError:

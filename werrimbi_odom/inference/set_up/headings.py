@@ -29,7 +29,7 @@ def search_headings(
     records: Sequence[Record], robot: Robot
 ) -> tuple[list[SetUpFinding], Setting | None]:
     """What is wrong; sizes are not measured, so the second is always None."""
-    cuts = cut(records, robot, "headings")
+    cuts = cut(records, robot, "heading")
     fit = turning(cuts, with_bias=True) if cuts.count >= FEWEST else None
     if fit is None:
         return [], None

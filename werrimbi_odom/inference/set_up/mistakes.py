@@ -86,9 +86,9 @@ def look_for_mistakes(
         extra.append(_late(lag, gain))
     if is_sparse(records, robot, measured):
         found, setting = search_sparse(records, robot, measured)
-    elif measured == "poses":
+    elif measured == "pose":
         found, setting = search_poses(records, robot)
-    elif measured == "positions":
+    elif measured == "position":
         found, setting = search_positions(records, robot)
     else:
         found, setting = search_headings(records, robot)

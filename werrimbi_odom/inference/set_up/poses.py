@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from werrimbi_odom.inference.comparison.reference_noise import Measure
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
     Estimate,
@@ -19,7 +20,7 @@ from werrimbi_odom.inference.set_up.explanation import (
     wirings,
 )
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, arm_finding, findings_of
-from werrimbi_odom.inference.set_up.records import Cuts, Measured, Record, cut, effective_track
+from werrimbi_odom.inference.set_up.records import Cuts, Record, cut, effective_track
 from werrimbi_odom.inference.set_up.regression import Moving, Turning, errors, moving, turning
 from werrimbi_odom.model.robot import Robot
 
@@ -67,7 +68,7 @@ class Regressed:
 
 def regressed(records: Sequence[Record], robot: Robot) -> Regressed | None:
     """Both regressions; None where the drives do not tell."""
-    cuts = cut(records, robot, "poses")
+    cuts = cut(records, robot, "pose")
     if cuts.count < FEWEST:
         return None
     turn = turning(cuts)
@@ -75,12 +76,12 @@ def regressed(records: Sequence[Record], robot: Robot) -> Regressed | None:
     return None if turn is None or move is None else Regressed(cuts, turn, move)
 
 
-def degrees_gain(records: Sequence[Record], robot: Robot, measured: Measured) -> float:
+def degrees_gain(records: Sequence[Record], robot: Robot, measured: Measure) -> float:
     """How many times better the reference's yaw fits as degrees; 1 where it does not."""
     yaw = np.concatenate([each.yaw[np.isfinite(each.yaw)] for each in records])
-    if measured == "positions" or yaw.size == 0 or np.ptp(yaw) < 2.1 * math.pi:
+    if measured == "position" or yaw.size == 0 or np.ptp(yaw) < 2.1 * math.pi:
         return 1.0
-    if measured == "headings":
+    if measured == "heading":
         # Where it was wrapped, it was wrapped at a whole turn.
         jumps = np.concatenate([np.abs(np.diff(each.yaw)) for each in records])
         wrapped = int(np.sum((jumps > 300.0) & (jumps < 361.0)))

@@ -120,7 +120,7 @@ def _scale(gone: Complexes, move: Complexes) -> float:
 def windows_of(cuts: Cuts, most: int = FINE) -> Windows | None:
     """Windows spread over all drives; None where there is not one."""
     starts = np.arange(0, cuts.count - WINDOW + 1, WINDOW // 2)
-    starts = starts[cuts.run[starts] == cuts.run[starts + WINDOW - 1]]
+    starts = starts[cuts.stretch[starts] == cuts.stretch[starts + WINDOW - 1]]
     if starts.size == 0:
         return None
     if starts.size > most:
@@ -154,7 +154,7 @@ def _compact(cuts: Cuts) -> Cuts:
         cuts.duration,
         cuts.turn,
         cuts.move,
-        cuts.run,
+        cuts.stretch,
     )
 
 
@@ -162,7 +162,7 @@ def search_positions(
     records: Sequence[Record], robot: Robot
 ) -> tuple[list[SetUpFinding], Setting | None]:
     """What is wrong, and the sizes that were measured."""
-    cuts = cut(records, robot, "positions", fewest=60)
+    cuts = cut(records, robot, "position", fewest=60)
     windows, some = windows_of(cuts), windows_of(cuts, COARSE)
     if windows is None or some is None:
         return [], None

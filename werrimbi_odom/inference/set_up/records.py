@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Runs cut up for the search of set-up mistakes: nothing here rests on the robot file's scale.
 
-A cut is half a turn of the faster wheel, whatever length that is: the file's metres may be off by
-1000, and so may the reference's. What the robot file already says of the reference (mirror, mount,
-delay) is undone first, so that all that is found later is what is still wrong.
+A cut is a leg of half a turn of the faster wheel, whatever length that is: the file's metres may be
+off by 1000, and so may the reference's. What the robot file already says of the reference (mirror,
+mount, delay) is undone first, so that all that is found later is what is still wrong.
 """
 
 from __future__ import annotations
@@ -12,12 +12,15 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.comparison.reference_noise import Measure
+from werrimbi_odom.inference.legs.counters import between_messages, summed
+from werrimbi_odom.inference.legs.cutting import leg_ends, usable_rows
+from werrimbi_odom.inference.legs.gaps import gaps_in, touched
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driving import features
 from werrimbi_odom.model.effect import after_wheel_effects, view_of, wiring_of
@@ -28,7 +31,6 @@ from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
 
 Complexes = NDArray[np.complex128]
-Measured = Literal["poses", "positions", "headings"]
 
 FEWEST, MOST = 300, 8000
 """Cuts of a whole session: longer than half a turn beyond, shorter below."""
@@ -79,8 +81,8 @@ class Cuts:
     move: Complexes
     """Measured displacement, in the frame of the measured heading at the cut's start where there
     is one, else of the reference [m]."""
-    run: NDArray[np.intp]
-    """Number of the run that each cut belongs to."""
+    stretch: NDArray[np.intp]
+    """Number of the stretch that each cut belongs to: a run, or what lies between its gaps."""
 
     @property
     def count(self) -> int:
@@ -130,24 +132,24 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | 
     known &= np.concatenate([[True], stamps[1:] > latest[:-1]])
     return Record(
         time,
-        np.concatenate([[0.0], np.cumsum(raw.left)]),
-        np.concatenate([[0.0], np.cumsum(raw.right)]),
+        summed(raw.left),
+        summed(raw.right),
         stamps[known] - view.delay,
         (reference.x + 1j * sign * np.asarray(reference.y))[known],
         sign * np.asarray(reference.yaw)[known],
     )
 
 
-def measured_by(records: Sequence[Record]) -> Measured | None:
+def measured_by(records: Sequence[Record]) -> Measure | None:
     """The best that the reference gives: poses where enough rows have all of one."""
     place = sum(int(np.isfinite(each.place).sum()) for each in records)
     yaw = sum(int(np.isfinite(each.yaw).sum()) for each in records)
     both = sum(int((np.isfinite(each.place) & np.isfinite(each.yaw)).sum()) for each in records)
     if both >= 0.3 * max(place, yaw) and both > 1:
-        return "poses"
+        return "pose"
     if place > 1 and place >= yaw:
-        return "positions"
-    return "headings" if yaw > 1 else None
+        return "position"
+    return "heading" if yaw > 1 else None
 
 
 def effective_track(robot: Robot) -> float:
@@ -157,7 +159,7 @@ def effective_track(robot: Robot) -> float:
 
 
 def cut(
-    records: Sequence[Record], robot: Robot, measured: Measured, *, fewest: int = FEWEST
+    records: Sequence[Record], robot: Robot, measured: Measure, *, fewest: int = FEWEST
 ) -> Cuts:
     """Cut all runs at rows of the reference, every half turn of the faster wheel.
 
@@ -173,13 +175,14 @@ def cut(
     length = min(max(half_turn, total / MOST), total / fewest) if total > 0.0 else half_turn
     view = view_of(robot.effects)
     crab = sum(item.values["angle"] for item in robot.effects if item.name == "sideways_drift")
-    parts, offset = [], 0
-    for number, each in enumerate(usable):
+    parts, offset, stretch = [], 0, 0
+    for each in usable:
         if each.seen.size < 2:
             continue
         point = complex(view.ahead, view.left)
-        part = _cut_run(each, length, point, view.yaw - crab, number, offset)
+        part = _cut_run(each, length, point, view.yaw - crab, stretch, offset)
         offset += part.left.size
+        stretch = int(part.stretch[-1]) + 1 if part.count else stretch
         parts.append(part)
     if not parts:
         none, index = np.empty(0), np.empty(0, dtype=np.intp)
@@ -188,36 +191,47 @@ def cut(
     return Cuts(*(np.concatenate([getattr(each, name) for each in parts]) for name in names))
 
 
-def _usable(record: Record, measured: Measured) -> Record:
+def _usable(record: Record, measured: Measure) -> Record:
     """Rows that hold what is asked for, while the ticks were recorded."""
-    keep = (record.seen >= record.time[0]) & (record.seen <= record.time[-1])
-    if measured != "headings":
-        keep &= np.isfinite(record.place)
-    if measured != "positions":
-        keep &= np.isfinite(record.yaw)
-    yaw = record.yaw[keep] if measured != "positions" else np.full(int(keep.sum()), np.nan)
+    known = np.ones(record.seen.shape, dtype=np.bool_)
+    if measured != "heading":
+        known &= np.isfinite(record.place)
+    if measured != "position":
+        known &= np.isfinite(record.yaw)
+    keep = usable_rows(record.seen, known, float(record.time[0]), float(record.time[-1]))
+    yaw = record.yaw[keep] if measured != "position" else np.full(keep.size, np.nan)
     return replace(record, seen=record.seen[keep], place=record.place[keep], yaw=yaw)
 
 
 def _progress(record: Record) -> Floats:
     """Travel of the faster wheel up to each row of the reference [m]."""
-    faster = np.maximum(np.abs(np.diff(record.left)), np.abs(np.diff(record.right)))
-    gone = np.interp(record.seen, record.time, np.concatenate([[0.0], np.cumsum(faster)]))
+    gone = np.interp(record.seen, record.time, _way(record))
     return np.asarray(gone - gone[0])
 
 
+def _way(record: Record) -> Floats:
+    """Travel of the faster wheel up to each message [m]."""
+    return summed(np.maximum(np.abs(np.diff(record.left)), np.abs(np.diff(record.right))))
+
+
+def _gaps(record: Record, gone: Floats, length: float) -> NDArray[np.bool_]:
+    """Intervals of the reference in which it, or the ticks, are silent on the way."""
+    inside = (record.time >= record.seen[0]) & (record.time <= record.seen[-1])
+    time = record.time[inside]
+    ticks = np.flatnonzero(gaps_in(time, _way(record)[inside] / length))
+    silent = touched(record.seen, [(time[each], time[each + 1]) for each in ticks])
+    return gaps_in(record.seen, gone / length) | silent
+
+
 def _cut_run(
-    record: Record, length: float, point: complex, yaw: float, number: int, offset: int
+    record: Record, length: float, point: complex, yaw: float, stretch: int, offset: int
 ) -> Cuts:
     gone = _progress(record)
-    whole = np.arange(1.0, math.floor(gone[-1] / length * (1.0 + 1e-9)) + 1.0) * length
-    chosen = np.unique(np.concatenate([[0], np.searchsorted(gone, whole * (1.0 - 1e-9))]))
-    if chosen.size == 1:
-        chosen = np.array([0, gone.size - 1])
+    gap = _gaps(record, gone, length)
+    chosen = leg_ends(gone, gap, length)
     at = record.seen[chosen]
     time = np.union1d(record.time, at)
-    left = np.interp(time, record.time, record.left)
-    right = np.interp(time, record.time, record.right)
+    left, right = between_messages(time, record.time, record.left, record.right).T
     nodes = offset + 1 + np.searchsorted(time, at)
     heading = np.concatenate([[0.0], np.cumsum(wrap_all(np.diff(record.yaw)))])[chosen]
     turn = np.diff(heading)
@@ -226,13 +240,15 @@ def _cut_run(
         # The reference's own axis and point, as far as the file knows them, are undone.
         move = move * np.exp(1j * (yaw - record.yaw[chosen[:-1]]))
         move = move - (np.exp(1j * turn) - 1.0) * point
+    before = np.concatenate([[0], np.cumsum(gap)])[chosen]
+    whole = np.diff(before) == 0
     return Cuts(
         np.diff(left, prepend=left[0]),
         np.diff(right, prepend=right[0]),
-        nodes[:-1],
-        nodes[1:],
-        np.diff(at),
-        turn,
-        move,
-        np.full(at.size - 1, number),
+        nodes[:-1][whole],
+        nodes[1:][whole],
+        np.diff(at)[whole],
+        turn[whole],
+        move[whole],
+        stretch + before[:-1][whole],
     )

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from werrimbi_odom.inference.comparison.reference_noise import Measure
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
     Estimate,
@@ -23,7 +24,7 @@ from werrimbi_odom.inference.set_up.explanation import (
 )
 from werrimbi_odom.inference.set_up.factors import FACTORS
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
-from werrimbi_odom.inference.set_up.records import Cuts, Measured, Record, cut, effective_track
+from werrimbi_odom.inference.set_up.records import Cuts, Record, cut, effective_track
 from werrimbi_odom.inference.set_up.regression import errors
 from werrimbi_odom.model.motion import sinc
 from werrimbi_odom.model.pose import Floats
@@ -42,21 +43,21 @@ APART = 5.0
 """... and better than any that says otherwise."""
 
 
-def is_sparse(records: Sequence[Record], robot: Robot, measured: Measured) -> bool:
+def is_sparse(records: Sequence[Record], robot: Robot, measured: Measure) -> bool:
     """Whether the reference is too rare to follow the robot through its turns."""
     cuts = cut(records, robot, measured)
     return cuts.count < 4 * len(records) + 16
 
 
 def search_sparse(
-    records: Sequence[Record], robot: Robot, measured: Measured
+    records: Sequence[Record], robot: Robot, measured: Measure
 ) -> tuple[list[SetUpFinding], Setting | None]:
     """What is wrong; sizes are not measured, so the second is always None."""
     cuts = _thinned(cut(records, robot, measured))
     track = effective_track(robot)
-    if cuts.count == 0 or measured == "headings":
+    if cuts.count == 0 or measured == "heading":
         return [], None
-    drives = _Drives(cuts, track, measured == "poses")
+    drives = _Drives(cuts, track, measured == "pose")
     tried = sorted(
         ((drives.fits(each), i, each) for i, each in enumerate(_settings())), reverse=True
     )
@@ -64,7 +65,7 @@ def search_sparse(
     if best < given + MARGIN:
         return [], None
     left, right, half_base, _ = setting.numbers(track)
-    yaw = -float(np.angle(half_base)) if measured == "poses" else None
+    yaw = -float(np.angle(half_base)) if measured == "pose" else None
     ways = wirings(Estimate(left, right, 2.0 * abs(half_base), yaw))
     # Before a mirrored reference the same signs are another prediction.
     upright = [way for way in ways if not way.mirrored]
@@ -73,7 +74,7 @@ def search_sparse(
     for value, _, other in tried[1:]:
         if value < best - APART:
             break
-        if not any(_alike(other, one, measured == "poses") for one in same):
+        if not any(_alike(other, one, measured == "pose") for one in same):
             return [], None
 
     def misfit(one: Setting) -> float:

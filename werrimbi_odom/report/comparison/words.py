@@ -299,7 +299,8 @@ def _reference(comparison: Comparison) -> list[str]:
     outliers = comparison.main.all.outliers
     if outliers:
         total = outliers + comparison.main.all.figures.count
-        lines.append(f"On {outliers} of {total} legs the reference jumped; they are left out.")
+        they = "it is" if outliers == 1 else "they are"
+        lines.append(f"On {outliers} of {total} legs the reference jumped; {they} left out.")
     return [*lines, *left_out_words(comparison.left_out)]
 
 
