@@ -16,11 +16,14 @@ from itertools import combinations
 import numpy as np
 
 from werrimbi_odom.effects import find
+from werrimbi_odom.inference.calibration_sizes import sizes_of
 from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.search import Round
+from werrimbi_odom.inference.manoeuvres.by_hand import for_twins, twin_where
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, pace_of
-from werrimbi_odom.inference.manoeuvres.imagined import imagined
+from werrimbi_odom.inference.manoeuvres.imagined import imagined, measured_in
 from werrimbi_odom.inference.manoeuvres.rivals import (
     Drives,
     Look,
@@ -36,7 +39,6 @@ from werrimbi_odom.inference.manoeuvres.unknown import Manoeuvre, for_the_unknow
 from werrimbi_odom.inference.rules import RIVAL
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.model.robot import Robot
 
 __all__ = ["Manoeuvre", "Promise", "next_manoeuvre", "promises", "strongest"]
 
@@ -72,55 +74,14 @@ class Promise:
 def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
     """The next thing to do; None where the diagnosis leaves nothing open that it could answer."""
     if diagnosis.verdict == "ambiguous":
-        by_hand = _twins(diagnosis.rivals)
+        named = [effect_named(diagnosis, name) for name in diagnosis.rivals]
+        by_hand = for_twins([effect for effect in named if effect], measured_in(diagnosis.runs)[0])
         if by_hand is not None:
             return by_hand
         weighed = promises(diagnosis)
         return _best(diagnosis.rivals, weighed) if weighed else None
     if diagnosis.verdict == "unknown":
         return for_the_unknown(diagnosis)
-    return None
-
-
-def _twins(rivals: Sequence[str]) -> Manoeuvre | None:
-    """For what no drive can tell, by algebra."""
-    there = set(rivals)
-    if {"reference_yaw_offset", "sideways_drift"} <= there and len(there) == 2:
-        return Manoeuvre(
-            "remount_reference",
-            "no drive can tell a robot that crabs from a marker mounted askew; turned by 90 "
-            "degrees, the mount's angle turns with it and a crab's stays",
-            "take the reference's marker or sensor off, mount it anew turned by 90 degrees, enter "
-            "that, and drive again",
-            0.0,
-        )
-    if "reference_mirrored" in there:
-        return Manoeuvre(
-            "turn_by_hand",
-            "no drive can tell a robot that turns the wrong way from a reference that does; a hand "
-            "can",
-            "turn the robot to the left by hand: the reference's yaw must grow, and so must right "
-            "minus left counts; whichever does not is wrong",
-            0.0,
-        )
-    if there & {"wheels_swapped", "left_wheel_reversed", "right_wheel_reversed"}:
-        return Manoeuvre(
-            "push_by_hand",
-            "no drive can tell them apart, because the robot file alone says which end is ahead; a "
-            "hand can",
-            "push the robot forwards by hand: both counters must grow; push it round its right "
-            "wheel: the left counter must run",
-            0.0,
-        )
-    if {"wheel_radius_scale", "track_width"} == there:
-        return Manoeuvre(
-            "out_and_back",
-            "where headings alone are measured only radii over base shows; a taped distance tells "
-            "the radii",
-            "drive 10 m straight by the odometry beside a tape, or use a reference that measures "
-            "positions",
-            2.0,
-        )
     return None
 
 
@@ -135,6 +96,7 @@ def promises(diagnosis: Diagnosis) -> list[Promise]:
     target = target_at(before, first)
     sizes = {item.name: mimicry(before, target, item) for item in rivals[1:]}
     pace = pace_of(diagnosis.runs, point.model.robot)
+    positions = measured_in(diagnosis.runs)[0]
     found = []
     for ideal in MANOEUVRES:
         drives, minutes = imagined(ideal, diagnosis.runs, point, diagnosis.kind, pace)
@@ -152,7 +114,7 @@ def promises(diagnosis: Diagnosis) -> list[Promise]:
                 _gained(*stands[one.name], other), _gained(*stands[other.name], one)
             )
             for one, other in combinations(rivals, 2)
-            if other.name not in one.effect.twins
+            if twin_where(one.effect, other.effect, positions) is None
         }
         of_first = {pair[1]: rise for pair, rise in rises.items() if pair[0] == rivals[0].name}
         if not of_first:  # twins by algebra: no drive tells
@@ -231,27 +193,10 @@ def _as_fitted(candidate: Candidate, this: Round, diagnosis: Diagnosis) -> Appli
             return next(
                 item for item in fit.point.model.of_run(0).effects if item.name == candidate.name
             )
-    sizes = sizes_of_calibration(diagnosis.robot, diagnosis.given)
+    sizes = sizes_of(diagnosis.robot).over(sizes_of(diagnosis.given)).as_effects
     return candidate.effect.using(
         **{next(iter(candidate.effect.parameters)): sizes[candidate.name]}
     )
-
-
-def sizes_of_calibration(robot: Robot, given: Robot) -> dict[str, float]:
-    """The three calibration effects as numbers: base, right over left radius, both radii."""
-    base, left, right = (
-        getattr(robot, name) / getattr(given, name)
-        for name in (
-            "wheel_separation_multiplier",
-            "left_wheel_radius_multiplier",
-            "right_wheel_radius_multiplier",
-        )
-    )
-    return {
-        "track_width": base,
-        "unequal_wheel_radii": right / left,
-        "wheel_radius_scale": 0.5 * (left + right),
-    }
 
 
 def _once(candidates: Sequence[Candidate]) -> list[Candidate]:

@@ -18,6 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.calibration_sizes import sizes_of
+from werrimbi_odom.inference.set_up.robot import mount_of
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driving import features
 from werrimbi_odom.model.effect import after_wheel_effects, view_of, wiring_of
@@ -152,8 +154,7 @@ def measured_by(records: Sequence[Record]) -> Measured | None:
 
 def effective_track(robot: Robot) -> float:
     """Base that the robot file, its effects included, takes for true [m]."""
-    widths = [item.values["multiplier"] for item in robot.effects if item.name == "track_width"]
-    return float(robot.track * math.prod(widths))
+    return robot.wheel_separation * sizes_of(robot).base
 
 
 def cut(
@@ -171,14 +172,13 @@ def cut(
     total = sum(float(_progress(each)[-1]) for each in usable if each.seen.size > 1)
     half_turn = math.pi * robot.wheel_radius
     length = min(max(half_turn, total / MOST), total / fewest) if total > 0.0 else half_turn
-    view = view_of(robot.effects)
-    crab = sum(item.values["angle"] for item in robot.effects if item.name == "sideways_drift")
+    view = mount_of(robot)
     parts, offset = [], 0
     for number, each in enumerate(usable):
         if each.seen.size < 2:
             continue
         point = complex(view.ahead, view.left)
-        part = _cut_run(each, length, point, view.yaw - crab, number, offset)
+        part = _cut_run(each, length, point, view.yaw, number, offset)
         offset += part.left.size
         parts.append(part)
     if not parts:
