@@ -15,8 +15,8 @@ from werrimbi_odom.effects.collection import all_effects
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.asked import Asked, Recordings, read
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
-from werrimbi_odom.inference.manoeuvres.sight import sight_of
 from werrimbi_odom.report.diagnosis.as_json import json_of
 from werrimbi_odom.report.diagnosis.words import Told
 from werrimbi_odom.report.fleet.rows import Row
@@ -54,7 +54,7 @@ def diagnosed(
     )
     show(0.97, "the next step")
     manoeuvre = next_manoeuvre(diagnosis)
-    sights = sight_of(diagnosis, effects)
+    sights = detection_limits(diagnosis, effects)
     return Told(diagnosis, manoeuvre, sights, given.how.leg, bool(given.holdout))
 
 

@@ -12,8 +12,8 @@ from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.diagnosis.named import effect_named
+from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
-from werrimbi_odom.inference.manoeuvres.sight import Sight
 from werrimbi_odom.inference.set_up.mistakes import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.values import Value, ranked_of, values_of
@@ -26,7 +26,7 @@ class Told:
 
     diagnosis: Diagnosis
     manoeuvre: Manoeuvre | None
-    sights: Sequence[Sight]
+    sights: Sequence[DetectionLimit]
     leg: float = 1.0
     """Length of the legs that are judged [m]."""
     held_out: bool = True
