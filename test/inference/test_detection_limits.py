@@ -17,7 +17,7 @@ from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.manoeuvres.detection_limits import information_limits
-from werrimbi_odom.inference.manoeuvres.rivals import Drives
+from werrimbi_odom.inference.manoeuvres.rivals import Experiment
 from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.model.pose import Floats
 
@@ -35,17 +35,17 @@ def limits(names: tuple[str, ...], runs: list[Run], **others: float) -> dict[str
     return information_limits(effects, ROBOT, runs, tried=TRIED, **{**NOISE, **others})  # type: ignore[arg-type]
 
 
-def drives_of(runs: list[Run]) -> Drives:
+def drives_of(runs: list[Run]) -> Experiment:
     laid = together(match_finely(runs, ROBOT, 1.0))
-    return Drives(laid, start_point(laid, ROBOT, NOISE_XY, NOISE_YAW), "absolute")
+    return Experiment(laid, start_point(laid, ROBOT, NOISE_XY, NOISE_YAW), "absolute")
 
 
-def change(drives: Drives, name: str, **values: float) -> Floats:
+def change(drives: Experiment, name: str, **values: float) -> Floats:
     """What an effect of a size does to the innovations, in units of their noise."""
     return drives.whitened(drives.change(find(name).using(**values)))[:, 0]
 
 
-def columns(drives: Drives, name: str) -> Floats:
+def columns(drives: Experiment, name: str) -> Floats:
     return drives.whitened(drives.marks(Candidate(find(name), {})))
 
 

@@ -32,7 +32,7 @@ from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.inference.manoeuvres.imagined import imagined
-from werrimbi_odom.inference.manoeuvres.rivals import Drives, Look, look_at
+from werrimbi_odom.inference.manoeuvres.rivals import Experiment, Sensitivities, sensitivities_of
 from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
@@ -78,7 +78,7 @@ def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[D
         for effect in effects
         if not effect.is_mistake and effect.name not in held and set(effect.channels) <= measured
     ]
-    seen = _seen(Drives(diagnosis.runs, final.point, diagnosis.kind), candidates, final, tried)
+    seen = _seen(Experiment(diagnosis.runs, final.point, diagnosis.kind), candidates, final, tried)
     hidden = [item for item in candidates if seen[item.name].hidden]
     if not hidden:
         return tuple(seen.values())
@@ -125,8 +125,8 @@ def information_limits(
         drives do not show it.
     """
     laid = together(match_finely(runs, robot, leg))
-    look = look_at(
-        Drives(laid, start_point(laid, robot, sigma_xy, sigma_yaw), kind),
+    look = sensitivities_of(
+        Experiment(laid, start_point(laid, robot, sigma_xy, sigma_yaw), kind),
         [_typical(effect) for effect in effects] + _calibrated(),
         (),
     )
@@ -140,19 +140,21 @@ def information_limits(
 
 
 def _seen(
-    drives: Drives, candidates: Sequence[Candidate], final: Fitted, tried: int
+    drives: Experiment, candidates: Sequence[Candidate], final: Fitted, tried: int
 ) -> dict[str, DetectionLimit]:
-    look = look_at(drives, candidates, final.knobs)
+    look = sensitivities_of(drives, candidates, final.knobs)
     return {item.name: _best(item, look, tried) for item in candidates}
 
 
-def _best(candidate: Candidate, look: Look, tried: int) -> DetectionLimit:
+def _best(candidate: Candidate, look: Sensitivities, tried: int) -> DetectionLimit:
     """The parameter of an effect that shows best."""
     limits = _limits(candidate, look, tried, POWER)
     return min(limits, key=lambda limit: limit.minimum_detectable / limit.typical)
 
 
-def _limits(candidate: Candidate, look: Look, tried: int, power: float) -> Iterator[DetectionLimit]:
+def _limits(
+    candidate: Candidate, look: Sensitivities, tried: int, power: float
+) -> Iterator[DetectionLimit]:
     """For each parameter but its shape, beside what calibration may explain."""
     effect = candidate.effect
     others = [
@@ -188,7 +190,7 @@ def _shown_by(diagnosis: Diagnosis, hidden: Sequence[Candidate], *, better: bool
             ideal, diagnosis.runs, final.point, diagnosis.kind, pace, better=better
         )
         beside = [item for item in _calibrated() if item.name not in _names(wanted)]
-        look = look_at(drives, [*wanted, *beside], final.knobs)
+        look = sensitivities_of(drives, [*wanted, *beside], final.knobs)
         for item in list(wanted):
             if not _best(item, look, diagnosis.rounds[-1].number).hidden:
                 found[item.name] = ideal.name

@@ -25,22 +25,22 @@ from werrimbi_odom.inference.manoeuvres.by_hand import for_twins, twin_where
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, pace_of
 from werrimbi_odom.inference.manoeuvres.imagined import imagined, measured_in
 from werrimbi_odom.inference.manoeuvres.rivals import (
-    Drives,
-    Look,
-    Target,
+    Experiment,
+    Sensitivities,
+    Trace,
+    best_alias,
     difference,
-    look_at,
-    mimicry,
-    target_along,
-    target_at,
-    unlike,
+    sensitivities_of,
+    separation,
+    trace_along,
+    trace_at,
 )
 from werrimbi_odom.inference.manoeuvres.unknown import Manoeuvre, for_the_unknown, strongest
 from werrimbi_odom.inference.rules import RIVAL
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 
-__all__ = ["Manoeuvre", "Promise", "next_manoeuvre", "promises", "strongest"]
+__all__ = ["Discrimination", "Manoeuvre", "discriminations", "next_manoeuvre", "strongest"]
 
 LONGEST = 30.0
 """Minutes of driving that one may ask for."""
@@ -50,7 +50,7 @@ ENOUGH = 3.0 * RIVAL
 
 
 @dataclass(frozen=True, slots=True)
-class Promise:
+class Discrimination:
     """What a manoeuvre of the library would show."""
 
     ideal: Ideal
@@ -78,34 +78,34 @@ def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
         by_hand = for_twins([effect for effect in named if effect], measured_in(diagnosis.runs)[0])
         if by_hand is not None:
             return by_hand
-        weighed = promises(diagnosis)
+        weighed = discriminations(diagnosis)
         return _best(diagnosis.rivals, weighed) if weighed else None
     if diagnosis.verdict == "unknown":
         return for_the_unknown(diagnosis)
     return None
 
 
-def promises(diagnosis: Diagnosis) -> list[Promise]:
+def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
     """What each manoeuvre of the library would tell of the rivals, the best first."""
     this = _round_of(diagnosis)
     rivals = [_candidate(name, this, diagnosis) for name in diagnosis.rivals]
     first = _as_fitted(rivals[0], this, diagnosis)
     looked_at = _once([*rivals, *(Candidate(find(name), {}) for name in CALIBRATED)])
     point, knobs = this.before.point, this.before.knobs
-    before = look_at(Drives(diagnosis.runs, point, diagnosis.kind), looked_at, knobs)
-    target = target_at(before, first)
-    sizes = {item.name: mimicry(before, target, item) for item in rivals[1:]}
+    before = sensitivities_of(Experiment(diagnosis.runs, point, diagnosis.kind), looked_at, knobs)
+    target = trace_at(before, first)
+    sizes = {item.name: best_alias(before, target, item) for item in rivals[1:]}
     pace = pace_of(diagnosis.runs, point.model.robot)
     positions = measured_in(diagnosis.runs)[0]
     found = []
     for ideal in MANOEUVRES:
         drives, minutes = imagined(ideal, diagnosis.runs, point, diagnosis.kind, pace)
-        ahead = look_at(drives, looked_at, knobs)
-        there = target_at(ahead, first)
+        ahead = sensitivities_of(drives, looked_at, knobs)
+        there = trace_at(ahead, first)
         stands = {rivals[0].name: ((before, target), (ahead, there))} | {
             name: (
-                (before, target_along(before, name, size)),
-                (ahead, target_along(ahead, name, size)),
+                (before, trace_along(before, name, size)),
+                (ahead, trace_along(ahead, name, size)),
             )
             for name, size in sizes.items()
         }
@@ -123,17 +123,19 @@ def promises(diagnosis: Diagnosis) -> list[Promise]:
         rival = next(item for item in rivals if item.name == against)
         apart = difference(*stands[rivals[0].name], rival)
         found.append(
-            Promise(ideal, minutes, of_first[against], min(rises.values()), against, apart)
+            Discrimination(ideal, minutes, of_first[against], min(rises.values()), against, apart)
         )
     return sorted(found, key=lambda item: -item.rise / item.minutes)
 
 
-def _gained(known: tuple[Look, Target], ahead: tuple[Look, Target], rival: Candidate) -> float:
+def _gained(
+    known: tuple[Sensitivities, Trace], ahead: tuple[Sensitivities, Trace], rival: Candidate
+) -> float:
     """What new drives add to the cost of a rival that stands for the target."""
-    return unlike([known, ahead], rival) - unlike([known], rival)
+    return separation([known, ahead], rival) - separation([known], rival)
 
 
-def _best(rivals: Sequence[str], weighed: Sequence[Promise]) -> Manoeuvre | None:
+def _best(rivals: Sequence[str], weighed: Sequence[Discrimination]) -> Manoeuvre | None:
     """The quickest to leave one rival alone; else to tell the first from all others."""
     best = min(weighed, key=lambda item: item.minutes_for(item.every))
     minutes = best.minutes_for(best.every)
