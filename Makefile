@@ -41,8 +41,8 @@ bench: setup  ## how fast, as ratios measured side by side
 	$(BIN)/python benchmark/diagnosis_hour.py
 	$(BIN)/python benchmark/page_hour.py
 
-evidence: setup  ## the long tests: hidden effects (tables to docs/evidence.md), many seeds, soaks
-	$(BIN)/python -m test.hidden
+evidence: setup  ## the long tests: fresh hidden effects (to docs/evidence.md; ALL=1: more), many seeds, soaks
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m test.hidden
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[evidence]' || echo "no atheris for this Python: tests that need it will skip"
 	$(BIN)/python -m pytest -m evidence
 

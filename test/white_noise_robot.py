@@ -5,10 +5,11 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from types import SimpleNamespace
-from typing import Any
+from pathlib import Path
 
 import numpy as np
+
+from werrimbi_odom.files.run import Reference, Run, Ticks
 
 RATE = 50.0
 
@@ -64,7 +65,7 @@ def drive(
     sigma_yaw: float = 2e-3,
     every: int = 3,
     fine: int = 4,
-) -> Any:
+) -> Run:
     """A recorded run: the encoders count the commanded travel, the robot's true travel errs.
 
     Each step is integrated in `fine` parts with noise of its own; the reference is a pose with
@@ -95,16 +96,10 @@ def drive(
     ]
     rows = np.arange(0, count + 1, every)
     at = path[rows * fine]
-    return SimpleNamespace(
-        name="simulated",
-        path="simulated",
-        ticks=SimpleNamespace(time=time, left=counts[0], right=counts[1], channels={}),
-        reference=SimpleNamespace(
-            time=time[rows],
-            x=at.real + sigma_xy * random.standard_normal(rows.size),
-            y=at.imag + sigma_xy * random.standard_normal(rows.size),
-            yaw=yaw[rows * fine] + sigma_yaw * random.standard_normal(rows.size),
-            sigma_xy=None,
-            sigma_yaw=None,
-        ),
+    noise = [sigma * random.standard_normal(rows.size) for sigma in (sigma_xy, sigma_xy, sigma_yaw)]
+    return Run(
+        "simulated",
+        Path("simulated"),
+        Ticks(time, counts[0], counts[1]),
+        Reference(time[rows], at.real + noise[0], at.imag + noise[1], yaw[rows * fine] + noise[2]),
     )

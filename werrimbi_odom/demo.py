@@ -11,7 +11,6 @@ from __future__ import annotations
 import argparse
 import math
 import os
-import random
 import signal
 import subprocess
 import sys
@@ -156,16 +155,18 @@ def _node(robot_file: RobotFile, logs: str, private: str) -> Iterator[subprocess
 
 
 def _through_the_node(robot_file: RobotFile, run: Run, start: Pose) -> Answers:
-    # A domain and topics of our own: no robot, nor another demo, may hear these ticks.
-    os.environ["ROS_DOMAIN_ID"] = str(random.randint(1, 100))
-    private = f"/demo_{os.getpid()}"
-    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     import rclpy
 
+    from werrimbi_odom.ros.domain import free_domain
     from werrimbi_odom.ros.player import Player
 
+    # A domain and topics of our own: no robot, nor another demo or test, may hear these ticks.
+    domain, lock = free_domain()
+    os.environ["ROS_DOMAIN_ID"] = str(domain)
+    private = f"/demo_{os.getpid()}"
+    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     values = robot_file.values
-    with tempfile.TemporaryDirectory() as logs:
+    with lock, tempfile.TemporaryDirectory() as logs:
         os.environ["ROS_LOG_DIR"] = logs
         with _node(robot_file, logs, private) as node:
             rclpy.init()

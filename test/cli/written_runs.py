@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from test.inference.driven import run_of
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.model.robot import Robot
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
@@ -35,16 +36,20 @@ def written(
     for seed, truth in enumerate(truths):
         measured = None if channels is None else channels[seed]
         run = run_of(truth, seed, channels=measured)
-        assert run.reference is not None
-        place = folder / run.name
-        place.mkdir()
-        names = ["t_s", "left_ticks", "right_ticks", *run.ticks.channels]
-        columns = [run.ticks.time, run.ticks.left, run.ticks.right, *run.ticks.channels.values()]
-        _table(place / "ticks.csv", names, columns)
-        seen = run.reference
-        names = ["t_s", "x_m", "y_m", "yaw_rad"]
-        _table(place / "reference.csv", names, [seen.time, seen.x, seen.y, seen.yaw])
+        write_run(folder / run.name, run)
     return folder
+
+
+def write_run(place: Path, run: Run) -> None:
+    """A run as a folder."""
+    assert run.reference is not None
+    place.mkdir()
+    names = ["t_s", "left_ticks", "right_ticks", *run.ticks.channels]
+    columns = [run.ticks.time, run.ticks.left, run.ticks.right, *run.ticks.channels.values()]
+    _table(place / "ticks.csv", names, columns)
+    seen = run.reference
+    names = ["t_s", "x_m", "y_m", "yaw_rad"]
+    _table(place / "reference.csv", names, [seen.time, seen.x, seen.y, seen.yaw])
 
 
 def _table(path: Path, names: Sequence[str], columns: Sequence[np.ndarray]) -> None:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Messages that hypothesis makes up, to the real node: it lives, and publishes numbers."""
+"""Messages and parameters that hypothesis makes up, to the real node over DDS."""
 
 from __future__ import annotations
 
@@ -16,6 +16,8 @@ pytest.importorskip("rclpy")
 
 from geometry_msgs.msg import PoseWithCovarianceStamped
 from sensor_msgs.msg import JointState
+
+from werrimbi_odom.ros.parameters import CHANGEABLE
 
 NUMBER = st.floats() | st.sampled_from(
     [0.0, 1e308, -1e308, 5e-324, math.nan, math.inf, 2.0**31, 2.0**53, -(2.0**63)]
@@ -52,23 +54,54 @@ def poses(draw: Any) -> PoseWithCovarianceStamped:
     return message
 
 
-@settings(
-    max_examples=25,
-    deadline=None,
-    suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
-)
-@given(messages=st.lists(joint_states() | poses(), min_size=5, max_size=40))
-def test_the_node_lives_and_publishes_finite_numbers(node: Any, messages: list[Any]) -> None:
-    for message in messages:
-        topic = "joint_states" if isinstance(message, JointState) else "set_pose"
-        node.send(type(message), topic, message)
-    node.rest(0.05)
-    assert node.process.poll() is None, node.stderr()
-    for odometry in node.odometry:
-        pose, twist = odometry.pose, odometry.twist
-        numbers = [pose.pose.position.x, pose.pose.position.y, pose.pose.orientation.z]
-        numbers += [twist.twist.linear.x, twist.twist.angular.z]
-        assert all(map(math.isfinite, numbers)), odometry
-        assert np.isfinite(pose.covariance).all(), odometry
-        assert np.isfinite(twist.covariance).all(), odometry
-    node.odometry.clear()
+CHANGES = st.dictionaries(st.sampled_from(sorted(CHANGEABLE)), NUMBER | st.floats(1e-3, 1e3))
+ENDS = ("published", "refused", "duplicates", "out of order", "not finite", "implausible")
+
+
+def test_the_node_lives_publishes_covariances_and_counts_each_message_once(node: Any) -> None:
+    before = drained(node)
+    sent = 0
+
+    @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.too_slow])
+    @given(messages=st.lists(joint_states() | poses(), min_size=5, max_size=40), changes=CHANGES)
+    def lives(messages: list[Any], changes: dict[str, float]) -> None:
+        nonlocal sent
+        for message in messages:
+            is_joints = isinstance(message, JointState)
+            sent += is_joints
+            node.send(type(message), "joint_states" if is_joints else "set_pose", message)
+        for name, value in changes.items():
+            result = node.set_parameters(**{name: value})
+            assert result.successful or result.reason
+        node.rest(0.05)
+        assert node.process.poll() is None, node.stderr()
+        for odometry in node.odometry:
+            check(odometry)
+        node.odometry.clear()
+
+    lives()
+    after = drained(node)
+    new = {key: after[key] - before[key] for key in after}
+    assert new["messages"] + new["messages of other joints"] == sent
+    assert sum(new[end] for end in ENDS) == new["messages"], new
+
+
+def drained(node: Any) -> Any:
+    """Counts once all that was sent has been taken."""
+    node.rest(0.5)
+    node.report()
+    return node.counts()
+
+
+def check(odometry: Any) -> None:
+    pose, twist = odometry.pose, odometry.twist
+    numbers = [pose.pose.position.x, pose.pose.position.y, pose.pose.orientation.z]
+    numbers += [twist.twist.linear.x, twist.twist.angular.z]
+    assert all(map(math.isfinite, numbers)), odometry
+    for entries in (pose.covariance, twist.covariance):
+        matrix = np.asarray(entries).reshape(6, 6)
+        assert np.isfinite(matrix).all(), odometry
+        assert (matrix == matrix.T).all(), odometry
+        assert (matrix.diagonal() >= 0.0).all(), odometry
+        size = np.sqrt(np.where(matrix.diagonal() > 0.0, matrix.diagonal(), 1.0))
+        assert np.linalg.eigvalsh(matrix / size[:, None] / size)[0] >= -1e-14, odometry

@@ -13,7 +13,8 @@ import pytest
 
 pytest.importorskip("rclpy")
 
-from test.ros.conftest import environment, free_domain
+from test.ros.conftest import environment
+from werrimbi_odom.ros.domain import free_domain
 
 GOOD = """\
 odom_node:

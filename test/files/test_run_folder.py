@@ -141,7 +141,7 @@ def test_what_was_not_measured_is_nan(tmp_path: Path) -> None:
         (TICKS + "0,1\n1,2\n", "ticks.csv, line 2: 2 cells under 3 columns"),
         (FINE + "0.2,,6\n", "ticks.csv, line 4, column left_ticks: it is empty; write nan where"),
         (FINE + '0.2,5,""\n', "ticks.csv, line 4, column right_ticks: it is empty"),
-        (FINE + "0.2,5,", "ticks.csv, line 4, column right_ticks: it is empty"),
+        (FINE + "0.2,5,\n", "ticks.csv, line 4, column right_ticks: it is empty"),
         (FINE + ",5,6\n", "ticks.csv, line 4, column t_s: it is empty; every row needs its time"),
         (FINE + "nan,5,6\n", "ticks.csv, line 4, column t_s: 'nan' is not a time"),
         (

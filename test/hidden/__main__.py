@@ -2,79 +2,225 @@
 # SPDX-License-Identifier: Apache-2.0
 """The proof on hidden effects: makes the sets, judges them, prints and writes the tables.
 
-    python -m test.hidden [make|judge|table] [--sample] [--only WORD] [--workers N]
+    python -m test.hidden [PART...] [--all] [--only WORD] [--workers N] [--start SEED]
 
+Parts: make, judge, survive, coverage, smallest, gaps, margins, table; all of them if none is given.
 It can be stopped at any time: what was made and judged stays, and the next call goes on from there.
-A result counts for the code of the diagnosis that it was made with; other code judges anew.
+Other code begins anew, on sets that nobody has seen: seeds are drawn from the code's digest.
 """
 
 from __future__ import annotations
 
 import argparse
 import os
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from test.hidden import plan
-from test.hidden.judge import Judged, append, judged, judgement, results
-from test.hidden.sets import ROOT, HiddenSet, cache, code_mark, make_all
-from test.hidden.table import page, show
+from test.hidden import coverage, history, judge, margins, plan, smallest, survive, table
+from test.hidden.judged import Judged, judgement
+from test.hidden.page import draw, page
+from test.hidden.plan import ALL, SAMPLE, Sizes
+from test.hidden.sets import ROOT, HiddenSet, make_all
+from test.hidden.tables import Table, show
+from test.hidden.work import Line, done, kept, mark, results_of
 
-CODE = tuple(f"werrimbi_odom/{name}" for name in ("model", "effects", "files", "inference"))
-"""What a verdict depends on; when it changes, sets are judged anew."""
-
-
-def results_file() -> Path:
-    """Where the results of the present code are kept."""
-    return cache() / "results" / f"{code_mark(*CODE)}.jsonl"
+PARTS = ("make", "judge", "survive", "coverage", "smallest", "gaps", "margins", "table")
 
 
-def judge_all(wanted: list[HiddenSet], workers: int, file: Path) -> None:
-    """Judge what is not judged yet, each as soon as it is done."""
-    known = {line.name for line in results(file)}
-    todo = [each for each in wanted if each.name not in known and each.path.exists()]
-    with ProcessPoolExecutor(workers) as pool:
-        jobs = {pool.submit(judged, each): each for each in todo}
-        for number, job in enumerate(as_completed(jobs), start=1):
-            line = job.result()
-            append(line, file)
-            _tell(number, len(todo), line)
+@dataclass(frozen=True)
+class Extent:
+    """How much of everything."""
+
+    sizes: Sizes
+    survive: int
+    """Sets."""
+    smallest: int
+    """Sessions for each effect."""
+    gaps: int
+    """Sets."""
+    margins: int
+    """Sets for each number."""
 
 
-def _tell(number: int, count: int, line: Judged) -> None:
-    found = ", ".join(line.found) or line.error
-    print(f"{number}/{count} {line.name}: {judgement(line)} ({line.verdict} {found})", flush=True)
+EVERYTHING = Extent(ALL, survive=100, smallest=8, gaps=200, margins=24)
+PART_OF_IT = Extent(SAMPLE, survive=12, smallest=1, gaps=40, margins=3)
+
+SECONDS = {
+    "make": 6.5,
+    "judge": 17.0,
+    "survive": 4.5,
+    "coverage": 3.0,
+    "smallest": 42.0,
+    "gaps": 4.5,
+    "margins": 4.5,
+}
+"""Of one idle core, for a task of each part."""
 
 
-def chosen(lines: list[Judged], wanted: list[HiddenSet]) -> list[Judged]:
-    """The last result of each wanted set, in the plan's order."""
-    last = {line.name: line for line in lines}
-    return [last[each.name] for each in wanted if each.name in last]
+@dataclass(frozen=True)
+class Work:
+    """A part: its tasks, by the keys of their results, and who does them."""
+
+    tasks: Mapping[str, Any]
+    by: Callable[[Any], Line]
+
+
+def works(
+    wanted: Sequence[HiddenSet], start: int, extent: Extent, only: str = ""
+) -> dict[str, Work]:
+    """All parts but making and telling; of tasks those whose key holds a word."""
+    all_of_it = {
+        "judge": Work({each.name: each for each in wanted}, judge.work),
+        "survive": Work(survive.tasks(wanted, extent.survive, start), survive.work),
+        "coverage": Work(coverage.tasks(wanted), coverage.work),
+        "smallest": Work(smallest.tasks(start, extent.smallest), smallest.work),
+        "gaps": Work(
+            {each.name: each for each in plan.evenly(wanted, extent.gaps, start)}, margins.gap
+        ),
+        "margins": Work(margins.tasks(wanted, extent.margins, start), margins.work),
+    }
+    return {
+        name: Work({key: task for key, task in part.tasks.items() if only in key}, part.by)
+        for name, part in all_of_it.items()
+    }
+
+
+def estimate(wanted: Sequence[HiddenSet], there: Mapping[str, Work], workers: int) -> list[str]:
+    """The plan in words, with what is left to do."""
+    missing = sum(not each.path.exists() for each in wanted)
+    counts = {"make": (missing, len(wanted))}
+    for name, part in there.items():
+        left = set(part.tasks) - set(kept(results_of(name)))
+        counts[name] = (len(left), len(part.tasks))
+    lines = [
+        f"{name:9} {left:5} of {planned:5} to do, {left * SECONDS[name] / 60.0:6.1f} min of a core"
+        for name, (left, planned) in counts.items()
+    ]
+    total = sum(left * SECONDS[name] for name, (left, _) in counts.items()) / 60.0
+    return [*lines, f"in all about {total / workers:.0f} min on {workers} idle cores"]
+
+
+def judged_lines(wanted: Sequence[HiddenSet]) -> list[Judged]:
+    """What was judged of the wanted sets, in the plan's order."""
+    there = kept(results_of("judge"))
+    return [Judged.of(there[each.name]) for each in wanted if each.name in there]
+
+
+def tell(key: str, line: Line, part: str, count: str) -> None:
+    """One line on the terminal for each result."""
+    words = ""
+    if part == "judge":
+        judged = Judged.of(line)
+        path = " > ".join(judged.verdicts) or judged.error
+        words = f": {judgement(judged)} ({path}; ends {judged.ended})"
+    print(f"{part} {count} {key}{words}", flush=True)
+
+
+def all_tables(wanted: Sequence[HiddenSet], there: Mapping[str, Work]) -> list[Table]:
+    """Of what was done; results of tasks that are no longer wanted are left out."""
+    lines = judged_lines(wanted)
+    own = {name: _own(name, part) for name, part in there.items()}
+    scores = coverage.scores(lines, wanted, own["coverage"])
+    made = [
+        *table.tables(lines),
+        *survive.tables(lines, own["survive"]),
+        coverage.table(scores),
+        coverage.rank_table(scores),
+        smallest.table(own["smallest"]),
+        *margins.tables(lines, own["gaps"]),
+        margins.table(lines, own["margins"]),
+    ]
+    return [each for each in made if each.rows]
+
+
+def _own(name: str, part: Work) -> dict[str, Line]:
+    return {key: line for key, line in kept(results_of(name)).items() if key in part.tasks}
+
+
+def pictures(
+    wanted: Sequence[HiddenSet], there: Mapping[str, Work], folder: Path
+) -> list[tuple[str, str]]:
+    """Drawn to a folder."""
+    lines = judged_lines(wanted)
+    scores = coverage.scores(lines, wanted, _own("coverage", there["coverage"]))
+    found = smallest.ratios(_own("smallest", there["smallest"]))
+    sure = margins.constants().get("SURE", 1e-3)
+    return draw(scores, found, *margins.sureness(lines), sure, folder)
+
+
+def extent_wanted(whole: bool) -> Extent:
+    """All of it, or what an hour is enough for; ALL=1 says the same as --all."""
+    return EVERYTHING if whole or os.environ.get("ALL") == "1" else PART_OF_IT
 
 
 def main() -> None:
     """See above."""
-    parser = argparse.ArgumentParser(prog="python -m test.hidden", description=__doc__)
-    parser.add_argument("what", nargs="?", choices=("make", "judge", "table", "all"), default="all")
-    parser.add_argument("--sample", action="store_true", help="some of each kind")
-    parser.add_argument("--only", default="", help="sets whose name holds this")
+    parser = argparse.ArgumentParser(
+        prog="python -m test.hidden",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    parser.add_argument("parts", nargs="*", metavar="PART", help=", ".join(PARTS))
+    parser.add_argument("--all", action="store_true", help="all sets, not some of each kind")
+    parser.add_argument("--only", default="", help="sets whose name holds this; nothing is written")
     parser.add_argument("--workers", type=int, default=os.cpu_count() or 1)
+    parser.add_argument("--start", type=int, help="of the seeds; 0: those that were judged before")
     parser.add_argument("--docs", type=Path, default=ROOT / "docs" / "evidence.md")
     arguments = parser.parse_args()
-    everything = plan.sample() if arguments.sample else plan.everything()
+    unknown = set(arguments.parts) - set(PARTS)
+    if unknown:
+        parser.error(f"no part {', '.join(sorted(unknown))}; there are {', '.join(PARTS)}")
+    parts = arguments.parts or PARTS
+    extent = extent_wanted(arguments.all)
+    start = plan.start_of(mark()) if arguments.start is None else arguments.start
+    everything = plan.plan(start, extent.sizes)
     wanted = [each for each in everything if arguments.only in each.name]
-    file = results_file()
-    if arguments.what in ("make", "all"):
+    there = works(wanted, start, extent, arguments.only)
+    print(f"code {mark()}, seeds from {start} on")
+    print("\n".join(estimate(wanted, there, arguments.workers)), flush=True)
+    if "make" in parts:
         for each in make_all(wanted, arguments.workers):
             print(f"made {each.name}", flush=True)
-    if arguments.what in ("judge", "all"):
-        judge_all(wanted, arguments.workers, file)
+    # A robot that the engine cannot hold is left out.
+    there = works([each for each in wanted if each.path.exists()], start, extent, arguments.only)
+    for name, part in there.items():
+        if name in parts:
+            results = done(results_of(name), part.tasks, part.by, arguments.workers)
+            for number, (key, line) in enumerate(results, start=1):
+                tell(key, line, name, f"{number}/{len(part.tasks)}")
+    if "table" in parts:
+        write(wanted, there, start, arguments.docs, whole=not arguments.only)
+
+
+def write(
+    wanted: Sequence[HiddenSet], there: Mapping[str, Work], start: int, docs: Path, *, whole: bool
+) -> None:
+    """Tables on the terminal; where all that was planned is wanted, the page and its history."""
     from rich.console import Console
 
-    lines = chosen(list(results(file)), wanted)
-    show(lines, Console(width=200).print)
-    if not arguments.sample and not arguments.only:
-        arguments.docs.write_text(page(lines, len(wanted)), encoding="utf-8")
+    made = all_tables(wanted, there)
+    show(made, Console(width=200).print)
+    lines = judged_lines(wanted)
+    if not whole or not lines:
+        return
+    entry = history.entry_of(lines, mark(), start)
+    kept_in = docs.with_name("evidence_history.jsonl")
+    # A line of the history is for good: not before every set is judged that the engine could make.
+    complete = len(lines) == sum(each.path.exists() for each in wanted)
+    entries = history.append(entry, kept_in) if complete else history.read(kept_in)
+    text = page(
+        [*made, history.table(entries)],
+        pictures(wanted, there, docs.parent / "pictures"),
+        how=" --all" if len(wanted) == len(plan.plan(start, ALL)) else "",
+        judged=len(lines),
+        planned=len(wanted),
+        commit=entry["commit"],
+        digest=mark(),
+        fresh=bool(start),
+    )
+    docs.write_text(text, encoding="utf-8")
 
 
 if __name__ == "__main__":

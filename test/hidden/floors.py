@@ -13,16 +13,16 @@ from dataclasses import replace
 from test.hidden.right_laws import RIGHT_LAWS
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.diagnosis.candidates import (
+from werrimbi_odom.inference.diagnosis.holdout import Judge, judge_of
+from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     candidates,
     knobs_of_candidate,
     put_in,
     scores,
 )
-from werrimbi_odom.inference.diagnosis.holdout import Judge, judge_of
-from werrimbi_odom.inference.diagnosis.search import first_fit
-from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match_finely

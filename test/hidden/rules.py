@@ -7,16 +7,18 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
-from test.hidden.judge import Judged, is_right, judgement
+from test.hidden import rest
+from test.hidden.judged import (
+    NEAR_THE_FLOOR,
+    Judged,
+    both_matter,
+    is_right,
+    judgement,
+    matters,
+)
 from test.hidden.plan import CALIBRATION
 from test.hidden.right_laws import DEPENDS_ON
 from werrimbi_odom.effects import find
-
-MATTERS = 1.1
-"""An effect matters when it raises the held-out error by more than a tenth."""
-
-NEAR_THE_FLOOR = 1.25
-"""What is found brings the held-out error to within this of the best that can be had."""
 
 
 @dataclass(frozen=True)
@@ -24,6 +26,8 @@ class Rule:
     """Of the sets that a rule speaks of, at least a share must do as it says."""
 
     says: str
+    short: str
+    """For the head of a column."""
     needed: float
     speaks_of: Callable[[Judged], bool]
     holds: Callable[[Judged], bool]
@@ -40,18 +44,6 @@ class Rule:
         """Of sets that do as it says; nan where it speaks of none."""
         there = self.of(lines)
         return 1.0 - len(self.broken_by(there)) / len(there) if there else float("nan")
-
-
-def matters(line: Judged) -> bool:
-    """Whether what is hidden raises the held-out error by more than a tenth."""
-    return line.raised > MATTERS
-
-
-def both_matter(line: Judged) -> bool:
-    """Whether each of several hidden effects does, the others being in the model."""
-    return bool(line.without) and all(
-        line.floor is not None and each > MATTERS * line.floor for each in line.without
-    )
 
 
 def both_found(line: Judged) -> bool:
@@ -106,29 +98,33 @@ def _as_good_as_nothing(line: Judged) -> bool:
 
 
 RULES = (
-    Rule("an effect that matters is named first (twins: both)", 0.95, _strong, is_right),
+    Rule("an effect that matters is named first (twins: both)", "named", 0.95, _strong, is_right),
     Rule(
         "a weak effect gets its own name or none",
+        "weak",
         0.95,
         _weak,
         lambda line: judgement(line) != "wrong",
     ),
-    Rule("once added, the error is near the floor", 0.95, _strong, near_the_floor),
-    Rule("nothing hidden: none", 0.95, of_group("clean"), is_right),
+    Rule("once added, the error is near the floor", "floor", 0.95, _strong, near_the_floor),
+    Rule("nothing hidden: none", "clean", 0.95, of_group("clean"), is_right),
     Rule(
         "calibration alone is named as calibration",
+        "calibration",
         0.95,
         of_group("calibration"),
         plainly_calibration,
     ),
     Rule(
         "two effects that both matter are both found",
+        "pairs",
         0.90,
         lambda line: line.group == "pair" and both_matter(line),
         both_found,
     ),
     Rule(
         "of two effects none gets a wrong name",
+        "pairs, names",
         0.90,
         of_group("pair"),
         lambda line: (
@@ -139,59 +135,101 @@ RULES = (
     ),
     Rule(
         "rivals by construction: ambiguous, the hidden one among them",
+        "rivals",
         1.0,
         of_group("rivals"),
         lambda line: judgement(line) == "ambiguous" and line.next_manoeuvre is not None,
     ),
     Rule(
         "... and the proposed manoeuvre, driven, resolves them",
+        "resolved",
         1.0,
         of_group("rivals"),
         lambda line: line.resolved == ("named", *line.hidden),
     ),
     Rule(
         "what is outside the library is unknown",
+        "outside",
         0.90,
         lambda line: line.group == "outsider" and matters(line),
         is_right,
     ),
     Rule(
         "unknown, it depends on the right variable",
+        "variable",
         0.90,
         lambda line: line.group == "outsider" and line.verdict == "unknown",
         right_variable,
     ),
     Rule(
         "its draft brings the error halfway to the floor",
+        "draft",
         0.80,
         lambda line: line.group == "outsider" and line.verdict == "unknown",
         halfway,
     ),
-    Rule("its right law, written by hand, reaches the floor", 0.95, _own_law, _as_good_as_nothing),
-    Rule("a set-up mistake is named", 1.0, of_group("mistake"), lambda line: named_mistake(line)),
+    Rule(
+        "its right law, written by hand, reaches the floor",
+        "right law",
+        0.95,
+        _own_law,
+        _as_good_as_nothing,
+    ),
+    Rule(
+        "a set-up mistake is named",
+        "mistakes",
+        1.0,
+        of_group("mistake"),
+        lambda line: named_mistake(line),
+    ),
     Rule(
         "a simple factor is named as such",
+        "factors",
         1.0,
         of_group("factor"),
         lambda line: is_right(line) and line.factor is not None,
     ),
     Rule(
         "another engine set-up: what matters is named first, nothing is none",
+        "other",
         0.90,
         lambda line: line.group == "other" and (not line.hidden or matters(line)),
         is_right,
     ),
     Rule(
         "another engine set-up: no wrong name",
+        "other, weak",
         0.95,
         lambda line: line.group == "other" and bool(line.hidden) and not matters(line),
         lambda line: judgement(line) != "wrong",
     ),
     Rule(
         "a poorer reference never makes a wrong name",
+        "poorer",
         0.95,
         of_group("poorer"),
         lambda line: judgement(line) != "wrong",
+    ),
+    Rule(
+        "the printed commands, followed, come to rest",
+        "rest",
+        0.95,
+        lambda line: bool(line.verdicts),
+        rest.at_rest,
+    ),
+    Rule(
+        "... at the truth, where it matters, in no more steps than effects",
+        "truth",
+        0.95,
+        rest.counts,
+        lambda line: rest.at_the_truth(line) and rest.without_detour(line),
+    ),
+    Rule(
+        "at rest at none, compare finds nothing systematic either",
+        "compare",
+        0.90,
+        lambda line: line.ended == "none",
+        lambda line: line.mean_is_right is True,
     ),
 )
 

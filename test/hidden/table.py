@@ -6,42 +6,32 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 from statistics import median
 
-from test.hidden.judge import Judged, is_right, judgement
+from test.hidden import rest
+from test.hidden.intervals import between
+from test.hidden.judged import Judged, is_right, judgement, matters
 from test.hidden.plan import EFFECTS, OUTSIDERS
 from test.hidden.poorer import POORER
-from test.hidden.rules import RULES, both_found, halfway, matters, right_variable
+from test.hidden.rules import RULES, both_found, halfway, right_variable
+from test.hidden.tables import Table
 from werrimbi_odom.simulation.hidden import find as hideable
-
-
-@dataclass(frozen=True)
-class Table:
-    """A title, what the columns are, and rows of cells."""
-
-    title: str
-    columns: tuple[str, ...]
-    rows: tuple[tuple[str, ...], ...]
-
-    def markdown(self) -> str:
-        """For the docs."""
-        head = [self.columns, tuple("---" for _ in self.columns)]
-        lines = ["| " + " | ".join(row) + " |" for row in (*head, *self.rows)]
-        return "\n".join([f"## {self.title}", "", *lines, ""])
 
 
 def tables(lines: Sequence[Judged]) -> list[Table]:
     """All tables that there are lines for."""
     made = [
         rules(lines),
+        rest.table(lines),
         of_effects("Each effect of the vocabulary", lines, "effect"),
         of_others(lines),
         of_outsiders(lines),
         of_pairs(lines),
         of_effects("Another engine set-up", lines, "other"),
         of_poorer(lines),
+        wrong(lines),
+        rest.astray(lines),
     ]
     return [table for table in made if table.rows]
 
@@ -56,8 +46,10 @@ def rules(lines: Sequence[Judged]) -> Table:
             share = rule.share(lines)
             verdict = "kept" if share >= rule.needed else "BROKEN"
             kept_of = f"{kept} of {len(there)}"
-            rows.append((rule.says, kept_of, f"{share:.0%}", f"{rule.needed:.0%}", verdict))
-    return Table("Rules", ("rule", "sets", "share", "needed", ""), tuple(rows))
+            row = (rule.says, kept_of, f"{share:.1%}", between(kept, len(there)))
+            rows.append((*row, f"{rule.needed:.0%}", verdict))
+    columns = ("rule", "sets", "share", "95 % interval", "needed", "")
+    return Table("Rules", columns, tuple(rows))
 
 
 def of_effects(title: str, lines: Sequence[Judged], group: str) -> Table:
@@ -249,47 +241,18 @@ def _mm(values: Iterable[float | None]) -> str:
     return f"{1e3 * median(there):.2f}" if there else ""
 
 
-def show(lines: Sequence[Judged], write: Callable[[object], None]) -> None:
-    """On the terminal."""
-    from rich.table import Table as Shown
-
-    for table in tables(lines):
-        shown = Shown(*table.columns, title=table.title, title_justify="left")
-        for row in table.rows:
-            shown.add_row(*row)
-        write(shown)
-
-
-def page(lines: Sequence[Judged], planned: int) -> str:
-    """docs/evidence.md."""
-    commits = Counter(line.commit for line in lines)
-    from_commits = ", ".join(f"`{commit}` ({count} sets)" for commit, count in commits.items())
-    wrong = [line for line in lines if judgement(line) == "wrong"]
-    head = f"""# Evidence: effects hidden by a physics engine, and what the diagnosis made of them
-
-Made by `make evidence` (`python -m test.hidden`); {len(lines)} of {planned} sets judged, with the
-code of {from_commits}. Written by the program: change nothing by hand.
-
-Every set is a robot in a physics engine with something hidden in it, seven drives to learn from
-and four held out. The diagnosis is given the robot file and the runs; the hidden name reaches only
-the comparison. Errors are root mean squares of the position error of held-out legs of 1 m, medians
-over the sets. *Before*: the robot file as it was. *After*: with the effect that was named first
-added, or as it was where none was named. *Floor*: the model with the true effect, fitted on the
-train runs. A hidden effect *matters* when before is more than 1.1 times the floor. *Wrong*: another
-name, or `unknown` for an effect that the library holds.
-"""
-    parts = [head, *(table.markdown() for table in tables(lines))]
-    if wrong:
-        rows = [
-            (
-                f"`{line.name}`",
-                line.verdict,
-                ", ".join(line.found) or line.error.replace("|", "/"),
-                ", ".join(line.rivals),
-                f"{line.raised:.2f}" if math.isfinite(line.raised) else "",
-            )
-            for line in wrong
-        ]
-        columns = ("set", "verdict", "found", "rivals", "error raised by")
-        parts.append(Table("All wrong verdicts", columns, tuple(rows)).markdown())
-    return "\n".join(parts)
+def wrong(lines: Sequence[Judged]) -> Table:
+    """All wrong verdicts, whatever the group."""
+    rows = [
+        (
+            f"`{line.name}`",
+            line.verdict,
+            ", ".join(line.found) or line.error.replace("|", "/"),
+            ", ".join(line.rivals),
+            f"{line.raised:.2f}" if math.isfinite(line.raised) else "",
+        )
+        for line in lines
+        if judgement(line) == "wrong"
+    ]
+    columns = ("set", "verdict", "found", "rivals", "error raised by")
+    return Table("All wrong verdicts", columns, tuple(rows))

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The whole proof: every rule over all hidden sets. Hours: `make evidence`."""
+"""The whole proof: every rule over fresh hidden sets. Long: `make evidence`, or ALL=1 with it."""
 
 from __future__ import annotations
 
@@ -10,10 +10,11 @@ from collections.abc import Sequence
 import pytest
 
 from test.hidden import plan
-from test.hidden.__main__ import chosen, judge_all, results_file
-from test.hidden.judge import Judged, results
+from test.hidden.__main__ import extent_wanted, judged_lines, works
+from test.hidden.judged import Judged
 from test.hidden.rules import RULES, Rule
 from test.hidden.sets import make_all
+from test.hidden.work import done, mark, results_of
 
 pytestmark = pytest.mark.evidence
 
@@ -21,11 +22,15 @@ pytestmark = pytest.mark.evidence
 @pytest.fixture(scope="module")
 def lines() -> Sequence[Judged]:
     """All results; what is not there yet is made now."""
-    wanted, workers = plan.everything(), os.cpu_count() or 1
+    extent, start, workers = extent_wanted(False), plan.start_of(mark()), os.cpu_count() or 1
+    wanted = plan.plan(start, extent.sizes)
     for _ in make_all(wanted, workers):
         pass
-    judge_all(wanted, workers, results_file())
-    return chosen(list(results(results_file())), wanted)
+    there = [each for each in wanted if each.path.exists()]
+    part = works(there, start, extent)["judge"]
+    for _ in done(results_of("judge"), part.tasks, part.by, workers):
+        pass
+    return judged_lines(there)
 
 
 @pytest.mark.parametrize("rule", RULES, ids=[rule.says for rule in RULES])
@@ -33,7 +38,7 @@ def test_rule(lines: Sequence[Judged], rule: Rule) -> None:
     there = rule.of(lines)
     assert there, "no set that the rule speaks of"
     broken = "\n".join(
-        f"  {line.name}: {line.verdict} {line.found or line.error} rivals {line.rivals}"
+        f"  {line.name}: {' > '.join(line.verdicts)} {line.error} ends {line.ended}"
         for line in rule.broken_by(lines)
     )
     assert rule.share(lines) >= rule.needed, f"of {len(there)} sets otherwise:\n{broken}"

@@ -14,7 +14,9 @@ from multiprocessing import get_context
 
 import pytest
 
-from test.hidden.judge import Judged, judged
+from test.hidden.judge import judged
+from test.hidden.judged import Judged
+from test.hidden.rest import at_the_truth, without_detour
 from test.hidden.rules import named_mistake, plainly_calibration
 from test.hidden.sets import HiddenSet
 
@@ -56,6 +58,9 @@ def test_an_effect_is_named_and_adding_it_reaches_the_floor(
     assert line.added is not None
     assert line.floor is not None
     assert line.added < 1.25 * line.floor
+    assert at_the_truth(line), "the printed commands, followed to the end"
+    assert without_detour(line)
+    assert line.mean_is_right, "compare agrees with the diagnosis"
 
 
 def test_where_nothing_is_hidden_nothing_is_found(lines: dict[HiddenSet, Judged]) -> None:

@@ -39,7 +39,7 @@ def test_the_size_is_found_within_its_error(creep: Added) -> None:
 def test_the_held_out_error_falls_to_the_noise(creep: Added) -> None:
     assert creep.objection is None
     assert creep.holdout.sides.after < 0.8 * creep.holdout.sides.before
-    assert creep.holdout.sides.after < 1.25 * creep.holdout.floor
+    assert creep.holdout.sides.after < 1.25 * creep.noise_alone(creep.holdout)
 
 
 def test_words_and_json_tell_the_same(creep: Added) -> None:

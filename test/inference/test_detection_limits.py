@@ -12,7 +12,7 @@ from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.chances import chi2_above, noncentrality
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely

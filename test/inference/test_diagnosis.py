@@ -14,11 +14,11 @@ import pytest
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.diagnosis.candidates import candidates, scores
 from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS, Amount, legs_pushed, pushes_of
-from werrimbi_odom.inference.diagnosis.holdout import set_aside
 from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.support import support_of
+from werrimbi_odom.inference.fitting.candidates import candidates, scores
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, path_of, predict, predict_all
@@ -183,16 +183,43 @@ def test_what_an_effect_looks_at_and_acts_on_is_found_by_trying_it(laid: Togethe
     assert "left_speed" in missed.inputs
 
 
-def test_runs_set_aside_are_not_fitted_on() -> None:
+def test_what_is_set_aside_is_not_fitted_on() -> None:
+    """A quarter of every drive's reference; the counters run on through it."""
     time = np.linspace(0.0, 60.0, 601)
     ticks = Ticks(time, np.arange(601), np.arange(601))
     seen = Reference(time, time, time, time)
+    runs = [Run(f"run_{number}", Path(f"run_{number}"), ticks, seen) for number in range(3)]
+    fitted, kept = set_aside(runs)
+    assert [run.name for run in fitted] == [run.name for run in kept] == [run.name for run in runs]
+    for run, other in zip(fitted, kept, strict=True):
+        assert run.reference is not None
+        assert other.reference is not None
+        assert not set(run.reference.time) & set(other.reference.time)
+        assert other.reference.time.size == pytest.approx(150, abs=2)
+        assert run.ticks.rows == other.ticks.rows == 601
+
+
+def test_no_leg_spans_what_is_set_aside(runs: list[Any]) -> None:
+    fitted, kept = set_aside(runs)
+    for side in (fitted, kept):
+        for run in side:
+            matched = match(run, ROBOT, 0.25, turn=0.4)
+            ends = matched.measured.time
+            for begin, end in run.taken_out:
+                spans = (ends[:-1] < end - 1e-9) & (ends[1:] > begin + 1e-9)
+                assert matched.gap[spans].all()
+            assert not matched.record.left_out
+            usual = np.diff(ends)[~matched.gap].max()
+            assert usual < 4.0
+
+
+def test_few_poses_put_whole_drives_aside() -> None:
+    time = np.linspace(0.0, 60.0, 601)
+    ticks = Ticks(time, np.arange(601), np.arange(601))
+    seen = Reference(*(np.array([0.0, 60.0]) for _ in range(4)))
     runs = [Run(f"run_{number}", Path(f"run_{number}"), ticks, seen) for number in range(3)]
     fitted, kept = set_aside(runs)
     assert len(fitted) + len(kept) == len(runs)
     assert not {run.name for run in fitted} & {run.name for run in kept}
     (first,), (last,) = set_aside(runs[:1])
     assert first.ticks.time[-1] < last.ticks.time[0]
-    assert last.ticks.rows == pytest.approx(150, abs=2)
-    assert last.reference is not None
-    assert last.reference.time[0] >= 45.0

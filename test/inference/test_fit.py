@@ -123,6 +123,33 @@ def test_positions_alone_calibrate_too() -> None:
         assert abs(fit.point.model.value(knob) - TRUTH[knob.name]) < 4.0 * spread[index]
 
 
+def headings_alone(runs: list[Any]) -> list[Any]:
+    for run in runs:
+        run.reference.x[:] = run.reference.y[:] = np.nan
+    return runs
+
+
+@pytest.mark.parametrize("kind", ["absolute", "incremental"])
+def test_headings_alone_hold_two_numbers(kind: ReferenceKind) -> None:
+    """The right and the left radius over the base; both radii keep their mean as given."""
+    given = replace(NOMINAL, left_wheel_radius_multiplier=1.02, right_wheel_radius_multiplier=1.03)
+    matched = [match(run, given, 0.25) for run in headings_alone(runs_of(8))]
+    fit = fit_model(matched, start_point(matched, given), kind)
+    assert (fit.numbers, fit.held) == (2, ("wheel_radius_scale",))
+    base, left, right = (getattr(fit.robot, name) for name in list(TRUTH)[:3])
+    assert left * right == pytest.approx(1.02 * 1.03, rel=1e-6)
+    # Of the three values only two move independently.
+    assert np.linalg.matrix_rank(fit.covariance, tol=1e-12) == 2
+    for side, value in (("left", left), ("right", right)):
+        index = [knob.name for knob in fit.free].index(f"{side}_wheel_radius_multiplier")
+        row = np.zeros(3)
+        row[index], row[0] = 1.0 / value, -1.0 / base
+        std = float(np.sqrt(row @ fit.covariance @ row))
+        true = TRUTH[f"{side}_wheel_radius_multiplier"] / TRUTH["wheel_separation_multiplier"]
+        assert abs(np.log(value / base) - np.log(true)) < 4.0 * std
+        assert std < 2e-3
+
+
 def test_an_incremental_reference_calibrates_too() -> None:
     """A scan matcher's pose drifts, but its steps are good."""
     random = np.random.default_rng(21)
@@ -130,8 +157,8 @@ def test_an_incremental_reference_calibrates_too() -> None:
     for run in runs:
         reference = run.reference
         drift = np.cumsum(1e-3 * random.standard_normal((2, reference.time.size)), axis=1)
-        reference.x += drift[0]
-        reference.y += drift[1]
+        reference.x[:] += drift[0]
+        reference.y[:] += drift[1]
     matched = [match(run, NOMINAL, 0.25) for run in runs]
     fit = fit_model(matched, start_point(matched, NOMINAL), "incremental")
     for index, knob in enumerate(fit.free):
@@ -149,8 +176,8 @@ def test_a_missing_effect_shows_as_a_dependence() -> None:
     """The reference measures a point 3 cm to the left of the axle's middle: turns displace it."""
     runs = runs_of(2)
     for run in runs:
-        run.reference.x -= 0.03 * np.sin(run.reference.yaw)
-        run.reference.y += 0.03 * np.cos(run.reference.yaw)
+        run.reference.x[:] -= 0.03 * np.sin(run.reference.yaw)
+        run.reference.y[:] += 0.03 * np.cos(run.reference.yaw)
     matched = [match(run, NOMINAL, 0.25) for run in runs]
     fit = fit_model(matched, start_point(matched, NOMINAL))
     strongest = dependences(together(matched), fit.point, "absolute", CALIBRATION)[0]

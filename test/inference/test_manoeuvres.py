@@ -14,8 +14,8 @@ import werrimbi_odom.simulation as simulation
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.diagnosis.candidates import Candidate
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.fitting.candidates import Candidate
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.prediction import legs_shown
 from werrimbi_odom.inference.fitting.together import together

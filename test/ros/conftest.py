@@ -8,18 +8,16 @@ publishes to the node and keeps whatever the node publishes.
 
 from __future__ import annotations
 
-import fcntl
 import json
 import os
 import signal
 import subprocess
 import sys
-import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any
 
 import pytest
 
@@ -38,6 +36,8 @@ from sensor_msgs.msg import JointState  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 from visualization_msgs.msg import MarkerArray  # noqa: E402
 
+from werrimbi_odom.ros.domain import free_domain  # noqa: E402
+
 ROOT = Path(__file__).parents[2]
 
 DEEP = {"reliability": "reliable", "depth": 10_000}
@@ -55,20 +55,6 @@ ROBOT: dict[str, Any] = {
     },
 }
 """The robot of most tests; unequal encoders, so that left and right are never mistaken."""
-
-
-def free_domain() -> tuple[int, TextIO]:
-    """A ROS domain that no other test on this machine uses while the file stays open."""
-    for domain in range(1, 102):
-        path = Path(tempfile.gettempdir()) / f"werrimbi_odom_ros_domain_{domain}"
-        lock = path.open("a", encoding="ascii")
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            lock.close()
-        else:
-            return domain, lock
-    raise RuntimeError("all ROS domains are in use")
 
 
 def environment(domain: int, log: Path) -> dict[str, str]:

@@ -14,6 +14,8 @@ from scipy import stats
 pytest.importorskip("rclpy")
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.inference.comparison.consistency import chi_squared_quantile
+from werrimbi_odom.inference.rules import HONEST_CHANCE as ALARM
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Pose
@@ -21,7 +23,7 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError
 from werrimbi_odom.ros.compare_track import OdometryTrack, Reading
-from werrimbi_odom.ros.compare_window import ALARM, Window, chi_squared_quantile
+from werrimbi_odom.ros.compare_window import Window
 
 TRUE = WhiteNoiseRobot()
 SIGMA_XY, SIGMA_YAW = 1e-3, 2e-3

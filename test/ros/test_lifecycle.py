@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 import signal
 import subprocess
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -140,3 +141,23 @@ def test_the_transform_goes_out_where_tf2_ros_is(
     assert (translation.x, translation.y, translation.z) == (position.x, position.y, 0.0)
     assert sent[-1].transform.rotation == message.pose.pose.orientation
     assert not math.isclose(position.x, 0.0)
+
+
+@pytest.mark.parametrize("node", ["odom_node", "compare_node"])
+def test_what_is_no_argument_of_ros_is_told(node: str) -> None:
+    """Where rclpy leaves it unread: a parameter file that nobody reads costs an afternoon."""
+
+    def run(*words: str) -> subprocess.CompletedProcess[str]:
+        command = [sys.executable, "-m", f"werrimbi_odom.ros.{node}", *words]
+        return subprocess.run(command, capture_output=True, text=True, check=False, timeout=30.0)
+
+    asked = run("--help")
+    assert asked.returncode == 0, asked.stderr
+    assert asked.stdout.startswith(f"{node} --ros-args [--params-file FILE.yaml]")
+    assert not asked.stderr
+    lost = run("--params-file", "robot.yaml")
+    assert lost.returncode == 2
+    assert lost.stderr.startswith(
+        f"{node}: --params-file is unknown, or must come after --ros-args: {node} --ros-args"
+    )
+    assert lost.stderr.count("\n") == 1

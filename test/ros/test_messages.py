@@ -14,7 +14,9 @@ pytest.importorskip("rclpy")
 
 from builtin_interfaces.msg import Time
 
+from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.odometer import Odometer
+from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros.messages import OdometryMessage
 from werrimbi_odom.ros.status import length_in_words, sigmas_of_robot
@@ -55,6 +57,29 @@ def test_matrices_are_symmetric_and_semi_definite_for_any_robot_and_drive(
                 size = np.sqrt(np.where(matrix.diagonal() > 0.0, matrix.diagonal(), 1.0))
                 assert np.linalg.eigvalsh(matrix / np.outer(size, size))[0] >= -1e-14
                 assert np.linalg.eigvalsh(matrix)[0] >= -1e-14 * matrix.max()
+
+
+def test_far_away_and_back_with_a_heading_that_nobody_knows() -> None:
+    """Squares of the way cancel, and leave rounding of either sign in the place of a variance."""
+    odometer = Odometer(ROBOTS["no_noise"])
+    message = OdometryMessage("odom", "base_link")
+    odometer.update(0.0, 0, 0)
+    negative, time = 0, 0.0
+    for turns in range(1, 60):
+        odometer.set_pose(Pose(), PoseCovariance(0.0, 0.0, 0.0, 0.0, 0.0, 1e6))
+        far = 12_345_678_901 * turns
+        for at in (0.0, 0.3, 1.0, 0.7, 0.2, 0.0):
+            time += 10.0
+            estimate = odometer.update(time, round(at * far), round(at * 1.0001 * far))
+            assert estimate is not None
+            negative += min(estimate.covariance.xx, estimate.covariance.yy) < 0.0
+            odometry = message.filled(Time(), estimate)
+            matrix = np.asarray(odometry.pose.covariance).reshape(6, 6)
+            assert (matrix == matrix.T).all()
+            assert (matrix.diagonal() >= 0.0).all()
+            size = np.sqrt(np.where(matrix.diagonal() > 0.0, matrix.diagonal(), 1.0))
+            assert np.linalg.eigvalsh(matrix / size[:, None] / size)[0] >= -1e-14
+    assert negative, "nothing cancelled: this shows nothing"
 
 
 def test_a_heading_of_many_turns_is_a_unit_quaternion() -> None:

@@ -16,9 +16,9 @@ import rclpy
 from rclpy.context import Context
 from rclpy.parameter import Parameter
 
-from test.ros.conftest import free_domain
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.ros.domain import free_domain
 
 NUMBERS = st.one_of(
     st.floats(1e-3, 1e3).map(repr),

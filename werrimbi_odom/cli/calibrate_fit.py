@@ -15,9 +15,12 @@ from werrimbi_odom.cli.recordings import add_recording_arguments, read_recording
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
+    from werrimbi_odom.files.asked import Recordings
     from werrimbi_odom.files.robot_file import RobotFile
+    from werrimbi_odom.files.run import Run
     from werrimbi_odom.inference.calibration.any_driving import Calibration
     from werrimbi_odom.inference.legs.cutting import MatchedRun
+    from werrimbi_odom.inference.legs.gaps import LeftOut
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -37,8 +40,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Calibrate; 0 on success."""
     from werrimbi_odom.inference.calibration.any_driving import calibrate
-    from werrimbi_odom.inference.legs.cutting import match, match_finely, stated
+    from werrimbi_odom.inference.legs.cutting import match_finely, stated
     from werrimbi_odom.report.calibration.fit_words import fit_in_words
+    from werrimbi_odom.report.left_out import left_out_json, left_out_words
+    from werrimbi_odom.report.printed import filled
 
     given = read_recordings(arguments)
     source, how = given.source, given.how
@@ -50,12 +55,15 @@ def run(arguments: argparse.Namespace) -> int:
         sigma_xy=how.sigma_xy or stated(runs, "sigma_xy"),
         sigma_yaw=how.sigma_yaw or stated(runs, "sigma_yaw"),
     )
-    words = fit_in_words(result)
+    left_out = _left_out(given, runs, result)
+    words = "\n\n".join([fit_in_words(result), *map(filled, left_out_words(left_out))])
     print(words)
     figures = _json(result)
+    figures["left_out"] = left_out_json(left_out)
+    figures["train"] = _judged(given.runs, given, result)
     if given.holdout:
-        held_out = [match(run, source.robot, how.leg, source.limits) for run in given.holdout]
-        figures["holdout"] = _judged(held_out, source, result)
+        figures["holdout"] = _judged(given.holdout, given, result)
+        print(f"\n{_told(figures['holdout'])}")
     changes = {name: item.value for name, item in result.multipliers.items() if item.determined}
     for name in ("left_wheel_noise", "right_wheel_noise"):
         if result.noises[name].determined:
@@ -88,29 +96,51 @@ def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) 
     )
 
 
-def _judged(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) -> dict[str, Any]:
-    """Errors over legs of runs that took no part, before and after; prints them."""
-    import numpy as np
+def _left_out(
+    given: Recordings, runs: Sequence[MatchedRun], result: Calibration
+) -> tuple[LeftOut, ...]:
+    """Gaps of the drives, and the short legs on which the reference jumped."""
+    from werrimbi_odom.inference.legs.gaps import LeftOut
 
-    from werrimbi_odom.inference.calibration.any_driving import errors_of_legs
+    found: list[LeftOut] = []
+    for run, matched, excluded in zip(given.runs, runs, result.excluded, strict=True):
+        found += matched.record.left_out
+        time = matched.measured.time.tolist()
+        jumped = (excluded & ~matched.gap).nonzero()[0].tolist()
+        found += [
+            LeftOut(run.path, time[leg], time[leg + 1], "reference", "it jumped") for leg in jumped
+        ]
+    return tuple(found)
 
-    headings: list[float | None] = [None] * len(runs)
-    figures: dict[str, Any] = {}
-    for word, robot in (("before", source.robot), ("after", result.robot)):
-        legs = errors_of_legs(robot, runs, headings)
-        errors = np.hypot(legs[:, 0], legs[:, 1])
-        errors = errors[np.isfinite(errors)]
-        if errors.size == 0:
-            print("held-out runs have no headings; legs cannot be judged one by one")
-            return figures
-        figures[word] = float(np.sqrt(np.mean(errors**2)))
-        figures[f"median_{word}"] = float(np.median(errors))
-    print(
-        f"\nheld-out legs, before and after: "
-        f"rms {1e3 * figures['before']:.2f} and {1e3 * figures['after']:.2f} mm, "
-        f"median {1e3 * figures['median_before']:.2f} and {1e3 * figures['median_after']:.2f} mm"
-    )
-    return figures
+
+def _judged(runs: Sequence[Run], given: Recordings, result: Calibration) -> dict[str, Any]:
+    """Errors over legs before and after, as every verb has them; NaN where not measured."""
+    from werrimbi_odom.inference.comparison.judged_legs import figures_of, prepare
+
+    prepared = prepare(runs, given.source.robot, **given.judging)
+    before, after = (figures_of(prepared, each) for each in (given.source.robot, result.robot))
+    return {
+        "before": before.rmse_position_m,
+        "after": after.rmse_position_m,
+        "median_before": before.median_position_m,
+        "median_after": after.median_position_m,
+        "rmse_yaw_rad": {"before": before.rmse_yaw_rad, "after": after.rmse_yaw_rad},
+    }
+
+
+def _told(figures: dict[str, Any]) -> str:
+    """Held-out errors in a line: of positions, or of headings where there are no others."""
+    import math
+
+    if math.isfinite(figures["before"]):
+        return (
+            f"held-out legs, before and after: "
+            f"rms {1e3 * figures['before']:.2f} and {1e3 * figures['after']:.2f} mm, "
+            f"median {1e3 * figures['median_before']:.2f} and "
+            f"{1e3 * figures['median_after']:.2f} mm"
+        )
+    yaw = (math.degrees(figures["rmse_yaw_rad"][when]) for when in ("before", "after"))
+    return "held-out legs, before and after: rms {:.2f}° and {:.2f}° in heading".format(*yaw)
 
 
 def _json(result: Calibration) -> dict[str, Any]:

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.cli.calibration_files import add_file_arguments, write_all
+from werrimbi_odom.cli.recordings import remark
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.report.calibration.noise_words import noise_in_words
 
     source = read_robot_file(arguments.robot)
+    remark(source)
     track = source.robot.track
     errors = _errors(arguments)
     pieces = out_and_back(arguments.distance, track, turn_round=arguments.turn_round)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.cli.calibration_files import add_file_arguments, write_all
+from werrimbi_odom.cli.recordings import remark
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ def run(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.report.calibration.umbmark_words import found_in_words, gained_in_words
 
     source = read_robot_file(arguments.robot)
+    remark(source)
     old = source.robot
     squares = _squares(arguments.results, source, old, arguments)
     result = umbmark(squares, old)

@@ -5,10 +5,10 @@
 from __future__ import annotations
 
 import argparse
-import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from werrimbi_odom.cli.commands import command
 from werrimbi_odom.cli.diagnose_fleet import add_fleet_arguments, refuse_mixing, run_fleet
 from werrimbi_odom.cli.json_file import write_json
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from werrimbi_odom.report.diagnosis.words import NextSteps, Told
 
 HELP = "which physical effect is missing, how sure that is, and what to do about it"
-
-_LONG = 300  # letters of a command that is worth printing whole
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -80,52 +78,13 @@ def _steps(arguments: argparse.Namespace) -> NextSteps:
     """The commands that follow, for the same files."""
     from werrimbi_odom.report.diagnosis.words import NextSteps
 
-    same = ["--robot", str(arguments.robot)]
-    for option in ("reference_kind", "leg", "ticks_topic", "reference_topic"):
-        value = getattr(arguments, option)
-        if value not in (None, "absolute", 1.0):
-            same += [f"--{option.replace('_', '-')}", f"{value:g}" if option == "leg" else value]
-    for option in ("reference_sigma_xy", "reference_sigma_yaw"):
-        value = getattr(arguments, option)
-        if value is not None:
-            same += [f"--{option.replace('_', '-')}", f"{value:g}"]
-    for file in arguments.effects:
-        same += ["--effects", str(file)]
-    runs = [str(path) for path in arguments.runs]
-    holdout = [str(path) for path in arguments.holdout]
     new = Path(arguments.robot)
     better = str(new.with_name(f"{new.stem}_better{new.suffix}"))
     return NextSteps(
-        add=_command(["werrimbi", "add", "EFFECT"], same, runs, holdout, better).replace(
-            "EFFECT", "{effect}", 1
-        ),
-        draft=_command(["werrimbi", "draft"], same, runs, [], "my_effect"),
+        add=lambda names: command(["add", ",".join(names)], arguments, out=better),
+        draft=command(["draft"], arguments, out="my_effect"),
         diagnose="werrimbi diagnose",
     )
-
-
-def _command(
-    verb: list[str], same: list[str], runs: list[str], holdout: list[str], out: str
-) -> str:
-    """A command over lines that a shell takes; drives by RUN... where they are many."""
-    lines = [shlex.join([*verb, *same])]
-    lines.append(_paths(runs))
-    if holdout:
-        lines.append(f"--holdout {_paths(holdout)}")
-    lines.append(shlex.join(["--out", out]))
-    return " \\\n      ".join(lines).replace("{", "{{").replace("}", "}}")
-
-
-def _paths(paths: list[str]) -> str:
-    """Paths as given; all of one folder as FOLDER/*."""
-    whole = shlex.join(paths)
-    folders = {str(Path(path).parent) for path in paths}
-    if len(paths) > 1 and len(folders) == 1:
-        (folder,) = folders
-        there = {path.name for path in Path(folder).iterdir() if not path.name.startswith(".")}
-        if there == {Path(path).name for path in paths}:
-            return f"{shlex.quote(folder)}/*"
-    return whole
 
 
 def _write(arguments: argparse.Namespace, told: Told, figures: dict[str, Any]) -> list[Path]:

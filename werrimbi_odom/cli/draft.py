@@ -9,12 +9,12 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from werrimbi_odom.cli.commands import command
 from werrimbi_odom.cli.json_file import write_json
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.files.asked import Recordings
     from werrimbi_odom.inference.adding.added import Added
     from werrimbi_odom.inference.adding.drafting import Draft
     from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -68,6 +68,7 @@ def run(arguments: argparse.Namespace) -> int:
             draft.effect,
             given.runs,
             diagnosis.robot,
+            given=robot,
             holdout=given.holdout,
             show=show,
             **given.judging,
@@ -86,7 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         pages = write_adding_page(tried, arguments.report, made=made_of(arguments))
         print(f"         {', '.join(map(str, pages))}")
-    print(_next(arguments, draft, given))
+    print(_next(arguments, draft))
     return 0
 
 
@@ -98,10 +99,11 @@ def _known(diagnosis: Diagnosis, arguments: argparse.Namespace) -> str:
     if diagnosis.verdict == "ambiguous":
         names = ", ".join(diagnosis.rivals)
         return f"the verdict is ambiguous between effects of the library ({names}){force}"
-    add = shlex.join(["werrimbi", "add", diagnosis.effect or "", "--robot", str(arguments.robot)])
+    names = ",".join(diagnosis.found)
+    add = shlex.join(["werrimbi", "add", names, "--robot", str(arguments.robot)])
     return (
-        f"the verdict is named: {diagnosis.effect}, which the library holds ({add} ...); add it, "
-        f"and draft with the new robot file what then remains{force}"
+        f"the verdict is named: {names}, which the library holds ({add} ...); add it, and draft "
+        f"with the new robot file what then remains{force}"
     )
 
 
@@ -121,28 +123,29 @@ def _words(draft: Draft, tried: Added) -> str:
     from werrimbi_odom.report.printed import filled
 
     cell, sides = draft.dependence, tried.holdout.sides
+    alone = tried.noise_alone(tried.holdout)
+    floor = f"noise alone: {1e3 * alone:.2f} mm; " if tried.explained else ""
     text = (
         f"No effect of the library explains these drives. Their {cell.channel} error goes with "
         f"{cell.name}, and a {draft.form} in it explains them best among the simple laws. With it, "
         f"the error of the held-out drives is {1e3 * sides.after:.2f} mm where it was "
-        f"{1e3 * sides.before:.2f} mm (noise alone: {1e3 * tried.holdout.floor:.2f} mm; rms over "
+        f"{1e3 * sides.before:.2f} mm ({floor}rms over "
         f"legs of {tried.holdout.after.leg:g} m). Why it is so, the data cannot know: read the "
         "law, find the physics, give it its name."
     )
     return filled(text)
 
 
-def _next(arguments: argparse.Namespace, draft: Draft, given: Recordings) -> str:
+def _next(arguments: argparse.Namespace, draft: Draft) -> str:
     """The commands that try it, and that install it."""
-    file = shlex.quote(str(arguments.out / f"{draft.name}.py"))
-    robot, out = shlex.quote(str(arguments.robot)), shlex.quote(str(arguments.out))
-    kind = "" if given.how.kind == "absolute" else f" --reference-kind {given.how.kind}"
-    rest = " RUN..." + (" --holdout RUN..." if given.holdout else "")
+    file = arguments.out / f"{draft.name}.py"
+    shown = shlex.quote(str(file))
+    tried = command(["add", draft.name, "--effects", str(file)], arguments, out="new.yaml")
     return (
-        f"\nRead it:     werrimbi explain {draft.name} --effects {file}\n"
-        f"Try it:      werrimbi add {draft.name} --effects {file} \\\n"
-        f"               --robot {robot} --out new.yaml{kind}{rest}\n"
-        f"Install it:  pip install {out}    (then robot files and the node know its name)"
+        f"\nRead it:     werrimbi explain {draft.name} --effects {shown}\n"
+        f"Try it:      {tried}\n"
+        f"Install it:  pip install {shlex.quote(str(arguments.out))}    (then robot files and the "
+        "node know its name)"
     )
 
 

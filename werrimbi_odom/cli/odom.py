@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TextIO, TypeVar
 
 from werrimbi_odom.cli.json_file import plain
+from werrimbi_odom.cli.recordings import remark
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
@@ -99,6 +100,7 @@ def run(arguments: argparse.Namespace) -> int:
         seen = shown(driven, view_of(robot_file.robot.effects))
         figures = figures_of(recorded, start, driven, seen, learnt)
         _write(arguments, recorded, driven, figures, show)
+    remark(robot_file, *(f"{recorded.path}: {words}" for words in recorded.damage))
     print_figures(f"{recorded.name}: wheel odometry of {arguments.robot}", list(figures.rows()))
     written = [arguments.out, *([arguments.json] if arguments.json else [])]
     print(f"written: {', '.join(map(str, written))}")

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
     from werrimbi_odom.files.asked import How, Recordings
+    from werrimbi_odom.files.robot_file import RobotFile
 
 
 def add_recording_arguments(
@@ -100,7 +101,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     """
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.files.asked import Asked, read, refuse_twice
-    from werrimbi_odom.files.held import words_about_held
+    from werrimbi_odom.files.judgeable import words_about
 
     holdout = tuple(getattr(arguments, "holdout", None) or ())
     asked = Asked(arguments.robot, tuple(arguments.runs), holdout, how_of(arguments))
@@ -109,10 +110,14 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     collection = read_effects(arguments)
     with share_done("reading") as show:
         found = read(asked, collection, show)
-    warning = words_about_held((*found.runs, *found.holdout))
-    if warning is not None:
-        print(f"warning: {warning}", file=sys.stderr)
+    remark(found.source, *words_about((*found.runs, *found.holdout)))
     return found
+
+
+def remark(source: RobotFile, *more: str) -> None:
+    """What is not used of a robot file, and more of that kind, on stderr."""
+    for words in (*(f"{source.path}: {each}" for each in source.remarks), *more):
+        print(f"warning: {words}", file=sys.stderr)
 
 
 def how_of(arguments: argparse.Namespace) -> How:

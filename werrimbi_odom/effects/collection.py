@@ -8,7 +8,6 @@ the user put on the command line with his own hands.
 
 from __future__ import annotations
 
-import difflib
 import importlib.util
 import sys
 from collections.abc import Iterable, Sequence
@@ -19,7 +18,7 @@ from typing import NamedTuple
 
 from werrimbi_odom.effects.guarded import guarded, line_of, words_of
 from werrimbi_odom.effects.library import LIBRARY
-from werrimbi_odom.errors import InputError
+from werrimbi_odom.errors import InputError, nearest
 from werrimbi_odom.model.effect import Effect
 
 GROUP = "werrimbi_odom.effects"
@@ -39,7 +38,7 @@ class Collection(NamedTuple):
         Raises
         ------
         InputError
-            For an unknown name; the message offers the nearest known one.
+            For an unknown name; the message offers the known one that is near.
         """
         for effect in self.effects:
             if effect.name == name:
@@ -48,9 +47,9 @@ class Collection(NamedTuple):
             if warning.startswith(f"effect {name} of "):
                 raise InputError(f"unknown effect {name}: {warning}")
         names = [effect.name for effect in self.effects]
-        near = difflib.get_close_matches(name, names, n=1, cutoff=0.0) or ["none"]
         raise InputError(
-            f"unknown effect {name}; the nearest known one is {near[0]} (all: werrimbi explain)"
+            f"unknown effect {name}{nearest(name, names)} (all: werrimbi explain; one of your own: "
+            "give its file with --effects FILE, or pip install its package)"
         )
 
 
@@ -103,7 +102,7 @@ def find(name: str) -> Effect:
     Raises
     ------
     InputError
-        For an unknown name; the message offers the nearest known one.
+        For an unknown name; the message offers the known one that is near.
     """
     for effect in LIBRARY:
         if effect.name == name:

@@ -12,6 +12,7 @@ from typing import TypedDict
 from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.held import without_held_poses
+from werrimbi_odom.files.judgeable import refuse_unjudgeable
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.replacing import place_of
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
@@ -130,6 +131,7 @@ def _run(path: Path, source: RobotFile, how: How) -> Run:
                 f"({', '.join(within[:_NAMED])}{more}); give each of them: {path}/*"
             )
     run = read_run(path, source, ticks_topic=how.ticks_topic, reference_topic=how.reference_topic)
+    refuse_unjudgeable(run)
     return without_held_poses(run, source.robot) if how.kind == "absolute" else run
 
 

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import Any, NamedTuple
@@ -22,6 +22,11 @@ class Topic(NamedTuple):
     kind: str
     """Message type, as in `sensor_msgs/msg/JointState`."""
     messages: int
+
+
+def topic_in_words(topic: Topic) -> str:
+    """Its name and its type."""
+    return f"{topic.name} ({topic.kind})"
 
 
 class Message(NamedTuple):
@@ -100,13 +105,23 @@ def opened_bag(path: Path) -> Iterator[Bag]:
 
 
 def _refuse_repeated(folder: Path) -> None:
-    """A file that the metadata name a thousand times would be read a thousand times."""
-    from ruamel.yaml import YAML
+    """A file that the metadata name a thousand times would be read a thousand times.
 
-    metadata = YAML(typ="safe").load(folder / "metadata.yaml")["rosbag2_bagfile_information"]
+    What else is wrong with the metadata, rosbags says.
+    """
+    from ruamel.yaml import YAML
+    from ruamel.yaml.error import YAMLError
+
+    names: list[str] = []
+    with suppress(YAMLError, LookupError, TypeError):
+        metadata = YAML(typ="safe").load(folder / "metadata.yaml")
+        names = list(metadata["rosbag2_bagfile_information"]["relative_file_paths"])
     seen: set[tuple[int, int]] = set()
-    for name in metadata["relative_file_paths"]:
-        found = (folder / PurePath(name).name).stat()
+    for name in names:
+        file = folder / PurePath(name).name
+        if not file.exists():
+            continue
+        found = file.stat()
         if (found.st_dev, found.st_ino) in seen:
             raise InputError(f"{folder / 'metadata.yaml'}: it names the file {name} more than once")
         seen.add((found.st_dev, found.st_ino))

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import Message, Topic
+from werrimbi_odom.files.bag import Message, Topic, topic_in_words
 from werrimbi_odom.files.bag_ticks import stamp_of
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference
@@ -57,7 +57,7 @@ def choose_reference(
         When the wish is not there, or there are several; the message lists them.
     """
     candidates = [each for each in topics if each.kind in _ROWS and each.name != STATIC]
-    listed = ", ".join(f"{each.name} ({each.kind})" for each in candidates) or "none"
+    listed = ", ".join(map(topic_in_words, candidates)) or "none"
     if wish == NONE:
         return None
     if wish is not None:
@@ -73,6 +73,12 @@ def choose_reference(
             f"candidates are: {listed}"
         )
     return ReferenceSource(*candidates[0][:2], "") if candidates else None
+
+
+def kinds_in_words() -> str:
+    """Message types that can be a reference."""
+    names = sorted(kind.rpartition("/")[2] for kind in _ROWS)
+    return f"{', '.join(names[:-1])} or {names[-1]}"
 
 
 class ReferenceCollector:

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import Message, Topic
+from werrimbi_odom.files.bag import Message, Topic, topic_in_words
 from werrimbi_odom.files.pairing import Pairing
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Ticks, counts_of
@@ -74,7 +74,7 @@ def choose_ticks(
         return chosen[0]
     if chosen:
         raise InputError(f"{path}: choose with --ticks-topic; {_listed(chosen)}")
-    held = ", ".join(f"{topic.name} ({topic.kind})" for topic in topics) or "nothing"
+    held = ", ".join(map(topic_in_words, topics)) or "nothing"
     raise InputError(
         f"{path}: no topic holds ticks (JointState, Int64MultiArray, or Int32 or Int64 twice; "
         f"--ticks-topic LEFT,RIGHT where their names do not say so); it has {held}"

@@ -14,7 +14,7 @@ from dataclasses import dataclass, field
 
 from werrimbi_odom.effects import collection
 from werrimbi_odom.effects.library import LIBRARY
-from werrimbi_odom.errors import InputError
+from werrimbi_odom.errors import InputError, nearest
 from werrimbi_odom.files.parameters import PARAMETERS, Parameter
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 
@@ -64,9 +64,9 @@ class Named:
             if effect.name == name:
                 return effect
         names = [effect.name for effect in (*self.effects, *LIBRARY)]
-        near = difflib.get_close_matches(name, names, n=1)
-        if near and near[0] != name:
-            raise InputError(f"unknown effect {name}; the nearest known one is {near[0]}")
+        near = nearest(name, names)
+        if near and name not in names:
+            raise InputError(f"unknown effect {name}{near}")
         raise InputError(
             f"this is a block of parameters for {name}, but effects does not list {name}; "
             "add it to the list, or take the block out"
@@ -140,8 +140,8 @@ def is_effect_or_near(name: str) -> bool:
     """Whether a key that is no parameter may be meant for an effect's block."""
     parameters = [item.name for item in PARAMETERS]
     effects = [effect.name for effect in LIBRARY]
-    near = difflib.get_close_matches(name, [*parameters, *effects], n=1, cutoff=0.0)
-    return near[0] in effects
+    near = difflib.get_close_matches(name, [*parameters, *effects], n=1)
+    return bool(near) and near[0] in effects
 
 
 def _has(effect: Effect) -> str:

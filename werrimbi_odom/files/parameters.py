@@ -4,13 +4,12 @@
 
 from __future__ import annotations
 
-import difflib
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Literal
 
-from werrimbi_odom.errors import InputError
+from werrimbi_odom.errors import InputError, nearest
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pieces import PieceTolerance
@@ -291,13 +290,13 @@ def find(name: str) -> Parameter:
     Raises
     ------
     InputError
-        For an unknown name; the message offers the nearest known one.
+        For an unknown name; the message offers the known one that is near.
     """
     for item in PARAMETERS:
         if item.name == name:
             return item
-    near = difflib.get_close_matches(name, [item.name for item in PARAMETERS], n=1, cutoff=0.0)
-    raise InputError(f"unknown parameter {name}; the nearest known one is {near[0]}")
+    near = nearest(name, [item.name for item in PARAMETERS])
+    raise InputError(f"unknown parameter {name}{near or ' (docs/node.md lists all)'}")
 
 
 def robot_of(values: Mapping[str, Value], effects: tuple[AppliedEffect, ...] = ()) -> Robot:

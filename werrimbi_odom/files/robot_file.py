@@ -23,6 +23,7 @@ from werrimbi_odom.files.effect_parameters import (
     named_effects,
     parameters_of,
 )
+from werrimbi_odom.files.other_names import TURTLEBOT, is_of_diff_drive, remark_on, translated
 from werrimbi_odom.files.parameters import (
     PARAMETERS,
     Parameter,
@@ -66,6 +67,8 @@ class RobotFile:
     """The file's text, so that it can be written anew with its comments."""
     effects: tuple[AppliedEffect, ...] = ()
     """Physical effects, in order of application."""
+    remarks: tuple[str, ...] = ()
+    """What in it is not used, in words for the user."""
 
     @property
     def robot(self) -> Robot:
@@ -214,28 +217,44 @@ def _known(applied: AppliedEffect) -> tuple[str, dict[str, float]]:
 def _understood(text: str, path: Path, find_effect: Find | None = None) -> RobotFile:
     node, block = _parameter_block(load(text, path), path)
     given: dict[str, Value] = {}
+    wrong: list[tuple[int, str]] = []
+    unused: list[str] = []
+    effects = None
     try:
         names = plain(block.get(EFFECTS, []))
         effects = named_effects("nothing" if names is None else names, find_effect)
     except InputError as error:
-        raise InputError(f"{path}, line {line_of(block, EFFECTS)}: {error}") from None
+        wrong.append((line_of(block, EFFECTS), str(error)))
     for name, raw in block.items():
         if name == EFFECTS or (isinstance(name, str) and name.split(".")[0] in ROS_OWN):
             continue
+        line = line_of(block, name)
         try:
-            if _is_of_effect(name, raw, effects):
-                _take_effect(effects, name, raw)
-                continue
-            parameter = find(str(name))
-            given[parameter.name] = parameter.checked(_as_ros_reads(parameter, raw))
+            if is_of_diff_drive(name):
+                unused.append(name)
+            elif name == TURTLEBOT and translated(raw):
+                wrong.append((line, translated(raw)))
+            elif _is_of_effect(name, raw, effects):
+                if effects is not None:  # else it is not known which of them are named
+                    _take_effect(effects, name, raw)
+            else:
+                parameter = find(str(name))
+                given[parameter.name] = parameter.checked(_as_ros_reads(parameter, raw))
         except _InBlockError as error:
-            raise InputError(f"{path}, line {error.line}: {error}") from None
+            wrong.append((error.line, str(error)))
         except InputError as error:
-            raise InputError(f"{path}, line {line_of(block, name)}: {error}") from None
-    missing = [item for item in PARAMETERS if item.default is None and item.name not in given]
+            wrong.append((line, str(error)))
+    told = [f"line {line}: {words}" for line, words in sorted(wrong)]
+    missing = ", ".join(
+        f"{item.name} ({item.unit})"
+        for item in PARAMETERS
+        if item.default is None and item.name not in block
+    )
     if missing:
-        names = ", ".join(f"{item.name} ({item.unit})" for item in missing)
-        raise InputError(f"{path}: {node} must also give {names}")
+        told.append(f"{node} must also give {missing}")
+    if effects is None or told:
+        place = f"{path}, " if wrong else f"{path}: "
+        raise InputError(f"{place}{'; '.join(told)}")
     values = MappingProxyType({**defaults(), **given})
     try:
         robot_of(values)
@@ -244,7 +263,8 @@ def _understood(text: str, path: Path, find_effect: Find | None = None) -> Robot
         # The value that is farthest from 1 is the one that was mistyped.
         worst = max(named, key=lambda name: abs(math.log(float(values[name]))))  # type: ignore[arg-type]
         raise InputError(f"{path}, line {line_of(block, worst)}: {error}") from None
-    return RobotFile(path, node, values, tuple(given), text, effects.applied())
+    found = effects.applied()
+    return RobotFile(path, node, values, tuple(given), text, found, remark_on(unused))
 
 
 def _parameter_block(content: CommentedMap, path: Path) -> tuple[str, CommentedMap]:
@@ -252,6 +272,7 @@ def _parameter_block(content: CommentedMap, path: Path) -> tuple[str, CommentedM
     node = next(iter(content), None)
     if len(content) != 1:
         named = [name for name in content if isinstance(name, str) and name.strip("/") == NODE]
+        named = named or [name for name in content if _tells_of_wheels(content[name])]
         if len(named) != 1 or "/**" in content:
             names = ", ".join(str(name) for name in content) or "none"
             raise InputError(
@@ -275,6 +296,12 @@ def _parameter_block(content: CommentedMap, path: Path) -> tuple[str, CommentedM
     return node, block
 
 
+def _tells_of_wheels(below: object) -> bool:
+    """Whether a node among others, as in the file of a controller manager, has a base."""
+    block = below.get(PARAMETER_KEY) if isinstance(below, CommentedMap) else None
+    return isinstance(block, CommentedMap) and bool({"wheel_separation", TURTLEBOT} & set(block))
+
+
 def _as_ros_reads(parameter: Parameter, raw: object) -> object:
     """The value; for a truth value also in the words that ROS takes from YAML 1.1 (yes, off)."""
     if parameter.kind == "boolean" and type(raw) is str:  # quoted texts are of another type
@@ -290,12 +317,12 @@ class _InBlockError(InputError):
         self.line = line
 
 
-def _is_of_effect(name: object, raw: object, effects: Named) -> bool:
+def _is_of_effect(name: object, raw: object, effects: Named | None) -> bool:
     """Whether a key tells of an effect: it names one, or holds a block that nothing else has."""
     if not isinstance(name, str) or any(item.name == name for item in PARAMETERS):
         return False
     first = name.partition(".")[0]
-    listed = any(effect.name == first for effect in effects.effects)
+    listed = effects is not None and any(effect.name == first for effect in effects.effects)
     return listed or isinstance(raw, CommentedMap) or is_effect_or_near(first)
 
 

@@ -91,8 +91,15 @@ class Run:
     reference: Reference | None = None
     notes: tuple[str, ...] = ()
     """What the reader chose or left out, in words for the user."""
+    damage: tuple[str, ...] = ()
+    """What of the record is spoilt and was got over, in words for the user."""
+    no_reference: str = ""
+    """Where nothing was measured: what would be a reference, and what is there."""
     held_poses: int = 0
     """Poses of the reference that were left out, see `held.without_held_poses`."""
+    taken_out: tuple[tuple[float, float], ...] = ()
+    """Stretches of the reference that were put aside on purpose, from and to [s]: legs end there,
+    and begin anew."""
 
 
 def counts_of(values: Floats) -> Counts:

@@ -7,8 +7,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from werrimbi_odom.files.bag import opened_bag
-from werrimbi_odom.files.bag_reference import ReferenceCollector, choose_reference
+from werrimbi_odom.files.bag import opened_bag, topic_in_words
+from werrimbi_odom.files.bag_reference import (
+    ReferenceCollector,
+    choose_reference,
+    kinds_in_words,
+)
 from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
@@ -72,4 +76,9 @@ def read_run_bag(
     if measured and reference_of:
         reference, frames = reference_of.reference()
         notes.append(f"reference from {measured.topic} ({measured.kind}), {frames}")
-    return Run(readable(path.resolve().name), path, ticks, reference, tuple(notes))
+    lacking = ""
+    if reference is None:
+        lacking = f"({kinds_in_words()}); the bag has {', '.join(map(topic_in_words, bag.topics))}"
+    return Run(
+        readable(path.resolve().name), path, ticks, reference, tuple(notes), no_reference=lacking
+    )

@@ -34,18 +34,34 @@ def read_run_folder(path: str | Path) -> Run:
         When a file cannot be used; the message names file, line and column.
     """
     path = Path(path)
-    ticks = _ticks(path / TICKS)
+    ticks, damage = _ticks(path / TICKS)
     file = path / REFERENCE
-    reference = _reference(file) if file.exists() or file.is_symlink() else None
-    return Run(readable(path.resolve().name), path, ticks, reference)
-
-
-def _ticks(path: Path) -> Ticks:
-    table = read_table(path, TICKS_COLUMNS)
-    channels = {name: table.column(name) for name in table.names if name not in TICKS_COLUMNS}
-    return Ticks(
-        _times(table), _counts(table, "left_ticks"), _counts(table, "right_ticks"), channels
+    reference = None
+    if file.exists() or file.is_symlink():
+        reference, more = _reference(file)
+        damage += more
+    return Run(
+        readable(path.resolve().name),
+        path,
+        ticks,
+        reference,
+        damage=damage,
+        no_reference=f"({REFERENCE}: {','.join(REFERENCE_COLUMNS)})",
     )
+
+
+def _cut(table: Table) -> tuple[str, ...]:
+    """That a file ends in mid-row, as where the power failed."""
+    if not table.cut:
+        return ()
+    return (f"{table.path.name}, line {table.cut}: cut off in mid-row; read up to there",)
+
+
+def _ticks(path: Path) -> tuple[Ticks, tuple[str, ...]]:
+    table = read_table(path, TICKS_COLUMNS, TICKS_COLUMNS)
+    channels = {name: table.column(name) for name in table.names if name not in TICKS_COLUMNS}
+    left, right = (_counts(table, name) for name in TICKS_COLUMNS[1:])
+    return Ticks(_times(table), left, right, channels), _cut(table)
 
 
 def _times(table: Table) -> Floats:
@@ -81,8 +97,8 @@ def _not_a_count(text: str) -> str:
     return "" if text else "it is empty; write nan where a reading is missing, or leave the row out"
 
 
-def _reference(path: Path) -> Reference:
-    table = read_table(path, REFERENCE_COLUMNS)
+def _reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
+    table = read_table(path, REFERENCE_COLUMNS, REFERENCE_COLUMNS[:1])
     for name in table.names:
         if name.startswith("sigma") and name not in SIGMA_COLUMNS:
             known = " and ".join(SIGMA_COLUMNS)
@@ -92,7 +108,7 @@ def _reference(path: Path) -> Reference:
         _measured(table, name, minimum=0.0) if name in table.names else None
         for name in SIGMA_COLUMNS
     ]
-    return Reference(_times(table), x, y, yaw, *sigmas)
+    return Reference(_times(table), x, y, yaw, *sigmas), _cut(table)
 
 
 def _measured(table: Table, name: str, minimum: float = -math.inf) -> Floats:

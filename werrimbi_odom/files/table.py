@@ -41,6 +41,8 @@ class Table:
     names: tuple[str, ...]
     values: Floats
     """Shape (rows, columns); at least one row."""
+    cut: int = 0
+    """Number of the last line, where that was cut off in mid-row and left out."""
 
     def column(self, name: str) -> Floats:
         """A column by its name."""
@@ -50,7 +52,7 @@ class Table:
         """A column as integers beyond what floats hold exactly; None where it has others."""
         kinds = [(str(i), "i8" if item == name else "f8") for i, item in enumerate(self.names)]
         try:
-            rows = _loaded(_lines(self.path), np.dtype(kinds))
+            rows = _loaded(_lines(self.path, self.cut), np.dtype(kinds))
         except ValueError:
             return None
         return np.ascontiguousarray(rows[str(self.names.index(name))])
@@ -69,14 +71,22 @@ class Table:
             At the first wrong cell, with its line and column.
         """
         place = self.names.index(name)
-        for line, cells in _rows(self.path):
+        for line, cells in _rows(self.path, self.cut):
             complaint = wrong(cells[place].strip())
             if complaint:
                 raise InputError(f"{self.path}, line {line}, column {name}: {complaint}")
 
 
-def read_table(path: Path, required: Sequence[str]) -> Table:
+def read_table(path: Path, required: Sequence[str], filled: Sequence[str]) -> Table:
     """Read a CSV file of numbers whose first line names the columns, in any order.
+
+    A last line without an end that is no whole row (the power failed as it was written) is left
+    out.
+
+    Parameters
+    ----------
+    filled
+        Columns of which no cell may be empty.
 
     Raises
     ------
@@ -86,7 +96,8 @@ def read_table(path: Path, required: Sequence[str]) -> Table:
     try:
         _refuse_too_large(path)
         names = _header(path, required)
-        values = _values(path, names)
+        cut = _cut_line(path, names, [names.index(name) for name in filled])
+        values = _values(path, names, cut)
     except IsADirectoryError:
         raise InputError(f"{path} is a folder; it must be a CSV file") from None
     except FileNotFoundError:
@@ -95,7 +106,7 @@ def read_table(path: Path, required: Sequence[str]) -> Table:
         raise InputError(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError:
         raise _not_text(path) from None
-    return Table(path, names, values)
+    return Table(path, names, values, cut)
 
 
 def _refuse_too_large(path: Path) -> None:
@@ -140,22 +151,42 @@ def _header(path: Path, required: Sequence[str]) -> tuple[str, ...]:
     return names
 
 
-def _values(path: Path, names: Sequence[str]) -> Floats:
+def _cut_line(path: Path, names: Sequence[str], filled: Sequence[int]) -> int:
+    """Number of the last line, where it was cut off in mid-row; else 0."""
+    with path.open("rb") as file:
+        size = file.seek(0, 2)
+        file.seek(max(size - MAX_LINE, 0))
+        end = file.read()
+    last = re.split(rb"[\r\n]", end)[-1].decode("utf-8", "replace")
+    if not last.strip():
+        return 0
+    cells = last.split(",")
+    whole = len(cells) == len(names) and all(
+        _NUMBER.match(cell.strip('"')) or not cell.strip() for cell in cells
+    )
+    if whole and all(cells[place].strip() for place in filled):
+        return 0
+    with path.open(encoding="utf-8-sig", errors="replace", newline=None) as file:
+        lines = sum(1 for _ in file)
+    return lines if lines > 2 else 0  # a header and no whole row: there is nothing to read
+
+
+def _values(path: Path, names: Sequence[str], cut: int) -> Floats:
     number = np.dtype(np.float64)
     try:
         try:
             # numpy reads a named file in blocks, twice as fast as from an iterator of lines
-            values = _loaded(str(path.absolute()), number)
+            values = _loaded(_lines(path, cut) if cut else str(path.absolute()), number)
         except ValueError:
-            values = _loaded(_lines(path), number)
+            values = _loaded(_lines(path, cut), number)
         if values.size and values.shape[1] == len(names):
             return np.asarray(values, dtype=np.float64)
     except UnicodeDecodeError:
         raise
     except ValueError as error:
-        _refuse_bad_row(path, names)
+        _refuse_bad_row(path, names, cut)
         raise InputError(f"{path} cannot be read: {error}") from error
-    _refuse_bad_row(path, names)
+    _refuse_bad_row(path, names, cut)
     raise InputError(f"{path} has a header and no rows")
 
 
@@ -176,25 +207,25 @@ def _loaded(source: Any, kind: np.dtype[Any]) -> NDArray[Any]:
     return values
 
 
-def _lines(path: Path) -> Iterator[str]:
-    """Lines with `nan` written into empty cells; blank lines left out."""
+def _lines(path: Path, cut: int) -> Iterator[str]:
+    """Lines with `nan` written into empty cells; blank lines left out, and that which is cut."""
     with path.open(encoding="utf-8-sig", newline=None) as file:
-        for line in file:
+        for line in itertools.islice(file, cut - 1 if cut else None):
             if not line.isspace():
                 yield _EMPTY.sub("nan", line)
 
 
-def _rows(path: Path) -> Iterator[tuple[int, list[str]]]:
+def _rows(path: Path, cut: int) -> Iterator[tuple[int, list[str]]]:
     """Line number, from 1, and cells of each row below the header."""
     with path.open(encoding="utf-8-sig", newline=None) as file:
-        for number, line in enumerate(itertools.islice(file, 1, None), start=2):
+        for number, line in enumerate(itertools.islice(file, 1, cut - 1 if cut else None), start=2):
             if line.strip():
                 yield number, next(csv.reader([line.rstrip("\n")]))
 
 
-def _refuse_bad_row(path: Path, names: Sequence[str]) -> None:
+def _refuse_bad_row(path: Path, names: Sequence[str], cut: int) -> None:
     try:
-        for number, cells in _rows(path):
+        for number, cells in _rows(path, cut):
             place = f"{path}, line {number}"
             for name, cell in zip(names, cells, strict=False):
                 if cell.strip() and not _NUMBER.match(cell):

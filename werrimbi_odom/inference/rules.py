@@ -91,7 +91,7 @@ Of messages that come at random with a steady mean one interval in 1000 is as lo
 variable is above ten medians with a chance of 2^-10); of those that come at a rate none is.
 """
 
-GAP_WAYS = 5.0
+GAP_WAYS = 3.0
 """Times the usual way of an interval, that must have been gone in a gap.
 
 A localisation that speaks every quarter of a metre is silent for as long as the robot stands, and
@@ -103,3 +103,79 @@ GAP_LEG = 0.25
 
 GAP_FEWEST = 20
 """Intervals with travel in them, below which nobody knows what is usual: poses taken by hand."""
+
+# ------------------------------------------------------------------ what is told, and drafted
+
+ONE_WHEEL = 0.05
+"""Share of one wheel's error up to which the other wheel's is not worth a word: a wheel that is 3 %
+larger beside one that is 0.1 % smaller is one thing on the robot, a tyre."""
+
+LITTLE_OF_A_LAW = 0.1
+"""Share of what a law explains up to which something in its own variables is its rest. A law fitted
+in another form than nature's (a line for a square, over the same range) leaves at the most that."""
+
+REST_EXPLAINED = 0.5
+"""Share of what an effect would explain beyond which a freer form of a held law takes it away, so
+that the effect is no more than that law's rest: half, as both then explain the same."""
+
+WORTH_FITTING = 30.0
+"""What the linear score of a draft may lack of the best one's and still be fitted in full: a fit
+gains or loses a few units against its score, where a law is not a line in its numbers."""
+
+LASTS = 1e-3
+"""How often the disagreement of the parts of the drives may show as much as what is told to be left
+beside all that was found: as for an effect. A few kicks at a few places do not last."""
+
+LEFT_ASKED = 5
+"""Dependences of which it is asked whether they last: one of the first does, or none is told."""
+
+MOST_FITTED = 3
+"""Drafts that are fitted in full, each for a second or two: the answer is there while one waits."""
+
+NEIGHBOUR = 1.6
+"""Widths of a floor's cell within which another cell is its neighbour: corners touch at 1.4, and
+steps are seldom in the very middle of their cell."""
+
+STILL = 0.02
+"""Standard deviations that a step of a fit must move something by, to be worth another one."""
+
+# ------------------------------------------------------- what is known before any measurement
+
+TYPICAL_WHEEL_NOISE, WHEEL_NOISE_SPREAD = 5e-4, 1.2
+"""Median [m^0.5], and standard deviation of the logarithm, of what is known of a rolling wheel's
+noise before any drive.
+
+Chong and Kleeman measured 4.0e-4 and 5.8e-4. Wheels that roll lie between 1e-4 (hard, narrow, on a
+workshop floor) and 3e-3 (soft, wide, on tiles), which is the median times or over e^1.7, so about
+five robots of six are within one and a half standard deviations. A drive with n degrees of freedom
+tells ln k to 1/sqrt(2 n): of twenty legs the prior is worth 2 % of what is known then, of sixty
+runs out and back 0.6 %; but k of 0.02, forty times the median, costs as much as a
+deviation of 3.1 sigma."""
+
+TYPICAL_STAMP_NOISE, STAMP_NOISE_SPREAD = 3e-3, 0.6
+"""The same of the stamps of a gyro against the encoders' [s]: messages at 50 to 200 Hz wait for one
+another by some milliseconds; 1 and 10 ms are two standard deviations off. What asks for more than
+20 ms is a clock that is late (`reference_delay`), and must not pass for its scatter."""
+
+FAR_ABOVE_NOISE = 5.0
+"""How many times what noise promises the errors of legs must be for the model to be wrong whatever
+the likelihood says: a wheels' noise five times too small is that of another floor, and the robot
+file's stated noise is seldom wrong by more."""
+# ------------------------------------------------------------------------- honest covariances
+
+HONEST_WITHIN = 1.5
+"""Times one, and part of one, between which the NEES of an honest covariance lies.
+
+Errors are then within 22 % of what is promised: a fuser weighs the odometry about as it should, and
+the noise of no wheel is known better than to that. A rule without it would call any covariance
+wrong, were there legs enough.
+"""
+
+HONEST_CHANCE = 0.9999
+"""Share of samples of an honest covariance that chance leaves within its bounds.
+
+Some ten numbers are looked at in a comparison, and the node's window slides over thousands of legs.
+"""
+
+ALIKE = 1.3
+"""Times by which intervals of the noise at short and at long legs must be apart to be two."""

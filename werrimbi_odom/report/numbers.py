@@ -49,10 +49,32 @@ def scaled_with_std(value: float, std: float, unit: str = "") -> str:
     return f"({value:.{digits}f} ± {std:.{digits}f})e{size}{behind}"
 
 
+_SMALLER = {"m": ("mm", 1e3), "s": ("ms", 1e3), "m/m": ("mm/m", 1e3), "m/s": ("mm/s", 1e3)}
+"""Units that read better small, and how many of them there are in one."""
+
+SMALL = 0.1
+"""Below it a value reads better in the smaller unit."""
+
+
+def in_unit(value: float, std: float, unit: str) -> tuple[str, str]:
+    """Value and standard deviation, and the unit in which they read best."""
+    small, factor = _SMALLER.get(unit, (unit, 1.0))
+    if not abs(value) < SMALL:
+        small, factor = unit, 1.0
+    return with_std(factor * value, factor * std), small
+
+
+def quantity(value: float, std: float, unit: str) -> str:
+    """Value, standard deviation and unit; an angle in degrees as well."""
+    text, small = in_unit(value, std, unit)
+    angle = f" ({math.degrees(value):.3g}°)" if unit == "rad" and math.isfinite(value) else ""
+    return f"{text} {small}".rstrip() + angle
+
+
 def chance_words(p_value: float | None) -> str:
-    """How often chance would do the same; None: nothing was tested."""
+    """How often chance would do the same; None: nobody asked."""
     if p_value is None:
-        return "found by trying every set-up, which has no chance to be told"
+        return "not tested: so large that it is seen without a test"
     if p_value < 1e-12:
         return "beyond any chance"
     if p_value < 1e-4:
@@ -65,7 +87,7 @@ def chance_words(p_value: float | None) -> str:
 def p_words(p_value: float | None) -> str:
     """For a table."""
     if p_value is None:
-        return "-"
+        return "not tested"
     if p_value >= 0.995:
         return "1"
     if p_value >= 0.01:

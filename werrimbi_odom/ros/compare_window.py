@@ -6,16 +6,14 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from statistics import NormalDist
 
+from werrimbi_odom.inference.comparison.consistency import chance_bounds, honest_bounds
 from werrimbi_odom.inference.comparison.legs import CHI2_95
 
 FREEDOM = 3
 """Degrees of freedom of a leg: x, y, yaw."""
 LEAST = 5
 """Legs before anything is said."""
-ALARM = 0.9999
-"""Share of windows of an honest covariance that pass as honest; the window slides, so many do."""
 
 _ONE_LEG = 0.7  # share of a window's NEES from which on one leg is said to be the cause
 
@@ -60,9 +58,7 @@ class Window:
 
     def bounds(self, share: float = 0.95) -> tuple[float, float]:
         """Between which the NEES of an honest covariance is with this probability."""
-        freedom = FREEDOM * max(self.count, 1)
-        low, high = (chi_squared_quantile(p, freedom) for p in (0.5 - share / 2, 0.5 + share / 2))
-        return low / freedom, high / freedom
+        return chance_bounds(FREEDOM * max(self.count, 1), share)
 
     def verdict(self) -> tuple[bool, str]:
         """Whether all is well, and what to say."""
@@ -74,7 +70,7 @@ class Window:
                 f"the odometry's covariance does not grow with the way driven (on {legs} legs, "
                 f"{legs - sum(self._grew)} times): it is not that of its pose. Is it a constant?"
             )
-        low, high = self.bounds(ALARM)
+        low, high = honest_bounds(FREEDOM * max(self.count, 1))
         words = (
             f"NEES {self.nees:.2f} over {self.count} legs, honest between {low:.2f} and "
             f"{high:.2f}; {self.coverage:.0%} of legs inside their 95 % ellipsoid"
@@ -95,13 +91,3 @@ class Window:
         if worst > _ONE_LEG and self.count > 2:
             words += f"; one leg makes {worst:.0%} of it: a jump of the reference, or a hard slip"
         return False, f"the covariance is too small, the errors are larger than it says: {words}"
-
-
-def chi_squared_quantile(probability: float, freedom: int) -> float:
-    """Quantile of chi-squared, by Wilson and Hilferty (1931): the node does without scipy.
-
-    To 0.5 % in the middle 95 %; with 15 degrees of freedom the alarms are 7 % low and 1 % high.
-    """
-    part = 2.0 / (9.0 * freedom)
-    root = 1.0 - part + NormalDist().inv_cdf(probability) * math.sqrt(part)
-    return freedom * max(root, 0.0) ** 3

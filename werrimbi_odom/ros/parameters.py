@@ -20,6 +20,7 @@ from rclpy.parameter import Parameter
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import parameters as table
 from werrimbi_odom.files.effect_parameters import EFFECTS, Named, named_effects, parameters_of
+from werrimbi_odom.files.other_names import is_of_diff_drive
 from werrimbi_odom.files.parameters import Value
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -156,7 +157,7 @@ def settings_of(given: Mapping[str, object], node_name: str = "/odom_node") -> S
     effects = _named(given.get(EFFECTS), wrong)
     for name, value in given.items():
         try:
-            if name == EFFECTS:
+            if name == EFFECTS or is_of_diff_drive(name):  # that controller's file may be ours
                 continue
             if "." in name or any(name == effect.name for effect in effects.effects):
                 _take_of_effect(effects, name, value)

@@ -74,8 +74,10 @@ def covariance_of(entries: Any) -> PoseCovariance[float]:
     if block[variances == 0.0].any() or block[:, variances == 0.0].any():
         raise InputError("covariance not positive semi-definite", "a variance of 0 has covariances")
     sigma = np.sqrt(np.where(variances > 0.0, variances, 1.0))
-    correlation = block / sigma[:, None] / sigma  # one by one: a product of the two may underflow
-    if np.abs(correlation - correlation.T).max() > _ASYMMETRY:
+    with np.errstate(over="ignore", invalid="ignore"):
+        correlation = block / sigma[:, None] / sigma  # one by one: their product may underflow
+        apart = np.abs(correlation - correlation.T).max()
+    if apart > _ASYMMETRY:
         raise InputError("covariance not symmetric", "of x, y and yaw")
     # Larger than 1 it is none, and the eigenvalues of what is much larger overflow.
     if np.abs(correlation).max() > 1.0 + _ASYMMETRY or (

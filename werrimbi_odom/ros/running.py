@@ -13,6 +13,7 @@ from rclpy.exceptions import ParameterException
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions, install_signal_handlers
+from rclpy.utilities import remove_ros_args
 
 from werrimbi_odom.errors import InputError
 
@@ -36,6 +37,9 @@ def run(make_node: Callable[[], Node], name: str, args: list[str] | None = None)
     """
     told = _Told()
     try:
+        others = remove_ros_args(args)[1 if args is None else 0 :]
+        if others:
+            return _not_of_ros(name, others[0])
         rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
     except RuntimeError as error:
         print(f"{name}:", " ".join(str(error).split()), file=sys.stderr)  # in one line
@@ -66,6 +70,16 @@ def run(make_node: Callable[[], Node], name: str, args: list[str] | None = None)
         rclpy.try_shutdown()  # puts the handlers back that stood before rclpy's
         told.ignore()
     return 0
+
+
+def _not_of_ros(name: str, word: str) -> int:
+    """What is said to an argument that rclpy would leave unread; the exit code."""
+    usage = f"{name} --ros-args [--params-file FILE.yaml] [-p NAME:=VALUE] [-r FROM:=TO]"
+    if word in ("-h", "--help"):
+        print(f"{usage}\n\nTopics and parameters: docs/node.md and docs/robot.md of werrimbi_odom.")
+        return 0
+    print(f"{name}: {word} is unknown, or must come after --ros-args: {usage}", file=sys.stderr)
+    return 2
 
 
 class _Told:

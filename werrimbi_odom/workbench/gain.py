@@ -43,8 +43,8 @@ def gain_figure(steps: Sequence[Step]) -> go.Figure:
         )
     added = steps[-1].added
     last = max(len(names), 3) - 0.4  # room for the next bar
-    if added is not None:
-        floor = 1e3 * added.holdout.floor
+    if added is not None and added.explained:
+        floor = 1e3 * added.noise_alone(added.holdout)
         figure.add_scatter(
             x=[-0.6, last],
             y=[floor, floor],

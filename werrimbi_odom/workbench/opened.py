@@ -11,11 +11,10 @@ from pathlib import Path
 from werrimbi_odom.files.asked import Judging
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison, judged
-from werrimbi_odom.inference.comparison.judged_legs import Prepared, finely
+from werrimbi_odom.inference.comparison.judged_legs import Prepared
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
-from werrimbi_odom.inference.diagnosis.holdout import judge_of, known_at_home, set_aside
-from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.diagnosis.holdout import judge_of
+from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.model.robot import Robot
 
 Show = Callable[[float, str], None]
@@ -37,17 +36,10 @@ class Drives:
     """Drives cut into legs, by the travel of the robot as given."""
 
     prepared: Prepared
-    fine: Together
-    """In the short legs of a fit: what each run has of its own is learnt there."""
 
     def compared(self, robot: Robot, show: Show = lambda share, words: None) -> Comparison:
         """How a robot does on these drives."""
-        return judged(self.prepared, self.at_home(robot), show=show)
-
-    def at_home(self, robot: Robot) -> Model:
-        """The robot with what each run has of its own (phases), learnt in that run."""
-        bare = Model(robot, tuple({} for _ in self.prepared.runs))
-        return known_at_home(bare, self.fine, self.prepared.kind)
+        return judged(self.prepared, robot, show=show)
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,7 +95,7 @@ def opened(given: Given) -> Opened:
     judge = judge_of(runs, holdout, robot, **judging)
     return Opened(
         given,
-        Drives(judge.train, finely(judge.train)),
-        Drives(judge.holdout, judge.fine),
+        Drives(judge.train),
+        Drives(judge.holdout),
         tuple(run.name for run in judge.kept_back),
     )

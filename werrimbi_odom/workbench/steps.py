@@ -44,7 +44,7 @@ class Step:
     @property
     def name(self) -> str:
         """What was added."""
-        return "as given" if self.added is None else self.added.effect.name
+        return "as given" if self.added is None else self.added.name.replace(",", " + ")
 
 
 @dataclass(frozen=True)

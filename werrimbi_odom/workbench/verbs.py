@@ -8,7 +8,7 @@ from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import add_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.diagnosis.holdout import set_aside
+from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, next_manoeuvre

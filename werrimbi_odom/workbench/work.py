@@ -37,7 +37,7 @@ def left_there(opened: Opened) -> Mapping[str, Any]:
     """Most of what was cut: whoever compares cuts it himself, and the page does without."""
     there: dict[str, Any] = {}
     for side, drives in (("train", opened.train), ("holdout", opened.holdout)):
-        there |= {f"{side} cuts": drives.prepared.cuts, f"{side} fine": drives.fine}
+        there[f"{side} cuts"] = drives.prepared.cuts
         there |= {f"{side} {group.measure}": group.every for group in drives.prepared.groups}
     return there
 
@@ -45,7 +45,7 @@ def left_there(opened: Opened) -> Mapping[str, Any]:
 NOT_SENT: Mapping[str, Any] = {
     f"{side} {what}": {} if what == "cuts" else None
     for side in ("train", "holdout")
-    for what in ("cuts", "fine", *get_args(Measure))
+    for what in ("cuts", *get_args(Measure))
 }
 """What the page has for `left_there`."""
 

@@ -1,19 +1,24 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A model with one more effect, and what speaks for it and against."""
+"""A model with more effects, and what speaks for each and against."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from werrimbi_odom.inference.adding.values import FittedParameter
-from werrimbi_odom.inference.comparison.judged_legs import Legs
-from werrimbi_odom.inference.comparison.legs import LegStatistics, statistics
+from werrimbi_odom.inference.comparison.consistency import AtLength, Consistency, of_all
+from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
+from werrimbi_odom.inference.comparison.legs import LegStatistics
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
+from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
@@ -29,13 +34,12 @@ class Side:
     before: Legs
     """With the robot as given."""
     calibrated: Legs
-    """With everything fitted but the effect."""
+    """With everything fitted but the effects."""
     after: Legs
 
     def figures(self, which: str) -> LegStatistics:
-        """Over legs on which the reference did not jump."""
-        legs: Legs = getattr(self, which)
-        return statistics(legs.errors.chosen(~legs.outlier))
+        """Over legs on which the reference did not jump, the median over all."""
+        return statistics_of(getattr(self, which))
 
     @property
     def sides(self) -> Sides:
@@ -44,10 +48,11 @@ class Side:
         return Sides(before.rmse_position_m, after.rmse_position_m)
 
     @property
-    def floor(self) -> float:
-        """Position error that the noise of the final model promises [m].
+    def promised(self) -> float:
+        """Position error that the covariance of the final model promises [m].
 
-        Without the few legs that begin with a heading that nobody knows yet.
+        Without the few legs that begin with a heading that nobody knows yet. It is the noise's
+        alone where the model explains the drives (`Added.noise_alone`).
         """
         errors = self.after.errors.chosen(~self.after.outlier)
         measured = np.isfinite(errors.error[:, 0])
@@ -58,32 +63,81 @@ class Side:
         return float(np.sqrt(np.mean(promised[usual])))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Added:
-    """A model with one more effect, and what speaks for it."""
+    """A model with more effects, fitted together, and what speaks for each."""
 
-    effect: Effect
-    parameters: dict[str, FittedParameter]
+    effects: tuple[Effect, ...]
+    """As they were asked for."""
+    fitted: Mapping[str, Mapping[str, FittedParameter]]
+    """Parameters by effect."""
     also: tuple[str, ...]
-    """Set-up mistakes that were put right with it."""
+    """Set-up mistakes that were put right with them."""
     given: Robot
     robot: Robot
     """To be written."""
-    multiplier_stds: dict[str, float]
+    multiplier_stds: Mapping[str, float | None]
+    """None where the multiplier stayed as the given file has it."""
     train: Side
     holdout: Side
+    without: Mapping[str, float]
+    """Position error of the held-out drives without one of several effects [m]."""
     set_aside: tuple[str, ...]
-    """Names of the runs that were put aside for judging; empty where some were given for it."""
+    """Names of the runs of which parts were put aside for judging; empty where some were given."""
     written_from_all: bool
     """Whether the written values were fitted on all runs, those put aside too."""
-    noises: dict[str, NoiseEstimate]
-    noise_written: bool
+    noises: Mapping[str, NoiseEstimate]
+    explained: bool
+    """Whether the errors go with nothing more, and the wheels' noise is some: then it is written,
+    and what the covariance promises is noise."""
     remaining: tuple[Dependence, ...]
     """What the errors still depend on beyond chance."""
+    misfit: Misfit | None
+    """The law that does not fit fully, where that is what is left."""
     set_up: SetUp
     per_run: tuple[str, ...]
     """Parameters that each run has anew; the file leaves them out."""
-    p_value: float
-    """Of as much of a better fit by chance, against calibration alone."""
-    objection: str | None
-    """Why it should not be added; None: nothing speaks against it."""
+    chances: Mapping[str, float | None]
+    """How often chance would make the fit as much better as an effect does, the others being there;
+    None for calibration and for mistakes, which are not tested so."""
+    objections: Mapping[str, str]
+    """By effect, why it should not be added; empty where nothing speaks against any."""
+    left_out: tuple[LeftOut, ...]
+    """Stretches of all runs that none of it is about."""
+    lengths: tuple[AtLength, ...]
+    """What the held-out legs of each length say of its covariance."""
+
+    @property
+    def covariance(self) -> Consistency:
+        """Whether the final model's is honest on the held-out drives."""
+        return of_all(self.lengths)
+
+    @property
+    def name(self) -> str:
+        """Of the effects, as on the command line."""
+        return ",".join(effect.name for effect in self.effects)
+
+    @property
+    def parameters(self) -> dict[str, FittedParameter]:
+        """All of them: by NAME where one effect was added, else by EFFECT.NAME."""
+        if len(self.effects) == 1:
+            return dict(self.fitted[self.effects[0].name])
+        return {
+            f"{effect}.{name}": item
+            for effect, items in self.fitted.items()
+            for name, item in items.items()
+        }
+
+    @property
+    def objection(self) -> str | None:
+        """All that speaks against them, in a line."""
+        return "; ".join(self.objections.values()) or None
+
+    @property
+    def is_calibration(self) -> bool:
+        """Whether nothing but sizes was asked for."""
+        return all(effect.name in CALIBRATED for effect in self.effects)
+
+    def noise_alone(self, side: Side) -> float:
+        """Position error that noise alone leaves [m]; NaN while something is still missing."""
+        return side.promised if self.explained else float("nan")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""One more effect in the model: fitted with all calibration, judged on drives held out.
+"""More effects in the model: fitted with all calibration, judged on drives held out.
 
 An effect is taken when it lowers the held-out error beyond what calibration alone does, surely
 differs from null, and does not run against what physics allows. Else the reason is told, and only
@@ -9,7 +9,7 @@ the user's own will puts it in.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -17,40 +17,44 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.adding.added import Added, Side
-from werrimbi_odom.inference.adding.objection import objection
+from werrimbi_odom.inference.adding.fits import Fits, Show, fits_of
+from werrimbi_odom.inference.adding.objection import Worth, objection
 from werrimbi_odom.inference.adding.start import (
     Drives,
-    Start,
     drives_of,
-    knobs_held,
-    mistake_put_in,
-    start_of_held,
-    starts,
     with_set_up,
 )
 from werrimbi_odom.inference.adding.values import (
     parameters_of,
+    std_of,
     to_write,
-    weakest,
-    without_phases_stuck,
 )
 from werrimbi_odom.inference.calibration.any_driving import MISFIT_P, STRANGE_NOISE
-from werrimbi_odom.inference.comparison.judged_legs import Legs, Prepared, judged_legs
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
+from werrimbi_odom.inference.comparison.judged_legs import (
+    Legs,
+    Prepared,
+    consistency_by_length,
+    in_runs,
+    judged_legs,
+    statistics_of,
+)
 from werrimbi_odom.inference.diagnosis.diagnosis import chance
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.diagnosis.holdout import Judge, at_home, begin
+from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found
+from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.sizes import Sizes, sizes_needed, with_sizes
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     MULTIPLIERS,
     NUISANCES,
     Model,
-    changed,
 )
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
 from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
@@ -62,19 +66,55 @@ def add_effect(
     robot: Robot,
     kind: ReferenceKind = "absolute",
     *,
+    given: Robot | None = None,
     holdout: Sequence[Run] = (),
     leg: float = 1.0,
     limits: EncoderLimits | None = None,
     sigma_xy: float | None = None,
     sigma_yaw: float | None = None,
-    show: Callable[[float, str], None] = lambda share, words: None,
+    show: Show = lambda share, words: None,
 ) -> Added:
-    """Fit an effect together with all calibration, and judge it.
+    """One effect alone: `add_effects`."""
+    return add_effects(
+        (effect,),
+        runs,
+        robot,
+        kind,
+        given=given,
+        holdout=holdout,
+        leg=leg,
+        limits=limits,
+        sigma_xy=sigma_xy,
+        sigma_yaw=sigma_yaw,
+        show=show,
+    )
+
+
+def add_effects(
+    effects: Sequence[Effect],
+    runs: Sequence[Run],
+    robot: Robot,
+    kind: ReferenceKind = "absolute",
+    *,
+    given: Robot | None = None,
+    holdout: Sequence[Run] = (),
+    leg: float = 1.0,
+    limits: EncoderLimits | None = None,
+    sigma_xy: float | None = None,
+    sigma_yaw: float | None = None,
+    show: Show = lambda share, words: None,
+) -> Added:
+    """Fit effects together with all calibration, and judge each of them.
 
     Parameters
     ----------
+    effects
+        None twice; calibration effects and set-up mistakes may be among them.
+    given : Robot, optional
+        By whose travel legs are cut, and whose errors are those before; `robot` where there is none
+        other that the fit begins with.
     holdout
-        Runs to judge on alone. None given: some of `runs` are put aside for it.
+        Runs to judge on alone. None given: parts of `runs` are put aside for it.
     leg : float
         Length of the legs that are judged [m].
     show
@@ -83,60 +123,87 @@ def add_effect(
     Raises
     ------
     InputError
-        When a run cannot be used, a channel that the effect looks at was not measured, or the
-        drives do not show at all what it looks at.
+        When a run cannot be used, or is in other units; when a channel that an effect looks at was
+        not measured, or the drives do not show at all what one looks at.
     """
-    _refuse_unmeasured(effect, [*runs, *holdout])
-    held = any(item.name == effect.name for item in robot.effects)
-    if held and effect.is_mistake:
-        raise InputError(
-            f"the robot file lists {effect.name} already; a mistake put right twice is made again"
-        )
+    held = {item.name for item in robot.effects}
+    for effect in effects:
+        _refuse_unmeasured(effect, [*runs, *holdout])
+        if effect.name in held and effect.is_mistake:
+            raise InputError(
+                f"the robot file lists {effect.name} already; a mistake put right twice is made "
+                "again"
+            )
     show(0.0, "set-up")
-    started = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+    started = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw, given=given)
     judge, set_up = started.judge, started.set_up
-    begun, also = with_set_up(effect, robot, set_up)
+    begun, also = with_set_up(effects, robot, set_up)
     sigma = (sigma_xy or _stated(judge, "xy_told"), sigma_yaw or _stated(judge, "yaw_told"))
     show(0.15, "calibration")
     drives = drives_of(judge.train, begun, kind, limits, sigma)
-    base, fit = _fits(effect, drives, begun, robot, also, show)
-    parameters = parameters_of(effect, fit, robot)
+    fits = fits_of(effects, drives, begun, robot, also, show)
+    fit = fits.all
+    sizes = sizes_needed(fit, robot, _calibrations_wanted(effects, set_up))
+    fit = with_sizes(drives.laid, kind, fit, robot, sizes)
     show(0.75, "judging")
-    train, kept = _judged(judge, drives, robot, base, fit)
-    noises, remaining, honest = _noise(drives, fit, sigma)
+    train, kept = _judged(judge, fits.none, fit)
+    chances = {effect.name: _chance(effect, fits, also) for effect in effects}
+    alone = {name: _error_at_home(judge, each) for name, each in fits.without.items()}
+    objections = {}
+    for effect in effects:
+        name = effect.name
+        others = tuple(other.name for other in effects if other is not effect)
+        without = alone.get(name, kept.figures("calibrated").rmse_position_m)
+        mended = np.inf if name in also else without
+        worth = Worth(kept.sides, mended, chances[name], name in held, others)
+        against = objection(effect, parameters_of(effect, fit, robot), worth, set_up)
+        if against is not None:
+            objections[name] = against
+    noises, remaining, explained = _noise(drives, fit, sigma)
     model = fit.point.model
     per_run = tuple(sorted(set(model.own[0]) - set(NUISANCES))) if model.own else ()
-    p_value = 0.0 if effect.name in CALIBRATED or also else chance(fit, base, 1)
-    against = objection(effect, parameters, kept, p_value, held, set_up, also)
     written = fit
     if not holdout:
         show(0.9, "all runs")
-        written = _on_all(judge, drives, fit, robot, runs, limits)
+        written = _on_all(judge, drives, fit, robot, runs, limits, sizes)
     final = to_write(written.point.model, robot)
-    final = with_noise(final, noises) if honest else _with_noise_of(final, robot)
-    names = [knob.name for knob, _ in written.design.columns]
+    final = with_noise(final, noises) if explained else _with_noise_of(final, robot)
     return Added(
-        effect,
-        parameters_of(effect, written, robot) if written is not fit else parameters,
-        tuple(name for name in also if name != effect.name),
-        robot,
-        final,
-        {
-            name: float(np.sqrt(written.covariance[names.index(name), names.index(name)]))
-            for name in MULTIPLIERS
-        },
-        train,
-        kept,
-        () if holdout else tuple(run.name for run in judge.kept_back),
-        written is not fit,
-        noises,
-        honest,
-        remaining,
-        set_up,
-        per_run,
-        p_value,
-        against,
+        effects=tuple(effects),
+        fitted={effect.name: parameters_of(effect, written, robot) for effect in effects},
+        also=tuple(name for name in also if name not in chances),
+        given=robot,
+        robot=final,
+        multiplier_stds={name: std_of(written, name) or None for name in MULTIPLIERS},
+        train=train,
+        holdout=kept,
+        without=alone,
+        set_aside=() if holdout else tuple(run.name for run in judge.kept_back),
+        written_from_all=written is not fit,
+        noises=noises,
+        explained=explained,
+        remaining=remaining,
+        misfit=misfit_of_found(fit, remaining, drives.laid, kind),
+        set_up=set_up,
+        per_run=per_run,
+        chances=chances,
+        objections=objections,
+        left_out=judge.left_out,
+        lengths=consistency_by_length(judge.holdout, judge.at_home(_noisy(fit)).model),
     )
+
+
+def _calibrations_wanted(effects: Sequence[Effect], set_up: SetUp) -> set[str]:
+    """Sizes that are fitted whatever they are worth: asked for, or far off as the file has them."""
+    names = {effect.name for effect in effects} | {item.effect for item in set_up.findings}
+    return names & set(CALIBRATED)
+
+
+def _chance(effect: Effect, fits: Fits, also: tuple[str, ...]) -> float | None:
+    """Of as much of a better fit with an effect; None for what is not judged by its fit alone."""
+    if effect.name in CALIBRATED or effect.name in also:
+        return None
+    return chance(fits.all, fits.without.get(effect.name, fits.none), 1)
 
 
 def _refuse_unmeasured(effect: Effect, runs: Sequence[Run]) -> None:
@@ -158,71 +225,11 @@ def _stated(judge: Judge, told: str) -> float | None:
     return max(float(getattr(noise, name)) for noise in noises)
 
 
-def _fits(
-    effect: Effect,
-    drives: Drives,
-    begun: Robot,
-    given: Robot,
-    also: tuple[str, ...],
-    show: Callable[[float, str], None],
-) -> tuple[Fitted, Fitted]:
-    """The model with everything fitted but the effect, and the best one with it."""
-    if effect.name in CALIBRATED:
-        start = start_of_held(drives, begun, also)
-        fit = drives.fit(start.point, also, start.knobs, given)
-        return fit, fit
-    others = tuple(item for item in begun.effects if item.name not in (effect.name, *also))
-    bare = replace(begun if not also else given, effects=others)
-    start = start_of_held(drives, bare, ())
-    base = drives.fit(start.point, (), start.knobs, given)
-    show(0.35, effect.name)
-    if also:
-        start = start_of_held(drives, begun, also)
-        options: tuple[Start, ...] = (replace(start, knobs=knobs_held(begun, start.knobs, effect)),)
-    elif effect.is_mistake:
-        options = (start_of_held(drives, mistake_put_in(bare, effect), (effect.name,)),)
-    else:
-        options = starts(drives, base, effect, start.knobs)
-    if not options:
-        raise InputError(
-            f"these drives do not show {effect.name} at all: what it looks at never happens in "
-            "them, or is the same to them as calibration"
-        )
-    fits = [_well(drives, option, given) for option in options]
-    best = min(fits, key=lambda fit: fit.total)
-    show(0.65, effect.name)
-    return base, _pruned(effect, drives, best, given)
-
-
-def _well(drives: Drives, start: Start, given: Robot) -> Fitted:
-    """A fit from a start, phases led past half a turn where they ran against it."""
-    fit = drives.fit(start.point, start.names, start.knobs, given)
-    turned = without_phases_stuck(fit.point.model, fit.knobs)
-    if turned is None:
-        return fit
-    again = drives.fit(replace(fit.point, model=turned), start.names, start.knobs, given)
-    return min(fit, again, key=lambda each: each.cost)
-
-
-def _pruned(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitted:
-    """The fit without parameters that the data do not show, one after the other."""
-    while (name := weakest(effect, parameters_of(effect, fit, given))) is not None:
-        key = f"{effect.name}.{name}"
-        model = fit.point.model
-        at_null = changed(model.robot, {key: effect.parameters[name].null})
-        knobs = tuple(knob for knob in fit.knobs if knob.name != key)
-        point = replace(fit.point, model=Model(at_null, model.own))
-        fit = drives.fit(point, fit.names, knobs, given)
-    return fit
-
-
-def _judged(
-    judge: Judge, drives: Drives, given: Robot, base: Fitted, fit: Fitted
-) -> tuple[Side, Side]:
+def _judged(judge: Judge, base: Fitted, fit: Fitted) -> tuple[Side, Side]:
     """The legs of both sides; what each run has of its own is learnt in that run alone."""
-    plain = Model(given, judge.nothing_of_own)
+    plain = Model(judge.given, judge.nothing_of_own)
     train = Side(
-        _legs(judge.train, at_home(plain, drives.laid, judge.kind).model),
+        _legs(judge.train, in_runs(judge.train, plain)),
         _legs(judge.train, base.point.model),
         _legs(judge.train, _noisy(fit)),
     )
@@ -233,6 +240,12 @@ def _judged(
         )
     )
     return train, kept
+
+
+def _error_at_home(judge: Judge, fit: Fitted) -> float:
+    """Position error of the held-out drives with a model [m]."""
+    legs = _legs(judge.holdout, judge.at_home(_noisy(fit)).model)
+    return statistics_of(legs).rmse_position_m
 
 
 def _noisy(fit: Fitted) -> Model:
@@ -277,6 +290,7 @@ def _on_all(
     given: Robot,
     runs: Sequence[Run],
     limits: EncoderLimits | None,
+    sizes: Sizes,
 ) -> Fitted:
     """The same model fitted on all runs, those put aside among them."""
     if len(runs) < 2:
@@ -291,4 +305,6 @@ def _on_all(
     home = judge.at_home(fit.point.model)
     own = (*fit.point.model.own, *home.model.own)
     point = replace(fit.point, model=Model(fit.point.model.robot, own), excluded=jumped)
-    return every.fit(point, fit.names, fit.knobs, given)
+    return with_sizes(
+        every.laid, every.kind, every.fit(point, fit.names, fit.knobs, given), given, sizes
+    )

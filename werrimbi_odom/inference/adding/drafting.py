@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -23,13 +23,14 @@ from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.draft_laws import Form, Seen, forms_of, spot_form
 from werrimbi_odom.inference.adding.draft_source import name_of, source_of
-from werrimbi_odom.inference.adding.start import Drives, starts
+from werrimbi_odom.inference.adding.start import Drives, scored, start_at
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.diagnosis.variables import Variable, floor_cells, variables_of
-from werrimbi_odom.inference.fitting.prediction import path_of
-from werrimbi_odom.inference.rules import RIVAL
+from werrimbi_odom.inference.diagnosis.variables import Variable, variables_of
+from werrimbi_odom.inference.fitting.candidates import Score
+from werrimbi_odom.inference.fitting.likelihood import Variances
+from werrimbi_odom.inference.rules import MOST_FITTED, RIVAL, WORTH_FITTING
 from werrimbi_odom.model.effect import Effect
 
 BELIEVED = 1e-3
@@ -112,11 +113,20 @@ def draft_effect(
         for cell in cells
         for seen, form in _forms(diagnosis, cell, variables[cell.variable.name])
     ]
-    for number, (cell, seen, form) in enumerate(plans):
-        show(number / (len(plans) + 1), f"{cell.name}: {form.kind}")
-        option = _fitted(diagnosis, drives, cell, seen, form)
-        if option is not None:
-            options.append(option)
+    show(0.0, "the forms of a law")
+    drafted = [_plan(diagnosis, *plan) for plan in plans]
+    ordered = _by_score(diagnosis, drives, drafted, final.point.variances)
+    for number in range(MOST_FITTED):
+        ordered = [plan for plan in ordered if plan.excess > ordered[0].excess - WORTH_FITTING]
+        waiting = [plan for plan in ordered if all(plan.effect is not o.effect for o in options)]
+        plan = next((plan for plan in waiting if keeps_laws(plan.effect)), None)
+        if plan is None:
+            break
+        show((number + 1) / (MOST_FITTED + 2), f"{plan.cell.name}: {plan.form.kind}")
+        options.append(_fitted(diagnosis, drives, plan))
+        if number == 0:
+            # Without the law the wheels' noise had to stand for it, and hid what tells forms apart.
+            ordered = _by_score(diagnosis, drives, drafted, options[0].fit.point.variances)
     if not options:
         names = ", ".join(dict.fromkeys(cell.name for cell in cells))
         raise InputError(f"no law can be drafted that is a line, step or curve in {names}")
@@ -155,7 +165,7 @@ def _forms(
 ) -> Iterator[tuple[Seen, Form]]:
     if variable.form == "place":
         if cell.amount.channel in ("left", "right", "along"):
-            yield Seen("position", "m", lambda side: ""), _spot(diagnosis, cell, variable)
+            yield Seen("position", "m", lambda side: ""), _spot(diagnosis, cell)
         return
     seen = _seen(variable)
     if seen is None:
@@ -208,38 +218,60 @@ def _angle_of(side: str) -> Callable[[str], str]:
     return lambda _: f"drive.{side}_angle"
 
 
-def _spot(diagnosis: Diagnosis, cell: Dependence, variable: Variable) -> Form:
-    """A circle around the floor's cell that the errors point at most."""
-    cells = floor_cells(variable.left, variable.right)
-    path = np.abs(path_of(diagnosis.final.point.model, diagnosis.runs).motion.along)
-    driven = cells.T @ path
-    weight = np.abs(cell.coefficients) * np.sqrt(driven)
-    chosen = int(np.argmax(weight))
-    inside = cells[:, chosen] > 0.5
-    x, y = float(np.mean(variable.left[inside])), float(np.mean(variable.right[inside]))
+def _spot(diagnosis: Diagnosis, cell: Dependence) -> Form:
+    """A circle around the place on the floor that the errors point at."""
+    x, y = place_of(cell)
     offsets = (-0.2, 0.0, 0.2)
     places = [(x + dx, y + dy) for dx, dy in zip(offsets, offsets, strict=True)]
-    size = _round(float(cell.coefficients[chosen]))
+    size = _round(float(cell.coefficients[np.argmax(np.abs(cell.coefficients))]))
     half = 0.5 * diagnosis.given.track
     return spot_form(places, (0.2, 0.35, 0.6), size, half)
 
 
-def _fitted(
-    diagnosis: Diagnosis, drives: Drives, cell: Dependence, seen: Seen, form: Form
-) -> _Option | None:
-    """A draft of one form, fitted; None where it breaks a law or shows nothing."""
+@dataclass(frozen=True)
+class _Plan:
+    """A form that may be fitted."""
+
+    cell: Dependence
+    seen: Seen
+    form: Form
+    effect: Effect
+    source: str
+    score: Score | None = None
+    """Of the best of its shapes; None before it is scored."""
+    excess: float = -math.inf
+    """By how much it should cost less than it takes, its numbers paid for."""
+
+
+def _plan(diagnosis: Diagnosis, cell: Dependence, seen: Seen, form: Form) -> _Plan:
     source = _written(diagnosis, cell, seen, form)
-    effect = loaded(source)
-    if not keeps_laws(effect):
-        return None
+    return _Plan(cell, seen, form, loaded(source), source)
+
+
+def _by_score(
+    diagnosis: Diagnosis, drives: Drives, plans: Sequence[_Plan], noise: Variances
+) -> list[_Plan]:
+    """The forms that the drives show anything of, the most promising first, all without a fit."""
     base = diagnosis.final
-    fits = [
-        drives.fit(start.point, start.names, start.knobs, diagnosis.given)
-        for start in starts(drives, base, effect, base.knobs)
-    ]
-    if not fits:
-        return None
-    return _Option(cell, seen, form, effect, source, min(fits, key=lambda fit: fit.total))
+    before = replace(base, point=replace(base.point, variances=noise))
+    found = []
+    for plan in plans:
+        scores = scored(drives, before, [plan.effect], base.knobs)
+        if scores:
+            best = max(scores, key=lambda each: each.gain)
+            paid = base.price_of_one * plan.form.numbers
+            found.append(replace(plan, score=best, excess=best.gain - paid))
+    return sorted(found, key=lambda plan: -plan.excess)
+
+
+def _fitted(diagnosis: Diagnosis, drives: Drives, plan: _Plan) -> _Option:
+    """A draft of one form, fitted from where its score points."""
+    base = diagnosis.final
+    assert plan.score is not None
+    start = start_at(base, plan.score, base.knobs)
+    # One round tells the forms apart; whoever adds the draft fits it to the end.
+    fit = drives.fit(start.point, start.names, start.knobs, diagnosis.given, rounds=1)
+    return _Option(plan.cell, plan.seen, plan.form, plan.effect, plan.source, fit)
 
 
 def _written(diagnosis: Diagnosis, cell: Dependence, seen: Seen, form: Form) -> str:

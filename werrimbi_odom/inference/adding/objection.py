@@ -4,12 +4,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import NamedTuple
+
 import numpy as np
 
-from werrimbi_odom.inference.adding.added import Side
 from werrimbi_odom.inference.adding.start import is_of_set_up
 from werrimbi_odom.inference.adding.values import FittedParameter
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
+from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 
@@ -20,18 +23,27 @@ ROUNDING = 1e-4
 """Share by which the held-out error must fall to have fallen."""
 
 
+class Worth(NamedTuple):
+    """What an effect is worth beside all others that are added."""
+
+    kept: Sides
+    """Held-out position error with the given file, and with everything [m]."""
+    alone: float
+    """The same with everything but the effect."""
+    chance: float | None
+    """None where it is not tested."""
+    held: bool
+    """Whether the file held it before."""
+    others: tuple[str, ...]
+    """What else was asked for."""
+
+
 def objection(
-    effect: Effect,
-    parameters: dict[str, FittedParameter],
-    kept: Side,
-    p_value: float,
-    held: bool,
-    set_up: SetUp,
-    also: tuple[str, ...],
+    effect: Effect, parameters: Mapping[str, FittedParameter], worth: Worth, set_up: SetUp
 ) -> str | None:
     """Why the effect should not be added, in a line; None where nothing speaks against it."""
     name = effect.name
-    before, after = kept.sides.before, kept.sides.after
+    before, after = worth.kept.before, worth.kept.after
     figures = f"{1e3 * before:.3g} mm before, {1e3 * after:.3g} mm after"
     hint = ""
     if set_up.findings and not is_of_set_up(effect, set_up):
@@ -50,26 +62,28 @@ def objection(
         shown = [item for item in parameters.values() if item.std is not None]
         if shown and not shown[0].significant:
             value = f"{shown[0].value:.5g} ± {shown[0].std:.1g}"
+            rest = " and ".join(["the rest of the calibration", *worth.others])
             return (
                 f"{name} is as the robot file says ({value}): what lowers the error of the "
-                f"held-out drives ({figures}) is the rest of the calibration{hint}"
+                f"held-out drives ({figures}) is {rest}{hint}"
             )
-        return _by_chance(name, p_value, held)
-    alone = kept.figures("calibrated").rmse_position_m
-    if not held and not also and not after < alone * (1.0 - ROUNDING):
+        return _by_chance(name, worth)
+    if not worth.held and not worth.alone * (1.0 - ROUNDING) > after:
+        rest = " and ".join(["calibration", *worth.others]) if worth.others else "calibration alone"
+        verb = "leave" if worth.others else "leaves"
         return (
-            f"{name} does not lower the error of the held-out drives: calibration alone leaves "
-            f"{1e3 * alone:.3g} mm, with the effect it is {1e3 * after:.3g} mm{hint}"
+            f"{name} does not lower the error of the held-out drives: {rest} {verb} "
+            f"{1e3 * worth.alone:.3g} mm, with the effect it is {1e3 * after:.3g} mm{hint}"
         )
-    return _by_chance(name, p_value, held)
+    return _by_chance(name, worth)
 
 
-def _by_chance(name: str, p_value: float, held: bool) -> str | None:
-    if held or p_value <= BY_CHANCE:
+def _by_chance(name: str, worth: Worth) -> str | None:
+    if worth.held or worth.chance is None or worth.chance <= BY_CHANCE:
         return None
     return (
         f"the drives do not show {name}: chance alone would make the fit as much better "
-        f"in {100.0 * p_value:.2g} % of cases"
+        f"in {100.0 * worth.chance:.2g} % of cases"
     )
 
 

@@ -16,7 +16,8 @@ import numpy as np
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.judged_legs import Prepared
 from werrimbi_odom.inference.comparison.jumps import jumped_legs
-from werrimbi_odom.inference.diagnosis.candidates import (
+from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     Score,
     candidates,
@@ -24,11 +25,10 @@ from werrimbi_odom.inference.diagnosis.candidates import (
     put_in,
     scores,
 )
-from werrimbi_odom.inference.diagnosis.search import with_own_values
-from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, knobs_of
+from werrimbi_odom.inference.fitting.own_values import with_own_values
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUp
@@ -55,10 +55,17 @@ class Drives:
         return with_own_values(self.laid, point, self.kind)
 
     def fit(
-        self, point: Point, names: Sequence[str], knobs: Sequence[Knob], given: Robot
+        self,
+        point: Point,
+        names: Sequence[str],
+        knobs: Sequence[Knob],
+        given: Robot,
+        rounds: int = 3,
     ) -> Fitted:
         """Fit calibration, noise and `knobs`."""
-        return fitted(self.laid, point, self.kind, names, knobs, given, rounds=3, sigma=self.sigma)
+        return fitted(
+            self.laid, point, self.kind, names, knobs, given, rounds=rounds, sigma=self.sigma
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +77,8 @@ class Start:
     """Effects beyond the given robot's."""
     knobs: tuple[Knob, ...]
     """Of all effects."""
+    gain: float = 0.0
+    """What its score promises, of an effect that begins where that points."""
 
 
 def drives_of(
@@ -94,23 +103,27 @@ def is_of_set_up(effect: Effect, set_up: SetUp) -> bool:
     return any(effect.name in (item.effect, *item.twins) for item in set_up.findings)
 
 
-def with_set_up(effect: Effect, robot: Robot, set_up: SetUp) -> tuple[Robot, tuple[str, ...]]:
-    """The robot with what the search for set-up mistakes found, `effect` among it.
+def with_set_up(
+    effects: Sequence[Effect], robot: Robot, set_up: SetUp
+) -> tuple[Robot, tuple[str, ...]]:
+    """The robot with what the search for set-up mistakes found, some of `effects` among it.
 
     Returns
     -------
     robot, names
-        All findings are put in where the effect is one of them, because one mistake mended alone
-        may leave the robot worse than before (both counters reversed). Else none but factors of
-        the sizes, which belong to the calibration.
+        All findings are put in where one of the effects is one of them, because one mistake mended
+        alone may leave the robot worse than before (both counters reversed). Else none but factors
+        of the sizes, which belong to the calibration.
     """
     found = {item.effect for item in set_up.findings} - {IN_DEGREES}
     mended = set_up.robot
-    if effect.name not in found and is_of_set_up(effect, set_up):
-        twin = next(item.effect for item in set_up.findings if effect.name in item.twins)
-        held = tuple(item for item in mended.effects if item.name != twin)
-        return replace(mended, effects=(effect.using(), *held)), (effect.name,)
-    if effect.name in found:
+    asked = [effect for effect in effects if is_of_set_up(effect, set_up)]
+    for effect in asked:
+        if effect.name not in found:
+            twin = next(item.effect for item in set_up.findings if effect.name in item.twins)
+            held = tuple(item for item in mended.effects if item.name != twin)
+            mended = replace(mended, effects=(effect.using(), *held))
+    if asked:
         held_before = {item.name for item in robot.effects}
         names = [item.name for item in mended.effects if item.name not in held_before]
         return mended, tuple(name for name in names if name not in CALIBRATED)
@@ -123,18 +136,25 @@ def starts(
     drives: Drives, before: Fitted, effect: Effect, knobs: Sequence[Knob]
 ) -> tuple[Start, ...]:
     """Where fits of an effect begin: at its score's values, for the best of its shapes."""
-    runs, point = drives.laid, before.point
+    found = scored(drives, before, [effect], knobs)
+    return tuple(start_at(before, score, knobs) for score in _best_shapes(found))
+
+
+def scored(
+    drives: Drives, before: Fitted, effects: Sequence[Effect], knobs: Sequence[Knob]
+) -> tuple[Score, ...]:
+    """What effects would explain beside a model, to first order: each shape of each effect."""
+    runs = drives.laid
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
-    tried = candidates([effect], (), channels, len(runs.runs))
-    found = scores(runs, point, drives.kind, (*CALIBRATION, *knobs), tried)
-    begun = []
-    for score in _best_shapes(found):
-        own = knobs_of_candidate(score.candidate)
-        model = put_in(point.model, score)
-        begun.append(
-            Start(replace(point, model=model), (*before.names, effect.name), (*knobs, *own))
-        )
-    return tuple(begun)
+    tried = candidates(effects, (), channels, len(runs.runs))
+    return scores(runs, before.point, drives.kind, (*CALIBRATION, *knobs), tried)
+
+
+def start_at(before: Fitted, score: Score, knobs: Sequence[Knob]) -> Start:
+    """A fit that begins where a score points."""
+    own = knobs_of_candidate(score.candidate)
+    point = replace(before.point, model=put_in(before.point.model, score))
+    return Start(point, (*before.names, score.candidate.name), (*knobs, *own), score.gain)
 
 
 def _best_shapes(found: Sequence[Score]) -> list[Score]:

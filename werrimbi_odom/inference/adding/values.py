@@ -12,8 +12,8 @@ from typing import Literal
 import numpy as np
 
 from werrimbi_odom.inference.calibration_sizes import sizes_of, std_as_effect
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob, Model
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter
 from werrimbi_odom.model.robot import Robot

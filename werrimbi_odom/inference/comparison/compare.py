@@ -5,16 +5,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference.comparison.consistency import AtLength
 from werrimbi_odom.inference.comparison.groups import ByVariable, Cell, by_variables, cells_of
 from werrimbi_odom.inference.comparison.judged_legs import (
     Legs,
     Prepared,
+    in_runs,
     judged_legs,
     paths,
     prepare,
@@ -33,6 +35,7 @@ from werrimbi_odom.inference.comparison.systematic import (
     systematic_parts,
 )
 from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats, wrap
 from werrimbi_odom.model.robot import Robot
@@ -63,6 +66,17 @@ class OfLength:
     all: LegFigures
     by_motion: Mapping[str, LegFigures]
     systematic: tuple[Systematic, ...]
+
+    @property
+    def consistency(self) -> AtLength:
+        """What all these legs say of the covariance."""
+        figures = self.all.figures
+        return AtLength(self.leg, figures.count, figures.nees, figures.freedom)
+
+    @property
+    def of_scatter(self) -> AtLength:
+        """The same without what is systematic in their errors."""
+        return replace(self.consistency, nees=self.all.scatter_nees)
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,6 +112,8 @@ class Comparison:
     left: Floats
     """Their errors less what is systematic, shape (m, 3)."""
     paths: tuple[Residual, ...]
+    left_out: tuple[LeftOut, ...]
+    """Stretches of the runs that none of it is about."""
 
     @property
     def main(self) -> OfLength:
@@ -121,7 +137,8 @@ def compare(
     Parameters
     ----------
     robot : Robot or Model
-        A `Model` brings values that each run has of its own (phases, start headings).
+        A `Model` brings values that each run has of its own (phases, start headings); those that a
+        robot file does not say are learnt in each run.
     kind
         Whether each pose of the reference has noise of its own, or noise adds up along the way.
     leg : float
@@ -159,7 +176,7 @@ def judged(
     show: Callable[[float, str], None] = lambda share, words: None,
 ) -> Comparison:
     """Compare a model over runs that were prepared: before and after over the same legs."""
-    model = robot if isinstance(robot, Model) else Model(robot, tuple({} for _ in prepared.runs))
+    model = robot if isinstance(robot, Model) else in_runs(prepared, robot)
     lengths, main = [], None
     for number, leg in enumerate(sorted(prepared.cuts)):
         show(number / (len(prepared.cuts) + 1), f"legs of {leg:g} m")
@@ -202,6 +219,7 @@ def judged(
         legs,
         spread,
         driven,
+        prepared.left_out,
     )
 
 
@@ -225,14 +243,7 @@ def _figures_of(
     freedom = int(np.isfinite(spread).sum())
     scatter = squared_deviation(spread, chosen.covariance).sum() / freedom if freedom else np.nan
     return LegFigures(
-        LegStatistics(
-            figures.count,
-            figures.rmse_position_m,
-            whole.median_position_m,
-            figures.rmse_yaw_rad,
-            figures.nees,
-            figures.coverage_95,
-        ),
+        replace(figures, median_position_m=whole.median_position_m),
         int((which & legs.outlier).sum()),
         root_mean_square(every.distance),
         float(scatter),

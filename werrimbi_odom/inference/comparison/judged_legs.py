@@ -9,14 +9,21 @@ same legs, with the same legs left out and the same noise of the reference.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference.comparison.consistency import AtLength
 from werrimbi_odom.inference.comparison.jumps import jumped_legs, jumps_of
-from werrimbi_odom.inference.comparison.legs import LegErrors, errors_of, joined
+from werrimbi_odom.inference.comparison.legs import (
+    LegErrors,
+    LegStatistics,
+    errors_of,
+    joined,
+    statistics,
+)
 from werrimbi_odom.inference.comparison.reference_noise import (
     USUAL_SIGMA_XY,
     USUAL_SIGMA_YAW,
@@ -25,8 +32,10 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     measured_alike,
     reference_noise,
     residuals_of,
+    stamp_noise,
 )
 from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.own_values import known_at_home
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import (
     QUARTER_TURN,
@@ -61,6 +70,8 @@ class ReferenceNoise:
     xy_told: str
     """given (an option), stated (in the record), estimated, or assumed (too few poses)."""
     yaw_told: str
+    sigma_stamp: float = 0.0
+    """Of the stamps of a reference of headings alone [s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -283,7 +294,7 @@ def _group(
         every,
         tuple(whole for _, _, whole in members),
         jumps,
-        ReferenceNoise(position, heading, told, yaw_told),
+        ReferenceNoise(position, heading, told, yaw_told, stamp_noise(every, residuals, measure)),
         of_position,
         of_heading,
         residuals,
@@ -304,6 +315,23 @@ def _known(
     return float(np.sqrt(np.mean(values**2))), values, told
 
 
+def in_runs(prepared: Prepared, robot: Robot | Model) -> Model:
+    """A robot as it is judged on these runs, by every verb.
+
+    What each run has of its own and the robot does not say is learnt in that run; values that a
+    `Model` brings are kept. What belongs to the references alone is found anew.
+    """
+    if isinstance(robot, Model):
+        plain = robot.without_nuisances()
+        if any(plain.own):
+            return plain
+        robot = plain.robot
+    bare = Model(robot, tuple({} for _ in prepared.runs))
+    if all(applied.ready for applied in robot.effects):
+        return bare
+    return known_at_home(bare, finely(prepared), prepared.kind)
+
+
 def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
     """Errors of all legs of one length, in the order of the runs; gaps are no legs."""
     parts = []
@@ -319,9 +347,35 @@ def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
             group.sigma_yaw[runs.run_of_leg],
             prepared.kind,
             by_position=by_position,
+            sigma_stamp=group.noise.sigma_stamp,
         )
         parts.append(_table(prepared, group, runs, errors, leg))
     return _in_order(parts)
+
+
+def figures_of(prepared: Prepared, robot: Robot | Model) -> LegStatistics:
+    """Figures of a robot or model over the legs of the length asked for: one answer for all verbs.
+
+    Over the legs on which the reference did not jump; the median is over all.
+    """
+    legs = judged_legs(prepared, in_runs(prepared, robot), prepared.leg)
+    return statistics_of(legs)
+
+
+def statistics_of(legs: Legs) -> LegStatistics:
+    """The same of legs that were judged."""
+    kept = statistics(legs.errors.chosen(~legs.outlier))
+    return replace(kept, median_position_m=statistics(legs.errors).median_position_m)
+
+
+def consistency_by_length(prepared: Prepared, robot: Robot | Model) -> tuple[AtLength, ...]:
+    """What the legs of each length say of a robot's covariance, the shortest first."""
+    model = in_runs(prepared, robot)
+    found = []
+    for leg in sorted(prepared.cuts):
+        figures = statistics_of(judged_legs(prepared, model, leg))
+        found.append(AtLength(leg, figures.count, figures.nees, figures.freedom))
+    return tuple(found)
 
 
 def paths(prepared: Prepared, model: Model) -> tuple[Residual, ...]:

@@ -13,6 +13,7 @@ from werrimbi_odom.model.pose import Floats
 
 _JUMP = 12.0  # times the usual scatter of an interval
 _BEYOND = 0.5  # share of the motion about it that no model's error reaches at one blow
+_LATE = 0.5  # [s] within which motion may be that of the interval, the reference's clock being off
 _NORMAL = 1.4826  # from median deviation to standard deviation
 
 
@@ -29,9 +30,14 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
     usual = _running_median(errors)
     left = errors - usual
     scatter = _NORMAL * np.median(np.abs(left), axis=0)
-    driven = _running_max(np.abs(item.relative + 0.0))
+    driven = _running_max(np.abs(item.relative), max(3, _intervals_within(item.time, _LATE)))
     driven[:, :2] = driven[:, :2].max(axis=1, keepdims=True)
-    limit = np.maximum(_JUMP * scatter, _BEYOND * (driven + np.abs(usual)))
+    share = np.full(3, _BEYOND)
+    if not np.isfinite(item.measured).any():
+        # A gyro does not lose its place. What is late by more than an interval errs by all that the
+        # robot turns in it, and a start looks like a leap until base and clock are right.
+        share[2] = 1.5
+    limit = np.maximum(_JUMP * scatter, share * (driven + np.abs(usual)))
     limit[:, :2] = np.hypot(limit[:, :2], 1e-9)
     wrong = (np.abs(left) > limit) & (np.abs(left) > 1e-9)
     return np.where(wrong, left, 0.0)
@@ -44,7 +50,11 @@ def _running_median(values: Floats, reach: int = 3) -> Floats:
     return np.asarray(np.median(windows, axis=-1))
 
 
-def _running_max(values: Floats, reach: int = 3) -> Floats:
+def _intervals_within(time: Floats, span: float) -> int:
+    return int(min(span / max(float(np.median(np.diff(time))), 1e-9), time.size // 4))
+
+
+def _running_max(values: Floats, reach: int) -> Floats:
     padded = np.pad(values, ((reach, reach), (0, 0)), mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
     return np.asarray(np.max(windows, axis=-1))

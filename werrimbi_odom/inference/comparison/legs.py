@@ -13,7 +13,7 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.position_filter import position_errors
 from werrimbi_odom.inference.fitting.joined_legs import predict_joined
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.likelihood import errors_between, reading_noise
+from werrimbi_odom.inference.fitting.likelihood import errors_between, reading_noise, stamp_noise
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
@@ -93,6 +93,8 @@ class LegStatistics:
     """Mean of error' Σ⁻¹ error over its degrees of freedom: 1 where the covariance is honest."""
     coverage_95: float
     """Share of legs inside the 95 % ellipsoid."""
+    freedom: int = 0
+    """Measured coordinates of all errors."""
 
 
 def leg_errors(
@@ -114,6 +116,7 @@ def errors_of(
     kind: ReferenceKind = "absolute",
     *,
     by_position: bool = False,
+    sigma_stamp: float = 0.0,
 ) -> LegErrors:
     """Errors of all legs of several runs.
 
@@ -123,6 +126,8 @@ def errors_of(
         Noise of the reference: of each pose (absolute) or each interval (incremental) [m, rad].
     by_position : bool
         The reference gives positions alone; headings then come from those before the leg.
+    sigma_stamp : float
+        Of the stamps of a reference of headings alone [s].
     """
     robot = model.robot
     prediction = predict_joined(model, runs)
@@ -149,6 +154,7 @@ def errors_of(
         heading = start[:, 2]
         error = errors_between(start, finish, prediction)
         reference = _reference_part(robot, runs, prediction, sigma_xy, sigma_yaw, kind)
+        reference[:, 2, 2] += 2.0 * sigma_stamp**2 * stamp_noise(prediction, runs.duration)
     return LegErrors(
         error,
         wheels + reference,
@@ -224,6 +230,7 @@ def statistics(legs: LegErrors) -> LegStatistics:
         root_mean_square(legs.error[:, 2]),
         float(deviation.sum() / freedom.sum()),
         float(np.mean((deviation <= CHI2_95[freedom])[measured])),
+        int(freedom.sum()),
     )
 
 

@@ -6,6 +6,8 @@ All of it is read from the reference's own intervals, before any leg is cut. A m
 errs smoothly, or grows with the travel; the noise of a reference does neither. So its noise is
 taken from third differences of measured minus predicted path, over a few poses, and the part of
 them that grows with the span (what the wheels add) is taken off by a line through several spans.
+Differences are taken where the robot moves, if it does so at all: one that stands shows a tracker
+at its best. No reference is better than the step in which its values are written.
 """
 
 from __future__ import annotations
@@ -35,6 +37,7 @@ USUAL_SIGMA_XY, USUAL_SIGMA_YAW = 2e-3, 5e-3
 _ENOUGH = 30  # differences, below which a scatter is not told from them
 _REACH = 0.3  # [m] path (or [rad]) that a difference may span; the model's error bends beyond it
 _GROWS = 1.25  # times, from the shortest span to the longest, that the variance grows by chance
+_TURNS = 0.1  # [rad/s] above which a reference's headings show how its stamps scatter
 _LEAST = 0.25  # share of the shortest differences' variance that is taken for noise at least
 _THIRD = np.array([-1.0, 3.0, -3.0, 1.0])
 _NORMAL = 1.4826  # from median deviation to standard deviation
@@ -199,11 +202,56 @@ def reference_noise(
     if kind == "incremental":
         errors = np.concatenate([_steps(item) for item in residuals])
         sigmas = [_growing(errors[:, part]) for part in ((0, 1), (2,))]
-        return _less(sigmas[0], 2.0 * reading[0]), _less(sigmas[1], 2.0 * reading[2])
+        reading = 2.0 * reading
+    else:
+        sigmas = [
+            _level([_position_differences(item) for item in residuals]),
+            _level([_heading_differences(item) for item in residuals]),
+        ]
+    positions = [item.measured.real for item in residuals]
+    headings = [item.measured_yaw for item in residuals]
     return (
-        _less(_level([_position_differences(item) for item in residuals]), float(reading[0])),
-        _less(_level([_heading_differences(item) for item in residuals]), float(reading[2])),
+        _less(sigmas[0], float(reading[0]), _rounding(positions)),
+        _less(sigmas[1], float(reading[2]), _rounding(headings)),
     )
+
+
+def stamp_noise(every: Together, residuals: Sequence[Residual], measure: Measure) -> float:
+    """Standard deviation of the stamps of a reference of headings alone [s]; zero for others.
+
+    While the robot turns, its headings scatter more than on a straight line, by its turn rate times
+    that. Told over spans of more than two messages of the ticks, for what is laid between two of
+    them errs alike for all headings.
+    """
+    if measure != "heading":
+        return 0.0
+    pairs = zip(every.runs, residuals, strict=True)
+    found = [_scatter_and_rate(item, run.counters.time) for run, item in pairs]
+    scatter, rate = (np.concatenate(part) for part in zip(*found, strict=True))
+    turning = rate > _TURNS
+    if min(turning.sum(), (~turning).sum()) < _ENOUGH:
+        return 0.0
+    fast, slow = (
+        (_NORMAL * float(np.median(scatter[rows]))) ** 2 / 20.0 for rows in (turning, ~turning)
+    )
+    more = float(np.median(rate[turning] ** 2) - np.median(rate[~turning] ** 2))
+    return float(np.sqrt(max(fast - slow, 0.0) / more))
+
+
+def _scatter_and_rate(item: Residual, ticks: Floats) -> tuple[Floats, Floats]:
+    """Sizes of third differences of the heading's error, and turn rates there [rad, rad/s]."""
+    apart, messages = (float(np.median(np.diff(time))) for time in (item.time, ticks))
+    span = max(1, round(2.0 * messages / max(apart, 1e-9)))
+    first = np.arange(max(item.time.size - 3 * span, 0))
+    last = first + 3 * span
+    off, turned = (
+        np.concatenate([[0.0], np.cumsum(part[:, 2])]) for part in (item.intervals, item.relative)
+    )
+    left = sum(factor * off[first + number * span] for number, factor in enumerate(_THIRD))
+    rate = np.abs(turned[last] - turned[first]) / (item.time[last] - item.time[first])
+    moved = np.concatenate([[0.0], np.cumsum(np.abs(item.relative).sum(axis=1))])
+    moving = moved[last] > moved[first]
+    return np.abs(left)[moving], rate[moving]
 
 
 Differences = dict[int, tuple[Floats, float]]
@@ -231,7 +279,7 @@ def _position_differences(item: Residual) -> Differences:
             chord = item.predicted[rows + 3 * span] - item.predicted[rows]
             off = np.angle((item.measured[rows + 3 * span] - item.measured[rows]) * np.conj(chord))
         left = seen_moved - np.exp(1j * off) * moved
-        left = left[np.isfinite(left)]
+        left = left[_moving(path, span) & np.isfinite(left)]
         reach = float(np.median(path[path > 0.0]) if (path > 0.0).any() else 0.0) * 3 * span
         found[span] = (np.concatenate([left.real, left.imag]), reach)
     return found
@@ -248,8 +296,15 @@ def _heading_differences(item: Residual) -> Differences:
         rows = np.arange(ahead)
         left = sum(factor * off[rows + number * span] for number, factor in enumerate(_THIRD))
         reach = float(np.mean(turned)) * 3 * span
-        found[span] = (np.asarray(left)[np.isfinite(left)], reach)
+        found[span] = (np.asarray(left)[_moving(turned, span) & np.isfinite(left)], reach)
     return found
+
+
+def _moving(driven: Floats, span: int) -> NDArray[np.bool_]:
+    """Which differences over a span were taken in motion; all, where next to none were."""
+    sums = np.concatenate([[0.0], np.cumsum(driven)])
+    moved = sums[3 * span :] - sums[: -3 * span] > 0.0
+    return moved if moved.sum() >= _ENOUGH else np.ones(moved.size, dtype=np.bool_)
 
 
 def _level(runs: list[Differences]) -> float | None:
@@ -297,6 +352,14 @@ def _growing(columns: Floats) -> float | None:
     return (_NORMAL * float(np.median(np.abs(known)))) ** 2
 
 
-def _less(variance: float | None, reading: float) -> float | None:
+def _less(variance: float | None, reading: float, rounding: float) -> float | None:
     """Standard deviation without what reading the counters adds, which the legs have already."""
-    return None if variance is None else float(np.sqrt(max(variance - reading, 0.0)))
+    return None if variance is None else float(np.sqrt(max(variance - reading, rounding)))
+
+
+def _rounding(values: Sequence[Floats]) -> float:
+    """Variance of values that are written in steps: uniform over the smallest step between two."""
+    steps = [np.diff(np.unique(part[np.isfinite(part)])) for part in values]
+    every = np.concatenate(steps) if steps else np.zeros(0)
+    every = every[every > 1e-9]
+    return float(every.min(initial=np.inf)) ** 2 / 12.0 if every.size else 0.0

@@ -11,7 +11,17 @@ import numpy as np
 
 from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
+from werrimbi_odom.inference.comparison.consistency import (
+    FEWEST,
+    AtLength,
+    Consistency,
+    consistency,
+    of_all,
+    told,
+    trend_of,
+)
 from werrimbi_odom.inference.comparison.groups import DEPENDS_P, Cell
+from werrimbi_odom.inference.comparison.legs import LegStatistics
 from werrimbi_odom.inference.comparison.systematic import (
     CERTAIN_P,
     CHANNELS,
@@ -19,12 +29,7 @@ from werrimbi_odom.inference.comparison.systematic import (
     Systematic,
 )
 from werrimbi_odom.inference.legs.cutting import QUARTER_TURN
-
-FEWEST = 10
-"""Legs, below which nothing is judged."""
-
-LARGE, SMALL = 1.5, 0.67
-"""NEES, or a factor on the noise, beyond which a covariance is called too small, or too large."""
+from werrimbi_odom.inference.rules import ALIKE, HONEST_WITHIN
 
 GROSS = 0.15
 """A share of travel or turn beyond which no calibration, but the set-up, is wrong."""
@@ -33,11 +38,10 @@ GROSS_LEG = 0.1
 """A share of the leg that position errors have in the median, for the same."""
 
 _MANY = 30
-_ALIKE = 1.3  # times that the intervals of the noise factor, at short legs and long, are apart
 
 Noise = Literal["honest", "too small", "too large", "grows", "comes and goes", "unknown"]
-"""The covariance. `grows`: the errors grow faster with the way than the wheels' noise does;
-`comes and goes`: slower."""
+"""The covariance. `too small`: by a factor of the wheels' noise; `grows`: the errors grow faster
+with the way than that noise does; `comes and goes`: slower."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +77,15 @@ class Verdict:
     """Motion types of too few legs to say more than that their errors are larger than promised."""
     off: tuple[str, ...]
     """Motion types whose NEES is too large when their systematic part is taken off."""
+    lengths: tuple[AtLength, ...]
+    """What the legs of each length say of the covariance, where enough; the shortest first."""
+    runs: tuple[int, ...]
+    """Runs whose own legs say that it is too small, where all legs together do not."""
+
+    @property
+    def covariance(self) -> Consistency:
+        """Whether it is honest at every length of which there are legs enough."""
+        return of_all(self.lengths)
 
     @property
     def mean_is_right(self) -> bool:
@@ -88,7 +101,8 @@ class Verdict:
     @property
     def good(self) -> bool:
         """Whether the model explains the drives."""
-        return self.enough and self.mean_is_right and self.noise == "honest" and not self.off_at_all
+        honest = self.noise == "honest" and self.covariance == "honest"
+        return self.enough and self.mean_is_right and honest and not self.off_at_all
 
 
 def verdict_of(comparison: Comparison) -> Verdict:
@@ -99,15 +113,37 @@ def verdict_of(comparison: Comparison) -> Verdict:
     depends = _depends(comparison, noise)
     enough = main.all.figures.count >= FEWEST
     off = tuple(kind for kind in KINDS if _scatters(main.by_motion[kind]))
-    cells = tuple(
-        cell for cell in comparison.cells if cell.stands_out and cell.figures.nees > LARGE
-    )
+    cells = tuple(cell for cell in comparison.cells if cell.stands_out and _too_small(cell.figures))
     if not enough:
-        return Verdict(False, (), (), (), "unknown", factor, leg, False, 0.0, (), ())
+        return Verdict(False, (), (), (), "unknown", factor, leg, False, 0.0, (), (), (), ())
     gross = _gross(main, systematic)
     few = _held_by_few(comparison)
     bad = tuple(kind for kind in KINDS if _bad(main.by_motion[kind]))
-    return Verdict(True, systematic, depends, cells, noise, factor, leg, gross, few, bad, off)
+    lengths = told([item.consistency for item in comparison.lengths])
+    runs = tuple(
+        index
+        for index, item in enumerate(comparison.runs)
+        if item.legs.figures.count >= FEWEST and _too_small(item.legs.figures)
+    )
+    return Verdict(
+        True,
+        systematic,
+        depends,
+        cells,
+        noise,
+        factor,
+        leg,
+        gross,
+        few,
+        bad,
+        off,
+        lengths,
+        () if _too_small(main.all.figures) else runs,
+    )
+
+
+def _too_small(figures: LegStatistics) -> bool:
+    return consistency(figures.nees, figures.freedom) == "too small"
 
 
 def _gross(main: OfLength, systematic: tuple[Systematic, ...]) -> bool:
@@ -159,39 +195,48 @@ def _depends(comparison: Comparison, noise: Noise) -> tuple[Depends, ...]:
 
 
 def _scatters(figures: LegFigures) -> bool:
+    known = figures.figures
     return (
-        figures.figures.count >= FEWEST
-        and figures.scatter_nees > LARGE
-        and figures.noise.low > LARGE
+        known.count >= FEWEST
+        and consistency(figures.scatter_nees, known.freedom) == "too small"
+        and figures.noise.low > HONEST_WITHIN
     )
 
 
 def _bad(figures: LegFigures) -> bool:
     """Whether a few legs err beyond any chance, be it in one direction alone."""
     count, nees = figures.figures.count, figures.figures.nees
-    if not 0 < count < FEWEST or not nees > LARGE:
+    if not 0 < count < FEWEST or not nees > HONEST_WITHIN:
         return False
     return chi2_above(count * nees, count) < CERTAIN_P
 
 
 def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
-    """The wheels' noise, at the longest legs of which there are many, and at the shortest."""
+    """What the scatter of the legs says: of the wheels' noise where one factor on it explains it.
+
+    The factor is told at the longest legs that are many, and held against that at the legs asked
+    for. Nothing is called too small or too large where the NEES of no length of leg is.
+    """
     many = [item for item in comparison.lengths if item.all.figures.count >= _MANY]
     main = comparison.main
     longest = many[-1] if many else main
     longest = longest if longest.leg >= main.leg else main
-    factor = longest.all.noise
-    if not np.isfinite(factor.value) or longest.all.figures.count < FEWEST:
+    factor, short = longest.all.noise, main.all.noise
+    scatter = [item.of_scatter for item in comparison.lengths]
+    said = of_all(scatter)
+    if said == "unknown":
         return "unknown", factor, longest.leg
-    if factor.low > LARGE and longest.all.scatter_nees > LARGE:
-        short = main.all.noise
-        if factor.low > _ALIKE * short.high:
+    if said == "honest":
+        return "honest", factor, longest.leg
+    if said == "too large":
+        return "too large", factor, longest.leg
+    known = np.isfinite(factor.value) and longest.all.figures.count >= FEWEST
+    if known and factor.low > HONEST_WITHIN and longest.of_scatter.says == "too small":
+        if factor.low > ALIKE * short.high:
             return "grows", factor, longest.leg
-        if short.low > _ALIKE * factor.high:
+        if short.low > ALIKE * factor.high:
             return "comes and goes", factor, longest.leg
         return "too small", factor, longest.leg
-    if main.all.noise.low > LARGE and main.all.scatter_nees > LARGE:
-        return "comes and goes", main.all.noise, main.leg
-    if factor.high < SMALL:
-        return "too large", factor, longest.leg
-    return "honest", factor, longest.leg
+    worst = max((item for item in scatter if item.says == "too small"), key=lambda item: item.nees)
+    growing = trend_of(scatter) == "longer" or worst.leg > longest.leg
+    return "grows" if growing else "comes and goes", factor, longest.leg

@@ -13,11 +13,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.diagnosis.candidates import Score
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
+from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.holdout import begin
 from werrimbi_odom.inference.diagnosis.lasting import lasting, lasting_effect
 from werrimbi_odom.inference.diagnosis.search import (
@@ -31,6 +32,7 @@ from werrimbi_odom.inference.diagnosis.search import (
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import Support, support_of
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, chance, told
+from werrimbi_odom.inference.fitting.candidates import Score
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match_finely, stated
@@ -79,7 +81,7 @@ def diagnose(
     Raises
     ------
     InputError
-        When a run has no usable reference or no ticks, or its headings are in degrees.
+        When a run has no usable reference or no ticks, or is in degrees or millimetres.
     """
     show(0.0, "set-up")
     begun = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
@@ -92,14 +94,17 @@ def diagnose(
     show(0.1, "calibration")
     fit = first_fit(laid, set_up.robot, kind, sigma)
     rounds: list[Round] = []
-    beyond = None
+    beyond = misfit = None
     for number in range(ROUNDS):
         show(0.2 + 0.7 * number / ROUNDS, f"effects, round {number + 1}")
         this = search_round(laid, fit, kind, effects, set_up.robot, sigma)
         rounds.append(this)
         best = _best(this, laid, kind)
         beyond = _beyond_the_library(this, best, laid, kind)
-        if best is None or beyond is not None:
+        misfit = misfit_of_held_law(this, best, beyond, laid, kind)
+        if misfit is not None:
+            beyond = None
+        if best is None or beyond is not None or misfit is not None:
             break
         if not holds_when_cross_validated(laid, fit, best):
             break
@@ -113,7 +118,11 @@ def diagnose(
     instead: tuple[Instead, ...] = ()
     if not fit.names and fit.calibrated and beyond is None:
         instead = instead_of_calibration(laid, fit, kind, effects, set_up.robot, sigma)
-    return told(begun, robot, tuple(rounds), fit, beyond, remaining, laid, kind, instead)
+    if misfit is None and beyond is None and (fit.names or fit.calibrated):
+        certain = [cell for cell in remaining if cell.p_value < VERY_SURE]
+        misfit = misfit_of_found(fit, certain, laid, kind)
+    found = told(begun, robot, tuple(rounds), fit, beyond, remaining, laid, kind, instead)
+    return replace(found, misfit=misfit)
 
 
 def _best(this: Round, runs: Together, kind: ReferenceKind) -> Fitted | None:

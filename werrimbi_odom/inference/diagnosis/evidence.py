@@ -18,18 +18,22 @@ import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
-from werrimbi_odom.inference.diagnosis.candidates import of_each_run, unexplained
 from werrimbi_odom.inference.diagnosis.variables import (
+    CELL,
     CONSTANT,
     Form,
     Variable,
+    floor_cells,
     functions_of,
     variables_of,
 )
+from werrimbi_odom.inference.fitting.candidates import of_each_run, unexplained
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import DrivenPath, path_of, predict_all
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.linear import Nuisance, ScoreTest, score_test_of_products
+from werrimbi_odom.inference.rules import NEIGHBOUR
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.view import View
@@ -92,6 +96,26 @@ class Dependence:
         return self.amount.per if self.variable.name == CONSTANT else self.variable.name
 
 
+def place_of(cell: Dependence) -> tuple[float, float]:
+    """Where on the floor most of an error is, in the reference's frame [m].
+
+    The floor's cell of the most certain error, and its neighbours with an error of the same sign:
+    the middle of them all, each by its certainty. That is finer than a cell is wide.
+    """
+    x, y = cell.variable.left, cell.variable.right
+    cells = floor_cells(x, y)
+    steps = cells.sum(axis=0)
+    middle = np.stack([cells.T @ x, cells.T @ y], axis=-1) / steps[:, None]
+    certain = cell.coefficients**2 * steps
+    first = int(np.argmax(certain))
+    area = np.ptp(x) * np.ptp(y) / steps.size
+    near = np.hypot(*(middle - middle[first]).T) < NEIGHBOUR * max(np.sqrt(area), CELL)
+    same = np.sign(cell.coefficients) == np.sign(cell.coefficients[first])
+    weight = certain * (near & same)
+    px, py = weight @ middle / weight.sum()
+    return float(px), float(py)
+
+
 def dependences(
     runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob]
 ) -> tuple[Dependence, ...]:
@@ -115,7 +139,8 @@ def dependences(
                 own = of_each_run(runs, own)
             tested = _tested(own.reshape(rest.size, -1), frame, rest)
             if tested is not None:
-                found.append((amount, variable, form, *tested))
+                solution, gain, degrees = tested.coefficients, tested.gain, tested.degrees
+                found.append((amount, variable, form, solution, gain, degrees))
     cells = [
         Dependence(
             amount,
@@ -131,23 +156,12 @@ def dependences(
     return tuple(sorted(cells, key=lambda cell: (cell.p_value, -cell.gain / cell.degrees)))
 
 
-def _tested(flat: Floats, frame: Floats, rest: Floats) -> tuple[Floats, float, int] | None:
-    """Coefficients of some columns, what they explain, and how many they are; None if mute."""
-    cross = frame.T @ flat
+def _tested(flat: Floats, frame: Nuisance, rest: Floats) -> ScoreTest | None:
+    """Score test of some columns; with no copy of them less the nuisances, for there are many."""
+    cross = frame.basis.T @ flat
     size = np.sqrt(np.sum(flat**2, axis=0))
-    heard = size > 1e-9
-    if not heard.any():
-        return None
-    square = (flat.T @ flat - cross.T @ cross)[np.ix_(heard, heard)]
-    values, axes = np.linalg.eigh(square / np.outer(size[heard], size[heard]))
-    alive = values > 1e-6
-    if not alive.any():
-        return None
-    marks = (flat[:, heard].T @ rest) / size[heard]  # rest is clear of the frame already
-    shares = (axes[:, alive].T @ marks) / np.sqrt(values[alive])
-    solution = np.zeros(flat.shape[-1])
-    solution[heard] = -(axes[:, alive] @ (shares / np.sqrt(values[alive]))) / size[heard]
-    return solution, float(shares @ shares), int(alive.sum())
+    # The rest is clear of the nuisances already.
+    return score_test_of_products(flat.T @ flat - cross.T @ cross, flat.T @ rest, size)
 
 
 Cell = tuple[Amount, Variable, Form, Floats]

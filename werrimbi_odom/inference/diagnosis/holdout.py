@@ -5,26 +5,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-
-import numpy as np
+from dataclasses import dataclass
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import ReferenceKind, Run, Ticks
-from werrimbi_odom.inference.comparison.judged_legs import Prepared, finely, judged_legs, prepare
-from werrimbi_odom.inference.comparison.legs import statistics
+from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference.comparison.judged_legs import (
+    Prepared,
+    finely,
+    in_runs,
+    judged_legs,
+    prepare,
+    statistics_of,
+)
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise, recorded_otherwise
-from werrimbi_odom.inference.diagnosis.search import with_own_values
+from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.design import Point
-from werrimbi_odom.inference.fitting.fit import fit_model, start_point
-from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model, knobs_of
+from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.own_values import at_home, known_at_home
 from werrimbi_odom.inference.fitting.together import Together
-from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUp, look_for_mistakes
+from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.inference.set_up.mistakes import SetUp, look_for_mistakes
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
-
-SHARE = 0.25
-"""Of the runs, or of a single one, that is put aside where no held-out runs were given."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -65,48 +67,20 @@ class Judge:
         """For a model that has no values of the runs' own."""
         return tuple({} for _ in self.fitted_on)
 
+    @property
+    def left_out(self) -> tuple[LeftOut, ...]:
+        """Stretches of all runs that nothing is judged on."""
+        return (*self.train.left_out, *self.holdout.left_out)
+
     def of(self, model: Model) -> Errors:
         """Errors of a model; what each held-out run has of its own is fitted to that run alone."""
-        train = _figures(self.train, model.without_nuisances())
+        train = _figures(self.train, in_runs(self.train, model))
         holdout = _figures(self.holdout, known_at_home(model, self.fine, self.kind))
         return Errors(train[0], holdout[0], train[1], holdout[1], holdout[2])
 
     def at_home(self, model: Model) -> Point:
         """The model in the held-out runs: shared values as they are, the runs' own learnt."""
         return at_home(model, self.fine, self.kind)
-
-
-def known_at_home(model: Model, runs: Together, kind: ReferenceKind) -> Model:
-    """A model in other runs, without what belongs to the references alone."""
-    plain = model.without_nuisances()
-    if not any(plain.own) and all(applied.ready for applied in plain.robot.effects):
-        return Model(plain.robot, tuple({} for _ in runs.runs))
-    return at_home(model, runs, kind).model.without_nuisances()
-
-
-def at_home(model: Model, runs: Together, kind: ReferenceKind) -> Point:
-    """A model in other runs: shared values stay, what those runs have of their own is fitted."""
-    own = sorted({name for mine in model.own for name in mine if name not in NUISANCES})
-    effects = tuple(
-        replace(
-            applied,
-            unknown=tuple(
-                name for name in applied.effect.parameters if f"{applied.name}.{name}" in own
-            )
-            or applied.unknown,
-        )
-        for applied in model.robot.effects
-    )
-    point = start_point(runs, replace(model.robot, effects=effects))
-    point, _ = with_own_values(runs, point, kind)
-    knobs = point.model.nuisance_knobs
-    for applied in effects:
-        knobs += [
-            knob
-            for knob in knobs_of(applied.effect)
-            if knob.per_run and knob.name in point.model.own[0]
-        ]
-    return fit_model(runs, point, kind, knobs, find_jumps=False, rounds=1).point
 
 
 @dataclass(frozen=True)
@@ -129,21 +103,27 @@ def begin(
     limits: EncoderLimits | None,
     sigma_xy: float | None,
     sigma_yaw: float | None,
+    *,
+    given: Robot | None = None,
 ) -> Begun:
     """Split the drives, find the set-up of the fitted ones, and leave out what is not like them.
+
+    Parameters
+    ----------
+    given : Robot, optional
+        By whose travel legs are cut, where that is not `robot`.
 
     Raises
     ------
     InputError
-        When a run has no usable reference or no ticks, or its headings are in degrees.
+        When a run has no usable reference or no ticks, or is in degrees or millimetres.
     """
 
     def split(kept: Sequence[Run], held: Sequence[Run]) -> tuple[SetUp, Judge]:
         set_up = look_for_mistakes(kept, robot, kind, limits)
-        for finding in set_up.findings:
-            if finding.effect == IN_DEGREES:
-                raise InputError(f"{kept[0].path}: {finding.words}")
-        return set_up, judge_of(kept, held, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+        if set_up.to_convert is not None:
+            raise InputError(f"{kept[0].path}: {set_up.to_convert}")
+        return set_up, judge_of(kept, held, given or robot, kind, leg, limits, sigma_xy, sigma_yaw)
 
     fitted, held = (tuple(runs), tuple(holdout)) if holdout else set_aside(runs)
     set_up, judge = split(fitted, held)
@@ -176,39 +156,6 @@ def judge_of(
     return Judge(robot, kind, fitted_on, kept_back, train, held, finely(held))
 
 
-def set_aside(runs: Sequence[Run]) -> tuple[tuple[Run, ...], tuple[Run, ...]]:
-    """Some of the runs for judging; of a single run its last part."""
-    if len(runs) > 1:
-        count = max(1, round(SHARE * len(runs)))
-        every = len(runs) / count
-        kept = {int((number + 0.5) * every) for number in range(count)}
-        return (
-            tuple(run for index, run in enumerate(runs) if index not in kept),
-            tuple(run for index, run in enumerate(runs) if index in kept),
-        )
-    run = runs[0]
-    time = run.ticks.time
-    at = float(time[0] + (1.0 - SHARE) * (time[-1] - time[0]))
-    return (_part(run, -np.inf, at),), (_part(run, at, np.inf),)
-
-
-def _part(run: Run, begin: float, end: float) -> Run:
-    ticks, reference = run.ticks, run.reference
-    which = (ticks.time >= begin) & (ticks.time < end)
-    cut = Ticks(
-        ticks.time[which],
-        ticks.left[which],
-        ticks.right[which],
-        {name: values[which] for name, values in ticks.channels.items()},
-    )
-    if reference is None:
-        return replace(run, ticks=cut)
-    there = (reference.time >= begin) & (reference.time < end)
-    return replace(run, ticks=cut, reference=reference.chosen(there))
-
-
 def _figures(prepared: Prepared, model: Model) -> tuple[float, float, float]:
-    legs = judged_legs(prepared, model, prepared.leg)
-    figures = statistics(legs.errors.chosen(~legs.outlier))
-    whole = statistics(legs.errors)
-    return figures.rmse_position_m, whole.median_position_m, figures.rmse_yaw_rad
+    figures = statistics_of(judged_legs(prepared, model, prepared.leg))
+    return figures.rmse_position_m, figures.median_position_m, figures.rmse_yaw_rad

@@ -19,14 +19,14 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import fisher_above
-from werrimbi_odom.inference.diagnosis.candidates import (
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
+from werrimbi_odom.inference.diagnosis.variables import functions_of
+from werrimbi_odom.inference.fitting.candidates import (
     Score,
     of_each_run,
     signatures,
     unexplained,
 )
-from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
-from werrimbi_odom.inference.diagnosis.variables import functions_of
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
@@ -90,7 +90,7 @@ def lasting(
         if cell.variable.per_run:
             own = of_each_run(runs, own)
         flat = own.reshape(rest.size, -1)
-        free = flat - frame @ (frame.T @ flat)
+        free = frame.residual(flat)
         yield cell, _chance(cell.gain, cell.degrees, free, rest, parts)
 
 

@@ -11,29 +11,25 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.diagnosis.candidates import (
-    CALIBRATED,
-    Candidate,
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
+from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.fitting.candidates import (
     Score,
     candidates,
     knobs_of_candidate,
     put_in,
     scores,
 )
-from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
-from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     MULTIPLIERS,
-    Knob,
     Model,
     changed,
-    knobs_of,
 )
+from werrimbi_odom.inference.fitting.own_values import with_own_values
 from werrimbi_odom.inference.fitting.together import Together
-from werrimbi_odom.model.effect import AppliedEffect, Effect
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
 REFITTED = 5
@@ -160,46 +156,6 @@ def instead_of_calibration(
     return tuple(sorted(results, key=lambda item: item.total))
 
 
-def with_own_values(
-    runs: Together, point: Point, kind: ReferenceKind
-) -> tuple[Point, tuple[Knob, ...]]:
-    """The point with what each run has of its own in the robot's effects, and all their knobs.
-
-    A phase can be anywhere, so it is looked for by its score, which knows no start value.
-    """
-    knobs: list[Knob] = []
-    for applied in point.model.robot.effects:
-        if applied.effect.is_mistake or applied.name in CALIBRATED:
-            continue
-        shared = tuple(
-            name
-            for name, item in applied.effect.parameters.items()
-            if item.per_run and name not in applied.unknown
-        )
-        knobs += knobs_of(applied.effect, shared)
-        if applied.unknown:
-            point = replace(point, model=_learnt(runs, point, kind, applied))
-    return point, tuple(knobs)
-
-
-def _learnt(runs: Together, point: Point, kind: ReferenceKind, applied: AppliedEffect) -> Model:
-    """The model with the phases of an effect in each run."""
-    robot = point.model.robot
-    others = tuple(item for item in robot.effects if item is not applied)
-    bare = replace(point, model=replace(point.model, robot=replace(robot, effects=others)))
-    candidate = Candidate(applied.effect, {})
-    score = scores(runs, bare, kind, CALIBRATION, [candidate])
-    if not score:
-        return bare.model
-    model = put_in(bare.model, score[0])
-    known = {
-        f"{applied.name}.{name}": value
-        for name, value in applied.values.items()
-        if name not in applied.unknown
-    }
-    return Model(changed(model.robot, known), model.own)
-
-
 def search_round(
     runs: Together,
     before: Fitted,
@@ -232,7 +188,8 @@ def search_round(
             knobs = (*before.knobs, *knobs_of_candidate(option.candidate))
             names = (*before.names, option.candidate.name)
             fits.append(fitted(runs, start, kind, names, knobs, given, sigma=sigma))
-        tried.append(min(fits, key=lambda fit: fit.total))
+        fits = [fit for fit in fits if fit.told]
+        tried += [min(fits, key=lambda fit: fit.total)] if fits else []
     tried.sort(key=lambda fit: fit.total)
     return Round(
         before,

@@ -19,8 +19,9 @@ import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import calibration_deviation
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, orthonormal
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
+from werrimbi_odom.inference.fitting.directions import Directions, determined, every_direction
 from werrimbi_odom.inference.fitting.fit import FEW, fit_model
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
@@ -31,6 +32,7 @@ from werrimbi_odom.inference.fitting.knobs import (
     shared_of,
 )
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import PENALTY_FLOOR, RIVAL
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -66,6 +68,18 @@ class Fitted:
     covariance: Floats
     """Of the values of the design's columns."""
     design: Design
+    held: tuple[str, ...]
+    """Shared directions (of `CALIBRATED`, or knobs) that the runs do not determine: as given."""
+
+    @property
+    def told(self) -> bool:
+        """Whether the runs determine what its newest effect is for; else it is no finding."""
+        if not self.names or self.names[-1] in CALIBRATED:
+            return True
+        name = self.names[-1]
+        applied = next(item for item in self.point.model.robot.effects if item.name == name)
+        own = [f"{name}.{key}" for key, item in applied.effect.parameters.items() if not item.tries]
+        return any(key not in self.held for key in own)
 
     @property
     def total(self) -> float:
@@ -110,18 +124,19 @@ def fitted(
         sigma_yaw=sigma[1],
     )
     design = stacked(runs, result.point, kind, [*CALIBRATION, *own_of(every), *shared_of(knobs)])
+    ways = determined(design, result.robot)
     price, scatter = price_of_one(runs), scatter_of(runs, design)
     weighed = sorted(
         (
             (rise / scatter + price * len(kept), rise, kept)
-            for kept, rise in calibration_rises(design, result.robot, given)
+            for kept, rise in calibration_rises(design, result.robot, given, ways.held)
         ),
         key=lambda item: item[0],
     )
-    covariance = covariance_of(design)
+    covariance = covariance_of(design, ways)
     total, rise, kept = weighed[0]
     rises = {chosen: item for _, item, chosen in weighed}
-    importance = {name: _rise_without(name, design, covariance, result.point) for name in names}
+    importance = {name: rise_without(name, design, covariance, result.point) for name in names}
     for name in kept:
         without = tuple(other for other in kept if other != name)
         importance[name] = (rises[without] - rise) / scatter
@@ -149,49 +164,44 @@ def fitted(
         importance,
         covariance,
         design,
+        ways.held,
     )
 
 
 def calibration_rises(
-    design: Design, robot: Robot, given: Robot
+    design: Design, robot: Robot, given: Robot, held: Sequence[str] = ()
 ) -> list[tuple[tuple[str, ...], float]]:
     """For each subset of the calibration effects, what the cost rises when the others are put back.
 
-    Everything else is fitted again, to first order.
+    Everything else is fitted again, to first order. Effects that are `held`, for the data do not
+    determine them beside the others, are in no subset: a model that is the same under another name
+    is no rival.
     """
+    ways = every_direction(design.columns, robot)
+    flat = design.flat()
+    marks = flat[1] @ ways.matrix[:, [ways.names.index(name) for name in CALIBRATED]]
     names = [knob.name for knob, _ in design.columns]
-    white, flat = design.flat()
-    of = {name: flat[:, names.index(name)] * getattr(robot, name) for name in MULTIPLIERS}
-    base, left, right = (of[name] for name in MULTIPLIERS)
-    marks = np.stack([base, 0.5 * (right - left), left + right], axis=-1)
-    others = orthonormal(flat[:, [name not in MULTIPLIERS for name in names]])
-    marks = marks - others @ (others.T @ marks)
-    put_back = white - others @ (others.T @ white) - marks @ calibration_deviation(robot, given)
-    square, cross = marks.T @ marks, marks.T @ put_back
+    others = nuisance(flat[1][:, [name not in MULTIPLIERS for name in names]])
+    free = others.residual(marks)
+    put_back = others.residual(flat[0]) - free @ calibration_deviation(robot, given)
     costs = {}
-    for kept in _subsets(range(3)):
+    for kept in _subsets([index for index, name in enumerate(CALIBRATED) if name not in held]):
         chosen = list(kept)
-        inverse = np.linalg.pinv(square[np.ix_(chosen, chosen)], rcond=1e-9, hermitian=True)
-        gained = float(cross[chosen] @ inverse @ cross[chosen]) if chosen else 0.0
-        costs[tuple(CALIBRATED[index] for index in chosen)] = -gained
+        test = score_test(marks[:, chosen], free[:, chosen], put_back)
+        costs[tuple(CALIBRATED[index] for index in chosen)] = -test.gain if test else 0.0
     least = min(costs.values())
     return [(kept, cost - least) for kept, cost in costs.items()]
 
 
-def covariance_of(design: Design) -> Floats:
-    """Covariance of the values that a design's least squares gives; huge where nothing is heard."""
-    flat = design.flat()[1]
-    size = np.sqrt(np.sum(flat**2, axis=0))
-    heard = size > 1e-9
-    size = np.where(heard, size, 1.0)
-    scaled = flat / size
-    inverse = np.linalg.pinv(scaled.T @ scaled, rcond=1e-12, hermitian=True)
-    covariance = inverse / np.outer(size, size)
-    covariance[~heard, ~heard] = 1e12
+def covariance_of(design: Design, ways: Directions) -> Floats:
+    """Covariance of the values that a design's least squares gives; huge where nothing is told."""
+    covariance = ways.covariance(design.flat()[1])
+    untold = ~ways.matrix.any(axis=1)
+    covariance[untold, untold] = 1e12
     return np.asarray(covariance)
 
 
-def _rise_without(name: str, design: Design, covariance: Floats, point: Point) -> float:
+def rise_without(name: str, design: Design, covariance: Floats, point: Point) -> float:
     """How much the cost rises when an effect is taken out, by the curvature at the fit."""
     chosen, away = [], []
     for index, (knob, run) in enumerate(design.columns):

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.candidates import Candidate
+from werrimbi_odom.inference.fitting.candidates import Candidate
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.passes import watched

@@ -10,15 +10,17 @@ from typing import Literal
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge, Sides
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.stability import rivals_in_halves
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.rules import CALIBRATION_WORTH, RIVAL, SIMPLER
 from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding
 from werrimbi_odom.model.robot import Robot
@@ -72,6 +74,10 @@ class Diagnosis:
     """Median position error on the held-out runs, outliers and all [m]."""
     headings: Sides
     """Heading error on the held-out runs [rad]: a reference of headings alone is judged by it."""
+    left_out: tuple[LeftOut, ...] = ()
+    """Stretches of all runs that none of it is about."""
+    misfit: Misfit | None = None
+    """What is left because a law's form is not quite nature's, or beside everything found."""
 
     @property
     def robot(self) -> Robot:
@@ -145,6 +151,7 @@ def told(
         Sides(start.holdout, last.holdout),
         Sides(start.holdout_median, last.holdout_median),
         Sides(start.holdout_yaw, last.holdout_yaw),
+        judge.left_out,
     )
 
 
@@ -211,7 +218,10 @@ def _ranking(
     judge: Judge,
     start: Errors,
 ) -> list[Ranked]:
-    """All effects, what was found first; an effect's figures are those of its first trial."""
+    """All effects, what was found first, with the figures of the round that took it.
+
+    Those of the others are of their first trial.
+    """
     ranked: dict[str, Ranked] = {}
     mended = judge.of(Model(set_up.robot, judge.nothing_of_own)) if set_up.findings else start
     for finding in set_up.findings:
@@ -222,7 +232,9 @@ def _ranking(
             before = judge.of(this.before.point.model)
         for fit in this.tried:
             name = fit.names[-1]
-            if name not in ranked:
+            # What was taken is told as it stood when it was taken, not at an earlier trial.
+            taken = final.names[number : number + 1] == (name,)
+            if name not in ranked or taken:
                 p_value = chance(fit, this.before, this.number)
                 ranked[name] = _worth(name, p_value, before, judge.of(fit.point.model))
     calibrated = judge.of(rounds[0].before.point.model)

@@ -40,7 +40,9 @@ class Legs(NamedTuple):
     finish: Floats
     """Measured pose at their ends."""
     reading: Floats
-    """Covariance of a measured pose, (g, 3, 3)."""
+    """Covariance of the measured pose at each leg's end, (g, m, 3, 3); (g, 1, 3, 3) if all alike.
+
+    It stands for that at its start too."""
     begins: NDArray[np.bool_]
     """Where the filter must start anew: first legs of runs, (m,)."""
     skip: NDArray[np.bool_]
@@ -87,7 +89,8 @@ def filtered(legs: Legs) -> Unexpected:
     state = np.where(finite_start[first], start[first], 0.0)
     state[:, 2] = np.where(free, np.nan_to_num(legs.heading[first]), state[:, 2])
     state = np.repeat(state[None], sets, axis=0)
-    spread = legs.reading[:, None] * _both(finite_start[first])
+    alike = legs.reading.shape[1] == 1
+    spread = (legs.reading if alike else legs.reading[:, first]) * _both(finite_start[first])
     slope = np.zeros((first.size, 3, width))
     slope[free, 2, -1] = 1.0
     values = np.zeros((sets, count, 3))
@@ -110,7 +113,8 @@ def filtered(legs: Legs) -> Unexpected:
         slope = lever[0] @ slope
         slope[..., :-1] += turn[0] @ legs.slopes[leg]
         known = finite_end[leg]
-        total = spread + legs.reading[:, None] + UNMEASURED * _diagonal(~known)
+        reading = legs.reading if alike else legs.reading[:, leg]
+        total = spread + reading + UNMEASURED * _diagonal(~known)
         covariances[:, leg] = total
         new = np.where(known, finish[leg] - state, 0.0)
         new[..., 2] = wrap_all(new[..., 2])
@@ -122,7 +126,7 @@ def filtered(legs: Legs) -> Unexpected:
         # What was measured at the leg's end is all that is known of it; the rest (the heading,
         # where positions alone are measured) is as well known as the wheels carried it there.
         anew_state = np.where(known, finish[leg], state)
-        anew_spread = np.where(_both(known), legs.reading[:, None], 0.0)
+        anew_spread = np.where(_both(known), reading, 0.0)
         anew_spread = np.where(_both(~known), spread, anew_spread)
         state = state + (gain @ new[..., None])[..., 0]
         spread = spread - gain @ spread

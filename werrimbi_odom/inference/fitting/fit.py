@@ -18,28 +18,33 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked, unexpected
+from werrimbi_odom.inference.fitting.directions import Directions, determined, put_back
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     START_YAW,
     YAW_DRIFT,
     Knob,
     Model,
-    own_of,
     shared_of,
 )
-from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.fitting.noise import held_variances, likeliest
+from werrimbi_odom.inference.fitting.likelihood import Variances, headings_alone
+from werrimbi_odom.inference.fitting.noise import held_variances, likeliest, prior_cost
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict, predict_all
 from werrimbi_odom.inference.fitting.together import Together, laid_out
 from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.inference.linear import solved
+from werrimbi_odom.inference.rules import TYPICAL_STAMP_NOISE
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 JUMP = 40.0
 """Squared deviation, in units of what is usual for the run, above which the reference jumped."""
 
-FEW = 60
-"""Fewer measured coordinates than this cannot tell the noise; it is then taken as it was given."""
+FEW = 30
+"""Fewer measured coordinates than this cannot tell the noise; it is then taken as it was given.
+
+Thirty tell the logarithm of one standard deviation to 13 %, and of four to a quarter each: as much
+as a verdict needs. What two of them share is told apart by what is known of wheels."""
 
 _MEDIAN_CHI2_3 = 2.366
 _TAIL = 4.0  # degrees of freedom of the Student-t that weighs legs until the jumps are known
@@ -53,12 +58,17 @@ class ModelFit:
     free: tuple[Knob, ...]
     """Shared knobs that the driving determines, and that were fitted."""
     covariance: Floats
-    """Of the values of `free`."""
+    """Of the values of `free`; singular where they are more than the `numbers` that data hold."""
     mute: tuple[Knob, ...]
     """Shared knobs that the driving does not determine; left alone."""
+    held: tuple[str, ...]
+    """Directions that it does not determine (`directions.CALIBRATED`, or knobs): as given."""
+    numbers: int
+    """How many shared numbers the data hold."""
     at_bound: tuple[Knob, ...]
     """Fitted knobs that ran against what is physically possible."""
     minus_two_log_likelihood: float
+    """With what is known of wheels' noise beforehand (`noise.prior_cost`)."""
 
     @property
     def robot(self) -> Robot:
@@ -79,6 +89,7 @@ def start_point(
         max(robot.right_wheel_noise, 1e-5),
         sigma_xy or 1e-3,
         sigma_yaw or 2e-3,
+        TYPICAL_STAMP_NOISE,
     )
     own = tuple(_nuisances(robot, run) for run in laid.runs)
     return Point(
@@ -114,30 +125,41 @@ def fit_model(
     laid = laid_out(runs)
     given = point.model
     if find_jumps:
+        noise = point.variances
         point = _robustly(laid, point, kind, knobs)
+        if laid.data < FEW:
+            point = replace(point, variances=noise)
     point = replace(point, variances=held_variances(point.variances, sigma_xy, sigma_yaw))
     if rounds > 0:
         point = _turned_to_the_first_legs(laid, point, kind)
-    held = (sigma_xy is not None, sigma_yaw is not None)
-    free, covariance = shared_of(knobs), np.zeros((0, 0))
+    known = (sigma_xy is not None, sigma_yaw is not None)
     for _ in range(rounds):
         if laid.data >= FEW:
-            variances = likeliest(Costs(laid, point, kind), point.variances, held)
+            variances = likeliest(Costs(laid, point, kind), point.variances, known)
             point = replace(point, variances=variances)
-        free, covariance = _determined(stacked(laid, point, kind, knobs))
-        mute = {knob.name: given.value(knob) for knob in shared_of(knobs) if knob not in free}
-        point = replace(point, model=point.model.turned(mute, [{}] * len(laid.runs)))
-        point, moved = _gauss_newton(laid, point, kind, [*free, *own_of(knobs)])
+        design = stacked(laid, point, kind, knobs)
+        ways = determined(design, point.model.robot)
+        model = put_back(point.model, given, ways.held, shared_of(knobs))
+        point, moved = _gauss_newton(laid, replace(point, model=model), kind, knobs, ways)
         if not moved:
             break
+    if rounds < 1:
+        design = stacked(laid, point, kind, knobs)
+        ways = determined(design, point.model.robot)
+    covariance = ways.covariance(design.flat()[1])
+    moves = ways.matrix[:, ways.shared].any(axis=1)
+    where = np.flatnonzero(moves)
+    free = [design.columns[index][0] for index in where]
     costs = Costs(laid, point, kind)
     return ModelFit(
         point,
         tuple(free),
-        covariance,
+        covariance[np.ix_(where, where)],
         tuple(knob for knob in shared_of(knobs) if knob not in free),
+        ways.held,
+        len(ways.shared),
         tuple(knob for knob in free if _at_bound(point.model.value(knob), knob)),
-        float(costs(point.variances)[0]),
+        float((costs(point.variances) + prior_cost(point.variances))[0]),
     )
 
 
@@ -156,7 +178,7 @@ def _robustly(runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence
         scale = float(np.median(deviation[counted])) / _MEDIAN_CHI2_3 if counted.any() else 1.0
         point = replace(point, variances=_scaled(point.variances, max(scale, 1e-6)))
         weight = (_TAIL + 3.0) / (_TAIL + deviation / scale)
-        step = solved(design, weight)
+        step = _step(design, determined(design, point.model.robot), weight)
         point = replace(point, model=moved(point.model, design, step))
         if _small(design, step):
             break
@@ -170,6 +192,8 @@ def without_jumps(runs: Together, point: Point, kind: ReferenceKind) -> Point:
 
 def _jumps(runs: Together, point: Point, kind: ReferenceKind) -> tuple[NDArray[np.bool_], ...]:
     nothing = tuple(np.zeros(size, dtype=np.bool_) for size in np.diff(runs.legs))
+    if headings_alone(runs):
+        return nothing  # a gyro does not jump; legs that deviate are those that turn
     white, _ = unexpected(runs, replace(point, excluded=nothing), kind).whitened()
     deviation = np.sum(white**2, axis=-1)
     found = []
@@ -181,7 +205,7 @@ def _jumps(runs: Together, point: Point, kind: ReferenceKind) -> tuple[NDArray[n
 
 
 def _gauss_newton(
-    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob]
+    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob], ways: Directions
 ) -> tuple[Point, bool]:
     """The point of least squares near a point, and whether it is another one."""
     prediction = predict_all(point.model, runs)
@@ -189,7 +213,7 @@ def _gauss_newton(
     for number in range(6):
         design = stacked(runs, point, kind, knobs, prediction)
         best = min(best, float(np.sum(design.white**2)))
-        step = solved(design, np.ones(runs.count))
+        step = _step(design, ways)
         if _small(design, step):
             return point, number > 0
         for _ in range(5):
@@ -212,14 +236,11 @@ def _small(design: Design, step: Floats) -> bool:
     return bool(np.all(np.abs(step) < 1e-4 * scales))
 
 
-def solved(design: Design, weight: Floats) -> Floats:
-    """Weighted least squares step; directions that nothing excites are not moved."""
-    root = np.sqrt(weight)[:, None]
+def _step(design: Design, ways: Directions, weight: Floats | None = None) -> Floats:
+    """Least squares step of the columns, weighted by leg (m,), in the directions given."""
+    root = np.sqrt(np.ones(design.white.shape[0]) if weight is None else weight)[:, None]
     matrix = (design.slopes * root[..., None]).reshape(design.white.size, len(design.columns))
-    size = np.sqrt(np.sum(matrix**2, axis=0))
-    size = np.where(size > 0.0, size, 1.0)
-    target = (design.white * root).ravel()
-    return -np.linalg.lstsq(matrix / size, target, rcond=1e-9)[0] / size
+    return -ways.matrix @ solved(matrix @ ways.matrix, (design.white * root).ravel())
 
 
 def moved(model: Model, design: Design, step: Floats) -> Model:
@@ -238,29 +259,8 @@ def _scaled(variances: Variances, factor: float) -> Variances:
         variances.right * factor,
         variances.xy * factor,
         variances.yaw * factor,
+        variances.stamp * factor,
     )
-
-
-def _determined(design: Design) -> tuple[list[Knob], Floats]:
-    """Shared knobs that the driving determines, and their covariance."""
-    columns = design.columns
-    flat = design.flat()[1]
-    kept = list(range(len(columns)))
-    while True:
-        size = np.sqrt(np.sum(flat[:, kept] ** 2, axis=0))
-        heard = size > 1e-9
-        scaled = flat[:, kept] / np.where(heard, size, 1.0)
-        inverse = np.linalg.pinv(scaled.T @ scaled, rcond=1e-10, hermitian=True)
-        covariance = inverse / np.outer(size, size).clip(1e-300)
-        spread = np.where(heard, np.sqrt(np.diag(covariance)), np.inf)
-        limits = np.array([columns[column][0].undetermined for column in kept])
-        shared = np.array([columns[column][1] < 0 for column in kept])
-        excess = np.where(shared, spread / limits, 0.0)
-        if not kept or excess.max(initial=0.0) <= 1.0:
-            count = int(shared.sum())
-            names = [columns[column][0] for column in kept[:count]]
-            return names, np.asarray(covariance[:count, :count])
-        kept.pop(int(np.argmax(excess)))
 
 
 def _nuisances(robot: Robot, run: MatchedRun) -> dict[str, float]:

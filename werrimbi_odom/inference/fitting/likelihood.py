@@ -30,7 +30,7 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True, slots=True)
 class Variances:
-    """The four variances of the noise; arrays of shape (g,) for g sets tried at once.
+    """The five variances of the noise; arrays of shape (g,) for g sets tried at once.
 
     The reference's are of each pose (absolute) or of each interval (incremental).
     """
@@ -43,6 +43,10 @@ class Variances:
     """Of the reference's position, each coordinate [m²]."""
     yaw: Floats
     """Of the reference's heading [rad²]."""
+    stamp: Floats
+    """Of the stamps of a reference of headings alone [s²]: while it turns at ω, it errs by ω times
+    that. A gyro is read in bursts and its messages wait; where positions are measured, what stamps
+    err by is part of their noise."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -110,7 +114,8 @@ def innovations(
     skip = runs.gap if excluded is None else runs.gap | excluded
     view = view_of(robot.effects)
     start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
-    if kind == "incremental":
+    gyro = headings_alone(runs)
+    if kind == "incremental" and not gyro:
         return _of_increments(robot, runs, (start, finish), prediction, variances, slopes, skip)
     begins = np.zeros(count, dtype=np.bool_)
     begins[runs.legs[:-1]] = True
@@ -119,14 +124,18 @@ def innovations(
         if given is not None:
             heading[runs.legs[index]] = given
             start[runs.legs[index], 2] = np.nan
+    noise = _wheel_part(prediction, variances)
+    reading = _reading(robot, variances, runs, prediction, adds_up=kind == "incremental")
+    if kind == "incremental":
+        noise[..., 2, 2] += variances.yaw[:, None] * runs.intervals
     found = filtered(
         Legs(
             prediction.relative,
-            _wheel_part(prediction, variances),
+            noise,
             slopes,
             start,
             finish,
-            _reading(robot, variances),
+            reading,
             begins,
             skip,
             heading,
@@ -188,11 +197,27 @@ def errors_between(start: Floats, finish: Floats, prediction: Prediction) -> Flo
     return np.asarray(error)
 
 
-def _reading(robot: Robot, variances: Variances) -> Floats:
-    """Covariance of a measured pose, and of the counters' reading with it; (g, 3, 3)."""
-    reading = np.zeros((variances.left.size, 3, 3))
-    reading[:, 0, 0] = reading[:, 1, 1] = variances.xy
-    reading[:, 2, 2] = variances.yaw
+def headings_alone(runs: Together) -> bool:
+    """Whether the references measure headings and nothing else: gyros, mostly."""
+    return not np.isfinite(runs.finish[:, :2]).any()
+
+
+def stamp_noise(prediction: Prediction, duration: Floats) -> Floats:
+    """Variance of a heading for stamps that err by 1 s, at the turn rate of each leg; (m,)."""
+    return np.asarray(np.square(prediction.turn / duration))
+
+
+def _reading(
+    robot: Robot, variances: Variances, runs: Together, prediction: Prediction, *, adds_up: bool
+) -> Floats:
+    """Covariance of a measured pose, and of the counters' reading with it; (g, 1 or m, 3, 3)."""
+    alone = headings_alone(runs)
+    reading = np.zeros((variances.left.size, runs.count if alone else 1, 3, 3))
+    reading[..., 0, 0] = reading[..., 1, 1] = variances.xy[:, None]
+    if not adds_up:
+        reading[..., 2, 2] = variances.yaw[:, None]
+    if alone:
+        reading[..., 2, 2] += variances.stamp[:, None] * stamp_noise(prediction, runs.duration)
     return np.asarray(reading + np.diag(reading_noise(robot)))
 
 

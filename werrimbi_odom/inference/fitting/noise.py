@@ -1,6 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The four variances of greatest likelihood: two wheels, the reference's position and heading."""
+"""The variances that data and prior knowledge make likeliest, and how well they are known.
+
+Of two wheels, of the reference's position and heading, and of its stamps where it has nothing but
+headings.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +12,31 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.inference.fitting.costs import Costs
-from werrimbi_odom.inference.fitting.likelihood import Variances
+from werrimbi_odom.inference.fitting.likelihood import Variances, headings_alone
 from werrimbi_odom.inference.fitting.prediction import Prediction
+from werrimbi_odom.inference.fitting.together import laid_out
+from werrimbi_odom.inference.rules import (
+    STAMP_NOISE_SPREAD,
+    TYPICAL_STAMP_NOISE,
+    TYPICAL_WHEEL_NOISE,
+    WHEEL_NOISE_SPREAD,
+)
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 NOISES = ("left_wheel_noise", "right_wheel_noise", "reference_sigma_xy", "reference_sigma_yaw")
 
+STAMP_NOISE = "reference_sigma_stamp"
+"""Beside them, of a reference of headings alone [s]."""
+
+_ALL = (*NOISES, STAMP_NOISE)
+
+_KNOWN = [0, 1, 4]  # of which something is known beforehand: both wheels, stamps
+_MIDDLE = np.log([TYPICAL_WHEEL_NOISE, TYPICAL_WHEEL_NOISE, TYPICAL_STAMP_NOISE])
+_SPREAD = np.array([WHEEL_NOISE_SPREAD, WHEEL_NOISE_SPREAD, STAMP_NOISE_SPREAD])
 _LOWEST, _HIGHEST = np.log(1e-14), np.log(10.0)
 
 
@@ -48,23 +68,23 @@ def held_variances(
 
 
 def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Variances:
-    """Variances of greatest likelihood, the model being given; by Fisher's scoring.
+    """Variances of greatest posterior likelihood, the model being given; by Fisher's scoring.
 
     The innovations' derivatives in the logarithms of the variances come from one pass of the filter
     over all sets; expected curvature is positive, so every step goes downhill.
     """
     prediction = costs.prediction()
-    moving = _moving(held)
+    moving = _moving(costs, held)
     logs = np.clip(np.log(_row(start)[moving]), _LOWEST, _HIGHEST)
     damping = 1e-6
-    cost, gradient, curvature = _scored(costs, prediction, start, held, logs)
+    cost, gradient, curvature = _scored(costs, prediction, start, moving, logs)
     for _ in range(25):
         scale = np.diag(curvature)
         step = -np.linalg.solve(
             curvature + np.diag(damping * scale + 1e-9 * scale.max(initial=1e-12) + 1e-12), gradient
         )
         tried = np.clip(logs + np.clip(step, -2.0, 2.0), _LOWEST, _HIGHEST)
-        ahead = _scored(costs, prediction, start, held, tried)
+        ahead = _scored(costs, prediction, start, moving, tried)
         if ahead[0] > cost + 1e-9 * abs(cost):
             if damping > 1e4:
                 break
@@ -74,63 +94,110 @@ def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Varian
         logs, (cost, gradient, curvature), damping = tried, ahead, 0.1 * damping
         if gained < 1e-3 or moved < 1e-4:
             break
-    return _variances(start, held, logs[None, :])
+    return _variances(start, moving, logs[None, :])
+
+
+def prior_cost(variances: Variances) -> Floats:
+    """What is known before any drive, as minus two log-likelihood; shape (g,).
+
+    Log-normal laws of k_L, k_R and the scatter of stamps (`rules`): enough that a few legs cannot
+    call a wrong base noise, nothing beside the data of an hour.
+    """
+    rows = np.stack([variances.left, variances.right, variances.stamp], axis=-1)
+    return np.asarray(np.sum(((0.5 * np.log(rows) - _MIDDLE) / _SPREAD) ** 2, axis=-1))
 
 
 def _scored(
-    costs: Costs, prediction: Prediction, base: Variances, held: tuple[bool, bool], logs: Floats
+    costs: Costs,
+    prediction: Prediction,
+    base: Variances,
+    moving: NDArray[np.bool_],
+    logs: Floats,
 ) -> tuple[float, Floats, Floats]:
     """Cost at the logarithms of the variances, its gradient, and its expected curvature."""
     step = 1e-4
-    found = costs.innovations(
-        _variances(base, held, np.concatenate([logs[None], logs + step * np.eye(logs.size)])),
-        prediction,
-    )
-    cost = found.minus_two_log_likelihood()
+    sets = _variances(base, moving, np.concatenate([logs[None], logs + step * np.eye(logs.size)]))
+    found = costs.innovations(sets, prediction)
+    cost = found.minus_two_log_likelihood() + prior_cost(sets)
     counted = found.known.any(axis=-1)
     root = np.linalg.inv(np.linalg.cholesky(found.covariance[0, counted]))
     of_covariance = (found.covariance[1:, counted] - found.covariance[0, counted]) / step
     of_value = (found.value[1:, counted] - found.value[0, counted]) / step
     spread = (root @ of_covariance @ root.swapaxes(-1, -2)).reshape(logs.size, -1)
     shift = (root @ of_value[..., None]).reshape(logs.size, -1)
-    return float(cost[0]), (cost[1:] - cost[0]) / step, spread @ spread.T + 2.0 * shift @ shift.T
+    curvature = spread @ spread.T + 2.0 * shift @ shift.T
+    known = np.zeros(moving.size)
+    known[_KNOWN] = 0.5 / _SPREAD**2
+    curvature += np.diag(known[moving])
+    return float(cost[0]), (cost[1:] - cost[0]) / step, curvature
 
 
 def noise_estimates(
     costs: Costs, variances: Variances, held: tuple[bool, bool]
 ) -> dict[str, NoiseEstimate]:
-    """The four noises [m^0.5, m^0.5, m, rad] with standard deviations from the curvature."""
-    function = _in_logs(costs, variances, held)
-    moving = _moving(held)
+    """The noises [m^0.5, m^0.5, m, rad] (and [s] of stamps) that the data can tell.
+
+    What the reference does not measure has none; standard deviations are from the curvature.
+    """
+    moving = _moving(costs, held)
+    function = _in_logs(costs, variances, moving)
     sigmas = np.sqrt(_row(variances))
     logs = 2.0 * np.log(sigmas[moving])
     covariance = 2.0 * np.linalg.pinv(_hessian(function, logs), hermitian=True)
-    share = np.zeros(4)
+    share = np.zeros(len(_ALL))
     share[moving] = 0.5 * np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    told = moving | np.array([False, False, *held, False])
     return {
         name: NoiseEstimate(float(sigma), float(sigma * part), bool(part < 0.5))
-        for name, sigma, part in zip(NOISES, sigmas, share, strict=True)
+        for name, sigma, part, tell in zip(_ALL, sigmas, share, told, strict=True)
+        if tell
     }
 
 
-def _moving(held: tuple[bool, bool]) -> Floats:
-    return np.array([True, True, not held[0], not held[1]])
+def _moving(costs: Costs, held: tuple[bool, bool]) -> NDArray[np.bool_]:
+    """Which of the variances the data may tell: those of what is measured and not known."""
+    runs = laid_out(costs.runs)
+    measured = np.isfinite(runs.finish)
+    return np.array(
+        [
+            True,
+            True,
+            not held[0] and bool(measured[:, :2].any()),
+            not held[1] and bool(measured[:, 2].any()),
+            headings_alone(runs),
+        ]
+    )
 
 
 def _row(variances: Variances) -> Floats:
-    return np.array([variances.left[0], variances.right[0], variances.xy[0], variances.yaw[0]])
+    return np.array(
+        [
+            variances.left[0],
+            variances.right[0],
+            variances.xy[0],
+            variances.yaw[0],
+            variances.stamp[0],
+        ]
+    )
 
 
-def _variances(base: Variances, held: tuple[bool, bool], logs: Floats) -> Variances:
+def _variances(base: Variances, moving: NDArray[np.bool_], logs: Floats) -> Variances:
     """Of rows of logarithms, shape (g, free)."""
     table = np.tile(_row(base), (logs.shape[0], 1))
-    table[:, _moving(held)] = np.exp(logs)
+    table[:, moving] = np.exp(logs)
     return Variances(*table.T)
 
 
-def _in_logs(costs: Costs, base: Variances, held: tuple[bool, bool]) -> Callable[[Floats], Floats]:
+def _in_logs(
+    costs: Costs, base: Variances, moving: NDArray[np.bool_]
+) -> Callable[[Floats], Floats]:
     prediction = costs.prediction()
-    return lambda logs: costs(_variances(base, held, logs), prediction)
+
+    def cost(logs: Floats) -> Floats:
+        sets = _variances(base, moving, logs)
+        return costs(sets, prediction) + prior_cost(sets)
+
+    return cost
 
 
 def _with_gradient(function: Callable[[Floats], Floats], logs: Floats) -> tuple[float, Floats]:

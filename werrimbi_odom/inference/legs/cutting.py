@@ -242,7 +242,7 @@ def record_of(
         run.name,
         counters,
         measured,
-        touched(measured.time, [(part.begin, part.end) for part in found]),
+        touched(measured.time, [*((part.begin, part.end) for part in found), *run.taken_out]),
         found,
         _typical(reference.sigma_xy),
         _typical(reference.sigma_yaw),
@@ -259,7 +259,8 @@ def _silences(
     parts.append(("the ticks are", counters.time[inside], way[inside]))
     found = []
     for who, time, gone in parts:
-        for index in np.flatnonzero(gaps_in(time, gone)).tolist():
+        unheard = gaps_in(time, gone) & ~touched(time, run.taken_out)
+        for index in np.flatnonzero(unheard).tolist():
             begin, end = float(time[index]), float(time[index + 1])
             driven = _driven(robot, counters, begin, end)
             found.append(LeftOut(run.path, begin, end, "gap", f"{who} silent while {driven}"))
@@ -272,8 +273,8 @@ def _driven(robot: Robot, counters: Counters, begin: float, end: float) -> str:
     left, right = (np.diff(counters.at(time), axis=0) * [robot.left_tick, robot.right_tick]).T
     path = float(np.abs(0.5 * (left + right)).sum())
     turned = math.degrees(float(np.abs(right - left).sum()) / robot.track)
-    words = [f"drives {path:.1f} m"] if path >= 0.05 else []
-    words += [f"turns {turned:.0f}°"] if turned >= 20.0 or not words else []
+    words = [f"drove {path:.1f} m"] if path >= 0.05 else []
+    words += [f"turned {turned:.0f}°"] if turned >= 20.0 or not words else []
     return f"the robot {' and '.join(words)}"
 
 

@@ -23,13 +23,14 @@ import numpy as np
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.chances import noncentrality
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate, orthonormal
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import STEP
 from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.inference.manoeuvres.imagined import imagined
 from werrimbi_odom.inference.manoeuvres.rivals import Experiment, Sensitivities, sensitivities_of
@@ -143,31 +144,39 @@ def _seen(
     drives: Experiment, candidates: Sequence[Candidate], final: Fitted, tried: int
 ) -> dict[str, DetectionLimit]:
     look = sensitivities_of(drives, candidates, final.knobs)
-    return {item.name: _best(item, look, tried) for item in candidates}
+    return {item.name: _best(item, look, tried, final.held) for item in candidates}
 
 
-def _best(candidate: Candidate, look: Sensitivities, tried: int) -> DetectionLimit:
+def _best(
+    candidate: Candidate, look: Sensitivities, tried: int, held: Sequence[str]
+) -> DetectionLimit:
     """The parameter of an effect that shows best."""
-    limits = _limits(candidate, look, tried, POWER)
+    limits = _limits(candidate, look, tried, POWER, held)
     return min(limits, key=lambda limit: limit.minimum_detectable / limit.typical)
 
 
 def _limits(
-    candidate: Candidate, look: Sensitivities, tried: int, power: float
+    candidate: Candidate,
+    look: Sensitivities,
+    tried: int,
+    power: float,
+    held: Sequence[str] = (),
 ) -> Iterator[DetectionLimit]:
     """For each parameter but its shape, beside what calibration may explain."""
     effect = candidate.effect
-    others = [
-        look.white[name] for name in CALIBRATED if name in look.white and name != candidate.name
-    ]
-    frame = orthonormal(np.concatenate([look.own, *others], axis=-1))
+    beside = [name for name in CALIBRATED if name in look.white and name != candidate.name]
+    if candidate.name in CALIBRATED:
+        # What the runs do not determine is held, so that it hides nothing (`Fitted.held`).
+        beside = [name for name in beside if name not in held]
+    others = [look.white[name] for name in beside]
+    frame = nuisance(np.concatenate([look.own, *others], axis=-1))
     marks = look.white[candidate.name]
     width = marks.shape[-1]
     if candidate.per_run:
         marks = look.drives.each_run(marks)
-    free = marks - frame @ (frame.T @ marks)
-    heard = np.sum(free**2, axis=0)
-    heard = np.where(heard > 1e-8 * np.maximum(np.sum(marks**2, axis=0), 1e-12), heard, 0.0)
+    free = frame.residual(marks)
+    heard, before = (np.sum(columns**2, axis=0) for columns in (free, marks))
+    heard = np.where(heard > DETERMINED**2 * np.maximum(before, SILENT), heard, 0.0)
     wanted = noncentrality(max(int(np.sum(heard > 0.0)), 1), SURE / max(tried, 1), power)
     information = heard.reshape(-1, width).sum(axis=0)
     if effect.quadrature is not None:  # the phase that shows least
@@ -192,7 +201,7 @@ def _shown_by(diagnosis: Diagnosis, hidden: Sequence[Candidate], *, better: bool
         beside = [item for item in _calibrated() if item.name not in _names(wanted)]
         look = sensitivities_of(drives, [*wanted, *beside], final.knobs)
         for item in list(wanted):
-            if not _best(item, look, diagnosis.rounds[-1].number).hidden:
+            if not _best(item, look, diagnosis.rounds[-1].number, final.held).hidden:
                 found[item.name] = ideal.name
                 wanted.remove(item)
         if not wanted:

@@ -17,10 +17,10 @@ import numpy as np
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import sizes_of
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.search import Round
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins, twin_where
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, pace_of
 from werrimbi_odom.inference.manoeuvres.imagined import imagined, measured_in

@@ -16,11 +16,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED, Candidate, orthonormal
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob, Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.linear import nuisance, solved
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 
@@ -122,7 +123,7 @@ def trace_along(look: Sensitivities, name: str, sizes: Floats) -> Trace:
 def best_alias(look: Sensitivities, target: Trace, rival: Candidate) -> Floats:
     """How far along its coordinates a rival looks most like the target in some drives, (k,)."""
     squeezed, width = _squeezed(look, target, (rival.name, *_beside(target.name, rival)), ())
-    found = np.linalg.lstsq(squeezed[:, :width], squeezed[:, width], rcond=1e-6)[0]
+    found = solved(squeezed[:, :width], squeezed[:, width])
     return np.asarray(found[: look.white[rival.name].shape[-1]])
 
 
@@ -133,7 +134,7 @@ def separation(pairs: Sequence[tuple[Sensitivities, Trace]], rival: Candidate) -
     shared, anew = ((), (rival.name,)) if rival.per_run else ((rival.name,), ())
     parts = [_squeezed(look, target, (*shared, *beside), anew) for look, target in pairs]
     rows, width = np.concatenate([part for part, _ in parts]), parts[0][1]
-    solution = np.linalg.lstsq(rows[:, :width], rows[:, width], rcond=1e-6)[0]
+    solution = solved(rows[:, :width], rows[:, width])
     return float(np.sum((rows[:, width] - rows[:, :width] @ solution) ** 2))
 
 
@@ -143,7 +144,7 @@ def difference(
     """Legs (m, 3) of drives ahead: the target less what the rival, known so far, would make."""
     names = (rival.name, *_beside(known[1].name, rival))
     squeezed, width = _squeezed(known[0], known[1], names, ())
-    solution = np.linalg.lstsq(squeezed[:, :width], squeezed[:, width], rcond=1e-6)[0]
+    solution = solved(squeezed[:, :width], squeezed[:, width])
     marks = np.concatenate([ahead[0].legs[name] for name in names], axis=-1)
     return np.asarray(ahead[1].legs - marks @ solution)
 
@@ -160,8 +161,7 @@ def _squeezed(
     own = np.concatenate(
         [look.own, *(look.drives.each_run(look.white[name]) for name in anew)], axis=-1
     )
-    frame = orthonormal(own)
     columns = [*(look.white[name] for name in shared), target.white[:, None]]
     wanted = np.concatenate(columns, axis=-1)
-    free = wanted - frame @ (frame.T @ wanted)
+    free = nuisance(own).residual(wanted)
     return np.asarray(np.linalg.qr(free, mode="r")), wanted.shape[-1] - 1

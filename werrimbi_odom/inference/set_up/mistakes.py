@@ -28,6 +28,12 @@ from werrimbi_odom.model.robot import Robot
 __all__ = ["IN_DEGREES", "SetUp", "SetUpFinding", "look_for_mistakes"]
 
 
+IN_MILLIMETRES = (
+    "the reference's positions are in millimetres, and x_m and y_m mean metres: convert these "
+    "columns (divide by 1000) and diagnose again"
+)
+
+
 @dataclass(frozen=True)
 class SetUp:
     """What is set up wrongly, and the robot with it put right."""
@@ -39,6 +45,16 @@ class SetUp:
 
     Where one wheel alone is off, a `wheel_radius_scale` goes with the ratio, which keeps the mean
     of the radii."""
+
+    @property
+    def to_convert(self) -> str | None:
+        """What of the reference is in another unit, in words: no effect can mend that."""
+        for finding in self.findings:
+            if finding.effect == IN_DEGREES:
+                return finding.words
+        thousand = {each.effect: each.words for each in self.findings if each.factor == "1000"}
+        both = thousand.get("track_width"), thousand.get("wheel_radius_scale")
+        return IN_MILLIMETRES if both[0] is not None and both[0] == both[1] else None
 
 
 def look_for_mistakes(

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from werrimbi_odom.inference.adding.added import Added
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.report.decimate import MARKS, small, spread_and_extremes
 from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, PAPER, escaped, paled, plain
 
@@ -33,8 +32,8 @@ class Step:
 
 def steps_of(added: Added) -> list[Step]:
     """As given, calibrated alone, and with the effect."""
-    names = [("as given", "before"), (f"+ {added.effect.name}", "after")]
-    if added.effect.name not in CALIBRATED:
+    names = [("as given", "before"), (f"+ {added.name.replace(',', ', ')}", "after")]
+    if not added.is_calibration:
         names.insert(1, ("calibrated", "calibrated"))
     return [
         Step(
@@ -107,7 +106,7 @@ def held_out_legs_figure(added: Added) -> go.Figure:
     figure = go.Figure()
     for name, legs, colour, symbol in (
         ("as given", added.holdout.before, ORANGE, "x"),
-        (f"with {added.effect.name}", added.holdout.after, BLUE, "circle"),
+        (f"with {added.name.replace(',', ', ')}", added.holdout.after, BLUE, "circle"),
     ):
         error = 1e3 * legs.errors.error[~legs.outlier]
         error = error[np.isfinite(error[:, :2]).all(axis=1)]

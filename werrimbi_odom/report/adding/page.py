@@ -16,6 +16,7 @@ from werrimbi_odom.report.adding.figures import (
 from werrimbi_odom.report.adding.words import words_of
 from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure
 from werrimbi_odom.report.diagnosis.page import effect_card
+from werrimbi_odom.report.numbers import listed
 from werrimbi_odom.report.page import Page, Shown
 from werrimbi_odom.report.save import save_report
 
@@ -37,14 +38,14 @@ def write_adding_page(
 
 def adding_page(added: Added, made: Mapping[str, str]) -> Page:
     """The report as a page."""
-    name = added.effect.name
     shown = [
         Shown(
             "falling",
             "The error, step by step",
             "Blue is the error of drives that took no part in the fit. It should fall with the "
-            "effect, and reach the dashed line where nothing but noise is left.",
-            {"": error_falling_figure(steps_of(added), added.holdout.floor)},
+            "effect, and reach the dashed line where nothing but noise is left; while something "
+            "is still missing there is no such line.",
+            {"": error_falling_figure(steps_of(added), added.noise_alone(added.holdout))},
         ),
         Shown(
             "legs",
@@ -53,12 +54,13 @@ def adding_page(added: Added, made: Mapping[str, str]) -> Page:
             {"": held_out_legs_figure(added)},
         ),
     ]
+    cards = "".join(effect_card(effect) for effect in added.effects)
     shown.append(
         Shown(
             "physics",
             "What was added",
             "The physics, what it does to the data, and how to check it on the robot.",
-            html=f'<div class="cards">{effect_card(added.effect)}</div>',
+            html=f'<div class="cards">{cards}</div>',
             main=False,
         )
     )
@@ -73,4 +75,9 @@ def adding_page(added: Added, made: Mapping[str, str]) -> Page:
                 main=False,
             )
         )
-    return Page(f"Added: {name}", words_of(added), shown, made=made)
+    return Page(
+        f"Added: {listed([effect.name for effect in added.effects])}",
+        words_of(added),
+        shown,
+        made=made,
+    )

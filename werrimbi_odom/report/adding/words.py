@@ -10,12 +10,11 @@ from typing import Any
 
 from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.values import FittedParameter
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
-from werrimbi_odom.report.numbers import scaled_with_std
+from werrimbi_odom.report.left_out import jumps_words, left_out_json, left_out_words
+from werrimbi_odom.report.numbers import listed, quantity, scaled_with_std
 from werrimbi_odom.report.printed import WIDTH, filled, table
-
-_HONEST = (0.8, 1.25)  # NEES
+from werrimbi_odom.report.sizes import sizes_words
 
 
 def words_of(added: Added) -> str:
@@ -29,8 +28,9 @@ def _headline(added: Added) -> str:
     leg = added.holdout.after.leg
     share = 100.0 * (1.0 - sides.after / sides.before) if sides.before > 0.0 else math.nan
     change = f"{abs(share):.{0 if abs(share) >= 10 else 1}f} % {'lower' if share > 0 else 'higher'}"
+    names = listed([effect.name for effect in added.effects])
     text = (
-        f"With {added.effect.name} the error of the held-out drives is {_mm(sides.after)} mm where "
+        f"With {names} the error of the held-out drives is {_mm(sides.after)} mm where "
         f"it was {_mm(sides.before)} mm ({change}; rms over legs of {leg:g} m)."
     )
     if added.also:
@@ -46,12 +46,17 @@ def _parameters(added: Added) -> str:
         lines.append(f"  {name} = {value_told(item)}")
         told = item.declared.says + remark_told(item)
         lines.append(textwrap.fill(told, WIDTH, initial_indent="    ", subsequent_indent="    "))
-    if added.effect.name in CALIBRATED:
-        lines += ["", filled("It is written as the robot file's own multipliers:")]
-        for name in MULTIPLIERS:
-            before, after = getattr(added.given, name), getattr(added.robot, name)
-            lines.append(f"  {name}: {before:.6g} -> {after:.6g}")
-    return "\n".join(lines)
+    return "\n".join([*lines, *_sizes(added)])
+
+
+def _sizes(added: Added) -> list[str]:
+    """Base and radii that moved, as what they are on the robot; where none did, that."""
+    stds = added.multiplier_stds
+    found = {name: (getattr(added.robot, name), stds[name]) for name in MULTIPLIERS}
+    words = sizes_words(added.given, found)
+    if not words:
+        return ["", filled("Base and radii stay as the robot file has them.")]
+    return ["", filled(f"On the robot: {words}. It is written as the robot file's multipliers.")]
 
 
 def value_told(item: FittedParameter) -> str:
@@ -59,7 +64,7 @@ def value_told(item: FittedParameter) -> str:
     if item.value is None:
         return "another one in each drive"
     std = math.nan if item.std is None else item.std
-    return scaled_with_std(item.value, std, item.declared.unit)
+    return quantity(item.value, std, item.declared.unit)
 
 
 def remark_told(item: FittedParameter) -> str:
@@ -79,51 +84,75 @@ def _errors(added: Added) -> str:
     sides = (("held-out drives", added.holdout), ("fitted drives", added.train))
     columns = {"before": "before", "calibrated": "calibrated", "after": "with it"}
     title = f"Position error, rms over legs of {added.holdout.after.leg:g} m"
-    if added.effect.name in CALIBRATED:
+    if added.is_calibration:
         del columns["calibrated"]
     else:
-        title += " (calibrated: all fitted but the effect)"
+        what = "the effect" if len(added.effects) == 1 else "the effects"
+        title += f" (calibrated: all fitted but {what})"
+    floors = ["noise alone"] if added.explained else []
     rows = [
         [
             name,
             *(_mm(side.figures(which).rmse_position_m) for which in columns),
-            _mm(side.floor),
+            *(_mm(added.noise_alone(side)) for _ in floors),
         ]
         for name, side in sides
     ]
-    return table(title, ["[mm]", *columns.values(), "noise alone"], rows)
+    rows += [
+        [
+            f"  without {name}",
+            *("" for _ in range(len(columns) - 1)),
+            _mm(error),
+            *("" for _ in floors),
+        ]
+        for name, error in added.without.items()
+    ]
+    return table(title, ["[mm]", *columns.values(), *floors], rows)
 
 
 def _remarks(added: Added) -> list[str]:
     texts = [_rest(added), _noise(added)]
     if added.set_aside:
-        judged = ", ".join(dict.fromkeys(added.set_aside))
+        judged = listed(list(dict.fromkeys(added.set_aside)))
         texts.append(
-            f"Judged on {judged}, put aside for it"
+            f"Judged on parts put aside of {judged}; the values that are written "
             + (
-                "; the values that are written were then fitted on all drives."
+                "were then fitted on all of it."
                 if added.written_from_all
-                else " (a last part of the drive); the written values are fitted on the rest."
+                else "are fitted on the rest."
             )
         )
     else:
         texts.append("The written values are fitted on RUN alone; --holdout only judged them.")
+    texts += [*left_out_words(added.left_out), *jumps_words(added.left_out)]
     return ["\n".join(filled(text) for text in texts)]
 
 
 def _rest(added: Added) -> str:
     nees = added.holdout.figures("after").nees
     if not added.remaining:
-        if _HONEST[0] < nees < _HONEST[1]:
+        if added.covariance == "honest":
             return (
                 f"What remains is noise: nothing more is seen in the errors, and they are as large "
                 f"as the covariance says (NEES {nees:.2f}, honest is 1)."
             )
+        seen = "Nothing more is seen in the errors of the fitted drives"
+        off = [item for item in added.lengths if item.says == added.covariance != "unknown"]
+        if not off:
+            return f"{seen}; the held-out ones have too few legs to judge the covariance by."
+        worst = max(off, key=lambda item: abs(math.log(item.nees)))
         return (
-            f"Nothing more is seen in the errors of the fitted drives; those of the held-out ones "
-            f"are {math.sqrt(nees):.1f} times what the covariance says (NEES {nees:.2f})."
+            f"{seen}; those of the held-out ones are {math.sqrt(worst.nees):.1f} times what the "
+            f"covariance says over legs of {worst.leg:g} m (NEES {worst.nees:.2f}, honest is 1)."
         )
-    first = added.remaining[0]
+    first = added.remaining[0] if added.misfit is None else added.misfit.cell
+    if added.misfit is not None and added.misfit.effect is not None:
+        share = 100.0 * (added.misfit.share or 0.0)
+        return (
+            f"The law of {added.misfit.effect} does not fit fully: what is left of the "
+            f"{first.channel} error goes with {first.name}, {share:.2g} % of what the law explains "
+            f"(NEES {nees:.2f}, honest is 1)."
+        )
     return (
         f"Something is still missing: the {first.channel} error goes with {first.name} "
         f"(p = {first.p_value:.0e}; NEES {nees:.2f}, honest is 1)."
@@ -131,8 +160,11 @@ def _rest(added: Added) -> str:
 
 
 def _noise(added: Added) -> str:
-    if not added.noise_written:
-        return "The wheels' noise in the file is left alone until the model explains the drives."
+    if not added.explained:
+        return (
+            "The wheels' noise in the file is left alone, and how large an error noise alone would "
+            "leave is not known, until the model explains the drives."
+        )
     wheels = []
     for name, short in (("left_wheel_noise", "k_L"), ("right_wheel_noise", "k_R")):
         item = added.noises[name]
@@ -152,7 +184,8 @@ def _mm(metres: float) -> str:
 def json_of(added: Added) -> dict[str, Any]:
     """With the contract's names, and more."""
     return {
-        "effect": added.effect.name,
+        "effect": added.name,
+        "effects": [effect.name for effect in added.effects],
         "parameters": {
             name: {
                 "value": item.value,
@@ -165,14 +198,18 @@ def json_of(added: Added) -> dict[str, Any]:
             }
             for name, item in added.parameters.items()
         },
-        "train": _side(added.train),
-        "holdout": {**_side(added.holdout), "set_aside": list(added.set_aside)},
+        "train": _side(added, added.train),
+        "holdout": {
+            **_side(added, added.holdout),
+            "without": dict(added.without),
+            "set_aside": list(added.set_aside),
+        },
         "calibration": {
             name: {"value": getattr(added.robot, name), "std": added.multiplier_stds[name]}
             for name in MULTIPLIERS
         },
         "noise": {
-            "written": added.noise_written,
+            "written": added.explained,
             **{
                 name: {"value": item.value, "std": item.std, "determined": item.determined}
                 for name, item in added.noises.items()
@@ -185,18 +222,22 @@ def json_of(added: Added) -> dict[str, Any]:
             {"channel": cell.channel, "variable": cell.name, "p_value": cell.p_value}
             for cell in added.remaining
         ],
-        "p_value": added.p_value,
+        "p_value": max((p for p in added.chances.values() if p is not None), default=None),
+        "p_values": dict(added.chances),
         "objection": added.objection,
+        "objections": dict(added.objections),
+        "covariance": added.covariance,
+        "left_out": left_out_json(added.left_out),
     }
 
 
-def _side(side: Side) -> dict[str, Any]:
+def _side(added: Added, side: Side) -> dict[str, Any]:
     after = side.figures("after")
     return {
         "before": side.sides.before,
         "after": side.sides.after,
         "calibrated": side.figures("calibrated").rmse_position_m,
-        "noise_alone": side.floor,
+        "noise_alone": added.noise_alone(side),
         "median_before": side.figures("before").median_position_m,
         "median_after": after.median_position_m,
         "nees": after.nees,

@@ -16,6 +16,7 @@ _UNITS = {
     "right_wheel_noise": "m^0.5",
     "reference_sigma_xy": "m",
     "reference_sigma_yaw": "rad",
+    "reference_sigma_stamp": "s",
 }
 
 

@@ -20,6 +20,7 @@ from werrimbi_odom.inference.comparison.groups import ByVariable, Cell
 from werrimbi_odom.inference.comparison.judged_legs import Legs
 from werrimbi_odom.inference.comparison.systematic import Systematic
 from werrimbi_odom.inference.comparison.verdict import verdict_of
+from werrimbi_odom.report.left_out import left_out_json
 
 
 def json_of(comparison: Comparison) -> dict[str, Any]:
@@ -35,6 +36,7 @@ def json_of(comparison: Comparison) -> dict[str, Any]:
             "enough": verdict.enough,
             "mean_is_right": verdict.mean_is_right,
             "gross": verdict.gross,
+            "covariance": verdict.covariance,
             "noise": verdict.noise,
             "noise_factor": [verdict.factor.value, verdict.factor.low, verdict.factor.high],
             "systematic": [_systematic(part) for part in verdict.systematic],
@@ -50,6 +52,7 @@ def json_of(comparison: Comparison) -> dict[str, Any]:
         "reference": [
             {"measures": measure, **asdict(noise)} for measure, noise in comparison.prepared.noises
         ],
+        "left_out": left_out_json(comparison.left_out),
         "outliers": _outliers(comparison),
         "each_leg": _each_leg(comparison),
     }

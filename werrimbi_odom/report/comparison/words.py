@@ -5,10 +5,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
-from werrimbi_odom.inference.comparison.verdict import FEWEST, Depends, Verdict, verdict_of
+from werrimbi_odom.inference.comparison.consistency import FEWEST, AtLength, trend_of
+from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
 from werrimbi_odom.report.comparison.phrases import systematic_told
+from werrimbi_odom.report.left_out import left_out_words
 from werrimbi_odom.report.printed import filled
 
 NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
@@ -43,7 +46,7 @@ def words_of(
         paragraphs += _by_motion(comparison, verdict)
         if not verdict.gross:
             paragraphs += _elsewhere(comparison, verdict)
-            paragraphs += _covariance(comparison, verdict)
+            paragraphs += covariance_words(verdict, comparison.main.all.figures.nees)
     paragraphs += _reference(comparison)
     paragraphs.append(_next(verdict, next_step))
     return "\n".join(filled(text) for text in paragraphs if text)
@@ -71,10 +74,13 @@ def _headline(comparison: Comparison, verdict: Verdict) -> str:
             "The model is grossly wrong: that is not calibration, but something set up wrongly "
             "(a number of the robot file, a wheel, or the reference's mounting)."
         )
-    if verdict.mean_is_right and not verdict.off and verdict.noise == "too large":
+    if verdict.mean_is_right and not verdict.off_at_all and verdict.covariance == "too large":
         return "The model is right, and better than its covariance says."
     if verdict.mean_is_right and verdict.noise == "too small":
         return "On average the model is right, but its errors are larger than it promises."
+    if verdict.mean_is_right and verdict.covariance == "honest" and verdict.off_at_all:
+        where = _listed([NAMES[kind] for kind in KINDS if kind in verdict.off_at_all])
+        return f"The model's errors are larger than it promises in {where}."
     if verdict.mean_is_right:
         return "The model's errors are larger than it promises."
     failing = [kind for kind in KINDS if any(part.kind == kind for part in verdict.systematic)]
@@ -145,6 +151,8 @@ def _elsewhere(comparison: Comparison, verdict: Verdict) -> list[str]:
             if other.variable == item.variable and other.channel != item.channel
         ]
         lines.append(f"- {_dependence(item, others)}")
+    if not verdict.good:
+        lines += [_run_told(comparison, index) for index in verdict.runs[:2]]
     for cell in verdict.cells[:2]:
         lines.append(
             f"- Errors are larger on the floor about x {cell.x:.1f} m, y {cell.y:.1f} m (a square "
@@ -170,49 +178,97 @@ def _chance(p_value: float) -> str:
     return f"chance of it without a cause: {p_value:.0e}"
 
 
-def _covariance(comparison: Comparison, verdict: Verdict) -> list[str]:
-    nees = comparison.main.all.figures.nees
-    there = next(item for item in comparison.lengths if item.leg == verdict.judged_at)
-    over = there.all.figures.nees
-    factor, leg = verdict.factor, _metres(verdict.judged_at)
-    if verdict.good:
-        return [f"- The covariance is honest (NEES {nees:.2f}, 1 is right)."]
+def _run_told(comparison: Comparison, index: int) -> str:
+    item = comparison.runs[index]
+    figures = item.legs.figures
+    return (
+        f"- Run {item.run.name} stands out: NEES {figures.nees:.3g} over its "
+        f"{_counted(figures.count, 'leg')}."
+    )
+
+
+def covariance_words(verdict: Verdict, nees: float) -> list[str]:
+    """What is said of the covariance, true to the table of lengths.
+
+    Parameters
+    ----------
+    nees : float
+        Of all legs of the length asked for.
+    """
+    if verdict.covariance == "unknown":
+        return [f"- NEES is {nees:.3g} (1 is right); legs are too few to judge by it."]
+    if verdict.covariance == "honest":
+        return [_honest(verdict, nees)]
+    small = verdict.covariance == "too small"
+    at = next((item for item in verdict.lengths if item.leg == verdict.judged_at), None)
+    by_noise = verdict.mean_is_right and verdict.noise == verdict.covariance
+    if by_noise and at is not None and at.says == verdict.noise and verdict.factor.told:
+        return [_by_noise(verdict, at)]
+    size = "small" if small else "large"
+    text = f"The covariance is too {size}, {_where(verdict.lengths, small=small)}"
     if not verdict.mean_is_right:
-        if nees < 1.5:
-            return [f"- The covariance is honest so far (NEES {nees:.2f}, 1 is right)."]
         return [
-            f"- So the covariance is {_times(nees)} times too small (NEES {nees:.3g}, 1 is right). "
-            "Whether the wheels' noise is stated rightly can be told when that is mended."
-        ]
-    times = math.sqrt(factor.value)
-    low, high = math.sqrt(factor.low), math.sqrt(factor.high)
-    between = f"{low:.2g} to {high:.2g}" if math.isfinite(high) else f"at least {low:.2g}"
-    if verdict.noise == "too small":
-        return [
-            f"- The covariance is {_times(over)} times too small over legs of {leg} (NEES "
-            f"{over:.3g}, 1 is right). They scatter as if the wheels' noise k were {times:.2g} "
-            f"times what the robot file says ({between})."
-        ]
-    if verdict.noise == "too large":
-        return [
-            f"- The covariance is too large (NEES {over:.2f} over legs of {leg}, 1 is right): they "
-            f"scatter as if the wheels' noise k were {times:.2g} times what the robot file says "
-            f"({between})."
+            f"- {text}. Whether the wheels' noise is stated rightly can be told when what goes "
+            "wrong is mended."
         ]
     if verdict.noise == "grows":
+        return [f"- {text}: that is no noise of the wheels, something systematic is missing."]
+    if small:
         return [
-            f"- The covariance is too small (NEES {nees:.3g}, 1 is right), and the more so the "
-            "longer the leg: that is no noise of the wheels, something systematic is missing."
+            f"- {text}: something comes and goes along the way, which no noise of the wheels does."
         ]
-    if verdict.noise == "comes and goes" or verdict.off:
-        return [
-            f"- The covariance is too small (NEES {nees:.3g}, 1 is right), for short legs more "
-            "than for long ones: something comes and goes along the way, which no noise of the "
+    return [f"- {text}."]
+
+
+def _honest(verdict: Verdict, nees: float) -> str:
+    if verdict.mean_is_right and verdict.off:
+        where = _listed([NAMES[kind] for kind in verdict.off])
+        return (
+            f"- Over all legs together the covariance is honest (NEES {nees:.2f}, 1 is right); in "
+            f"{where} it is too small: something comes and goes there, which no noise of the "
             "wheels does."
-        ]
-    if verdict.noise == "honest":
-        return [f"- The covariance is honest (NEES {nees:.2f}, 1 is right)."]
-    return [f"- NEES is {nees:.3g} (1 is right); the wheels' noise cannot be judged by it."]
+        )
+    so_far = "" if verdict.mean_is_right else " so far"
+    return f"- The covariance is honest{so_far} (NEES {nees:.2f}, 1 is right)."
+
+
+def _by_noise(verdict: Verdict, at: AtLength) -> str:
+    """Where one factor on the wheels' noise explains it."""
+    factor = verdict.factor
+    times, low, high = (math.sqrt(part) for part in factor)
+    between = f"{low:.2g} to {high:.2g}" if math.isfinite(high) else f"at least {low:.2g}"
+    leg, errors = _metres(at.leg), math.sqrt(at.nees)
+    if at.says == "too small":
+        text = f"{_times(at.nees)} times too small over legs of {leg} (NEES {at.nees:.3g}, 1 is "
+        text += f"right: errors are {errors:.2g} times what it promises)"
+    else:
+        text = f"too large (NEES {at.nees:.3g} over legs of {leg}, 1 is right)"
+    return (
+        f"- The covariance is {text}. Beside the reference's own noise they scatter as if the "
+        f"wheels' noise k were {times:.2g} times what the robot file says ({between})."
+    )
+
+
+def _where(lengths: Sequence[AtLength], *, small: bool) -> str:
+    """Over which legs NEES is off, and how it goes with their length."""
+    first, last = lengths[0], lengths[-1]
+    worst = (max if small else min)(lengths, key=lambda item: item.nees)
+    if len(lengths) == 1:
+        return f"NEES {worst.nees:.3g} over legs of {_metres(worst.leg)} (1 is right)"
+    trend = trend_of(lengths)
+    if trend == ("longer" if small else "shorter"):
+        how = "and the more so the longer the leg"
+    elif trend != "between":
+        how = "and the more so the shorter the leg"
+    else:
+        how = f"most over legs of {_metres(worst.leg)}"
+        others = [item for item in (first, last) if item is not worst]
+        beside = " and ".join(f"{item.nees:.3g} over {_metres(item.leg)}" for item in others)
+        return f"{how} (NEES {worst.nees:.3g}, where 1 is right; {beside})"
+    return (
+        f"{how} (NEES {first.nees:.3g} over {_metres(first.leg)}, {last.nees:.3g} over "
+        f"{_metres(last.leg)}, where 1 is right)"
+    )
 
 
 def _times(value: float) -> str:
@@ -244,7 +300,7 @@ def _reference(comparison: Comparison) -> list[str]:
     if outliers:
         total = outliers + comparison.main.all.figures.count
         lines.append(f"On {outliers} of {total} legs the reference jumped; they are left out.")
-    return lines
+    return [*lines, *left_out_words(comparison.left_out)]
 
 
 def _next(verdict: Verdict, next_step: str) -> str:
@@ -256,6 +312,11 @@ def _next(verdict: Verdict, next_step: str) -> str:
         return (
             f"Next: {next_step} says whether an effect is missing; if none is, `werrimbi "
             "calibrate fit` fits the wheels' noise."
+        )
+    if verdict.mean_is_right:
+        return (
+            f"Next: {next_step} says whether an effect is missing; if it finds none, look at what "
+            "happened on the legs that err most."
         )
     return f"Next: {next_step} says which physical effect explains it."
 

@@ -17,6 +17,7 @@ from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, strongest
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.values import values_of
+from werrimbi_odom.report.left_out import left_out_json
 
 
 def json_of(
@@ -63,7 +64,15 @@ def json_of(
         ],
         "train": _sides(diagnosis.train),
         "holdout": _sides(diagnosis.holdout),
+        "left_out": left_out_json(diagnosis.left_out),
         "remaining": [_cell(cell) for cell in _once(_sure(diagnosis.remaining))],
+        "misfit": None
+        if diagnosis.misfit is None
+        else {
+            "effect": diagnosis.misfit.effect,
+            "share": diagnosis.misfit.share,
+            **_cell(diagnosis.misfit.cell),
+        },
         "could_have_been_seen": [_limit(sight) for sight in sights],
     }
 

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, Model
 from werrimbi_odom.model.pose import Floats

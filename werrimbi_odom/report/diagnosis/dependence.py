@@ -8,7 +8,7 @@ import math
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
 from werrimbi_odom.model.pose import Floats
 
@@ -111,12 +111,8 @@ def _shape(cell: Dependence) -> str:
         bottom, top = (_round(float(at[index])) for index in (values.argmin(), values.argmax()))
         return f", a curve, lowest at {bottom} and highest at {top} {variable.unit}".rstrip()
     if cell.form == "place":
-        values = _errors(cell)
-        index = int(np.argmax(np.abs(values - np.median(values))))
-        return (
-            f", most of it about x {variable.left[index]:.1f} m, y {variable.right[index]:.1f} m "
-            "in the reference's frame"
-        )
+        x, y = place_of(cell)
+        return f", most of it about x {x:.1f} m, y {y:.1f} m in the reference's frame"
     return ""
 
 

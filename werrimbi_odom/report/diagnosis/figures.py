@@ -80,7 +80,7 @@ def ranking_figure(diagnosis: Diagnosis) -> go.Figure:
             cliponaxis=False,
             customdata=[item.effect for item in ranked],
             hovertext=[
-                f"{item.effect}, {word}: {_text(each)}<br>p = {p_words(item.p_value)}"
+                f"{item.effect}, {word}: {_text(each)}<br>chance: {p_words(item.p_value)}"
                 for item, each in zip(ranked, sides, strict=True)
             ],
             hovertemplate="%{hovertext}<extra></extra>",

@@ -9,15 +9,21 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.effects.page import page_of
-from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, chance
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.diagnosis.named import effect_named
+from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
+from werrimbi_odom.inference.rules import ONE_WHEEL
 from werrimbi_odom.inference.set_up.mistakes import SetUpFinding
 from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.report.diagnosis.expected import expected_words
 from werrimbi_odom.report.diagnosis.values import Value, ranked_of, values_of
-from werrimbi_odom.report.numbers import chance_words, length, with_std
+from werrimbi_odom.report.numbers import chance_words, length, quantity
+from werrimbi_odom.report.sizes import sizes_words
 
 
 @dataclass(frozen=True)
@@ -48,9 +54,9 @@ def about(told: Told, name: str) -> list[str]:
     lines += _large(diagnosis, name)
     ranked = ranked_of(diagnosis, name)
     if ranked is not None and name not in mistakes(diagnosis):
-        lines.append(f"How sure: {chance_words(ranked.p_value)}.")
+        lines.append(f"How sure: {chance_words(ranked.p_value)}{_deviations(diagnosis, name)}.")
     lines += cost(told, name)
-    lines += ruler(effect, "Check it")
+    lines += ruler(diagnosis, effect, "Check it")
     return lines
 
 
@@ -74,7 +80,23 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
         else f"{parameter} = {_value(value)} ({value.says})"
         for parameter, value in values.items()
     ]
-    return [f"How large: {'; '.join(parts)}."]
+    late = ""
+    if name == "reference_delay" and values["delay"].value < 0.0:
+        late = " Negative: it is the encoders' stamps that are late against the reference's."
+    return [f"How large: {'; '.join(parts)}.{late}"]
+
+
+def _deviations(diagnosis: Diagnosis, name: str) -> str:
+    """How far from null the surest of its parameters is, in standard deviations."""
+    far = {
+        parameter: abs(value.value - value.null) / value.std
+        for parameter, value in values_of(diagnosis, name).items()
+        if value.std > 0.0 and math.isfinite(value.value)
+    }
+    if not far:
+        return ""
+    first = max(far, key=lambda parameter: far[parameter])
+    return f"; {first} is {far[first]:.0f} standard deviations from none"
 
 
 def sizes(diagnosis: Diagnosis, name: str, *, believed: bool = False) -> str:
@@ -88,7 +110,7 @@ def sizes(diagnosis: Diagnosis, name: str, *, believed: bool = False) -> str:
 
 
 def _value(value: Value) -> str:
-    return f"{with_std(value.value, value.std)} {value.unit}".rstrip()
+    return quantity(value.value, value.std, value.unit)
 
 
 def cost(told: Told, name: str) -> list[str]:
@@ -126,6 +148,39 @@ def judged(told: Told) -> str:
     return f"{which} (legs of {told.leg:g} m)"
 
 
+def sizes_found(diagnosis: Diagnosis) -> str:
+    """Base and radii of the best model as one measures them on the robot; "" where none is off.
+
+    Where set-up mistakes were found, sizes are told with them.
+    """
+    if mistakes(diagnosis):
+        return ""
+    given, final = diagnosis.given, diagnosis.final
+    sizes = sizes_needed(final, given, set(diagnosis.found) & set(CALIBRATED))
+    return sizes_words(given, dict(sizes_at(final, given, sizes)))
+
+
+def one_wheel(diagnosis: Diagnosis) -> str | None:
+    """The wheel that is off alone, where its size is what two effects of calibration are found of.
+
+    A ratio and a scale are then one thing on the robot.
+    """
+    found = set(diagnosis.found) & set(CALIBRATED)
+    if mistakes(diagnosis) or not {"unequal_wheel_radii", "wheel_radius_scale"} <= found:
+        return None
+    sizes = sizes_at(
+        diagnosis.final,
+        diagnosis.given,
+        sizes_needed(diagnosis.final, diagnosis.given, found),
+    )
+    left, right = (
+        abs(math.log(sizes[name][0] / getattr(diagnosis.given, name))) for name in MULTIPLIERS[1:]
+    )
+    if min(left, right) > ONE_WHEEL * max(left, right):
+        return None
+    return "left" if left > right else "right"
+
+
 def whole(told: Told) -> list[str]:
     """With everything that was found, where that is more than one thing."""
     diagnosis = told.diagnosis
@@ -138,9 +193,31 @@ def whole(told: Told) -> list[str]:
     ]
 
 
-def ruler(effect: Effect | None, head: str) -> list[str]:
-    """How to check an effect on the robot, after some words."""
+def ruler(diagnosis: Diagnosis, effect: Effect | None, head: str) -> list[str]:
+    """How to check an effect on the robot, after some words, and what to expect there."""
     if effect is None:
         return []
     text = page_of(effect).sections.get("Ruler")
-    return [f"{head}: {' '.join(text.split())}."] if text else []
+    if not text:
+        return []
+    values = {name: item.value for name, item in values_of(diagnosis, effect.name).items()}
+    numbers = expected_words(effect.name, values, diagnosis.robot) if values else ""
+    ending = f"; {numbers}" if numbers else ""
+    return [f"{head}: {' '.join(text.split())}{ending}."]
+
+
+def at_bounds(diagnosis: Diagnosis) -> dict[str, str]:
+    """Effects that would help, but only at a value that physics does not allow, and that value."""
+    said: dict[str, str] = {}
+    for this in diagnosis.rounds:
+        for fit in this.tried:
+            name = fit.names[-1]
+            helps = fit.total < this.before.total and chance(fit, this.before, this.number) < SURE
+            wild = [knob for knob in fit.at_bound if knob.startswith(f"{name}.")]
+            if helps and wild and name not in diagnosis.found:
+                parameter = wild[0].rpartition(".")[2]
+                applied = fit.point.model.robot.effects[-1]
+                unit = applied.effect.parameters[parameter].unit
+                value = quantity(applied.values[parameter], math.nan, unit)
+                said.setdefault(name, f"{parameter} = {value}")
+    return said

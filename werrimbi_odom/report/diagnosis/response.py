@@ -17,16 +17,20 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.diagnosis.candidates import orthonormal
 from werrimbi_odom.inference.diagnosis.evidence import Amount, legs_pushed, pushes_of
-from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
+from werrimbi_odom.inference.fitting.candidates import unexplained
+from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.linear import SILENT
 from werrimbi_odom.model.pose import Floats
 
 PARTS = 12
 _UNTOLD = 10.0  # times the usual error bar: a part in which next to nothing was driven
+_BLURRED = (
+    3e-3  # of the best told pattern of parts: one told worse would swing the curve for nothing
+)
 _SAME = 1e-9  # of the range: values nearer than this are one
 
 
@@ -81,7 +85,7 @@ def response(
     edges : ndarray, shape (parts + 1,)
     """
     prediction = predict_all(point.model, runs)
-    white, basis = stacked(runs, point, kind, knobs, prediction).flat()
+    frame, rest = unexplained(runs, point, kind, knobs, prediction)
     path = path_of(point.model, runs)
     of_left, of_right = pushes_of(runs, path, amount, point)
     left, right = (_marks(side, edges) for side in values)
@@ -89,15 +93,13 @@ def response(
     if values[0] is not values[1] or amount.channel in ("left", "right", "along"):
         change = change + legs_pushed(runs, right, of_right)
     marks = unexpected(runs, point, kind, change, prediction).whitened()[1]
-    flat = marks[..., : change.shape[-1]].reshape(white.size, -1)
-    heard = np.sum(flat**2, axis=0) > 1e-18
-    frame = orthonormal(basis)
-    free = flat[:, heard] - frame @ (frame.T @ flat[:, heard])
-    rest = white - frame @ (frame.T @ white)
-    scale = np.sqrt(np.sum(flat[:, heard] ** 2, axis=0))
+    flat = marks[..., : change.shape[-1]].reshape(rest.size, -1)
+    length = np.sqrt(np.sum(flat**2, axis=0))
+    heard = length > SILENT
+    scale, free = length[heard], frame.residual(flat[:, heard])
     normal = (free / scale).T @ (free / scale)
     # What the knobs explain as well (a constant, mostly) is no part of it: left out, not blown up.
-    inverse = np.linalg.pinv(normal, rcond=3e-3, hermitian=True)
+    inverse = np.linalg.pinv(normal, rcond=_BLURRED, hermitian=True)
     solution = -(inverse @ ((free / scale).T @ rest)) / scale
     excess = max(float(np.mean(rest**2)), 1.0)  # errors larger than promised: wider bars
     spread = np.sqrt(np.maximum(np.diag(inverse), 0.0) * excess) / scale

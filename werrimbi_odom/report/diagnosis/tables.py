@@ -11,7 +11,7 @@ from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.report.diagnosis.values import values_of
-from werrimbi_odom.report.numbers import length, p_words, with_std
+from werrimbi_odom.report.numbers import in_unit, length, p_words
 from werrimbi_odom.report.printed import table
 
 _RANKED = 8
@@ -31,8 +31,11 @@ def _parameters(diagnosis: Diagnosis) -> str:
     rows = [
         [
             f"{name}.{parameter}",
-            "each drive its own" if item.per_run else with_std(item.value, item.std),
-            item.unit,
+            *(
+                ("each drive its own", item.unit)
+                if item.per_run
+                else in_unit(item.value, item.std, item.unit)
+            ),
         ]
         for name in names
         for parameter, item in values_of(diagnosis, name).items()

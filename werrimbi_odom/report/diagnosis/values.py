@@ -12,9 +12,9 @@ import numpy as np
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import sizes_of, std_as_effect
-from werrimbi_odom.inference.diagnosis.candidates import CALIBRATED
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES
 

@@ -5,12 +5,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, chance
+from werrimbi_odom.inference.diagnosis.diagnosis import VERY_SURE, Diagnosis
 from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
-from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.diagnosis.as_json import significant
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
@@ -18,13 +18,17 @@ from werrimbi_odom.report.diagnosis.phrases import (
     Told,
     about,
     also,
+    at_bounds,
     cost,
     judged,
     mistakes,
+    one_wheel,
     ruler,
     sizes,
+    sizes_found,
     whole,
 )
+from werrimbi_odom.report.left_out import jumps_words, left_out_words
 from werrimbi_odom.report.numbers import chance_words, length, listed
 from werrimbi_odom.report.printed import filled
 
@@ -35,8 +39,10 @@ __all__ = ["NextSteps", "Told", "words_of"]
 class NextSteps:
     """Commands for the same robot and drives, as one would type them."""
 
-    add: str = "werrimbi add {effect} --robot R RUN... --out NEW.yaml"
-    """With {effect} where its name goes."""
+    add: Callable[[Sequence[str]], str] = lambda names: (
+        f"werrimbi add {','.join(names)} --robot R RUN... --out NEW.yaml"
+    )
+    """Of the names of effects."""
     draft: str = "werrimbi draft --robot R RUN... --out my_effect"
     diagnose: str = "werrimbi diagnose"
 
@@ -51,6 +57,10 @@ def words_of(told: Told, steps: NextSteps) -> str:
         "unknown": _unknown,
     }[diagnosis.verdict]
     paragraphs = [*tell(told, steps), *_otherwise(diagnosis)]
+    left_out = [*left_out_words(diagnosis.left_out), *jumps_words(diagnosis.left_out)]
+    last = (index for index, text in enumerate(paragraphs) if text.startswith("Next: "))
+    place = next(last, len(paragraphs))
+    paragraphs[place:place] = left_out
     return "\n".join(_filled(text) for text in paragraphs if text)
 
 
@@ -63,20 +73,32 @@ def _filled(text: str) -> str:
     return filled(text, hanging=head)
 
 
-_HEADS = ("What it is", "How large", "How sure", "What it costs", "Check it", "Next", "But", "Why")
+_HEADS = (
+    "On the robot",
+    "What it is",
+    "How large",
+    "How sure",
+    "What it costs",
+    "Check it",
+    "Next",
+    "But",
+    "Why",
+)
 
 
 def _none(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     hidden = [sight for sight in told.sights if sight.hidden]
-    wanders = any(cell.p_value < VERY_SURE for cell in diagnosis.depends_on)
+    misfit = diagnosis.misfit is not None
+    wanders = not misfit and any(cell.p_value < VERY_SURE for cell in diagnosis.depends_on)
     lines = [
         "Nothing is missing that these drives could show"
-        + ("." if wanders else ": the model explains them to their noise.")
+        + ("." if wanders or misfit else ": the model explains them to their noise."),
+        *_law(told),
     ]
     errors = diagnosis.holdout.after
     if math.isfinite(errors):
-        like = "" if wanders else ", and they look like noise"
+        like = "" if wanders or misfit else ", and they look like noise"
         lines.append(f"Its errors on {judged(told)} are {length(errors)}{like}.")
     if wanders:
         lines.append(
@@ -103,16 +125,20 @@ def _named(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     name = diagnosis.effect or ""
     lines = _set_up(diagnosis)
+    things = _things(diagnosis)
     if not lines:
-        lines.append(f"One thing is missing: {name}." if len(diagnosis.found) == 1 else
-                     f"{_count(len(diagnosis.found))} things are missing: "
-                     f"{listed(diagnosis.found)}. The most important one first.")  # fmt: skip
+        lines.append(f"One thing is missing: {things[0]}." if len(things) == 1 else
+                     f"{_count(len(things))} things are missing: "
+                     f"{listed(things)}. The most important one first.")  # fmt: skip
     lines += about(told, name)
     for other in diagnosis.found[1:]:
         if other not in mistakes(diagnosis):
             lines += also(told, other)
+    sizes = sizes_found(diagnosis)
+    if sizes:
+        lines.append(f"On the robot: {sizes}.")
     lines += [*whole(told), *_law(told), *_at_bounds(diagnosis)]
-    lines += _next_add(told, name, steps)
+    lines += _next_add(told, steps)
     return [*lines, *_not_shown(told)]
 
 
@@ -155,10 +181,11 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
         lines.append(
             "No manoeuvre of the library tells them apart in reasonable time; a ruler may."
         )
+    rest = [other for other in diagnosis.found if other not in rivals]
     lines.append("Or, if you know which it is, add it, for example:")
-    lines.append(f"    {steps.add.format(effect=rivals[0])}")
+    lines.append(f"    {steps.add([rivals[0], *rest])}")
     for name in rivals[:3]:
-        lines += ruler(effect_named(diagnosis, name), f"Check {name}")
+        lines += ruler(diagnosis, effect_named(diagnosis, name), f"Check {name}")
     for other in diagnosis.found[1:]:
         if other not in rivals and other not in mistakes(diagnosis):
             lines += also(told, other)
@@ -196,6 +223,19 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
     return lines
 
 
+def _things(diagnosis: Diagnosis) -> list[str]:
+    """What was found, by name; one wheel that is off is one thing, whatever effects it takes."""
+    side = one_wheel(diagnosis)
+    if side is None:
+        return list(diagnosis.found)
+    radii = [name for name in diagnosis.found if name in _OF_A_WHEEL]
+    told = {radii[0]: f"the size of the {side} wheel ({' with '.join(radii)})", radii[1]: ""}
+    return [words for name in diagnosis.found if (words := told.get(name, name))]
+
+
+_OF_A_WHEEL = ("unequal_wheel_radii", "wheel_radius_scale")
+
+
 def _set_up(diagnosis: Diagnosis) -> list[str]:
     """Set-up mistakes first: nothing else counts while they are there."""
     findings = diagnosis.set_up.findings
@@ -227,44 +267,35 @@ def _otherwise(diagnosis: Diagnosis) -> list[str]:
 
 
 def _law(told: Told) -> list[str]:
-    """What is left once everything found is put in."""
-    left = [cell for cell in told.diagnosis.remaining if cell.p_value < VERY_SURE]
-    if not left:
+    """What is left once everything found is put in, or of a law that the robot file holds."""
+    misfit = told.diagnosis.misfit
+    if misfit is None:
         return []
+    cell = f"{dependence_words(misfit.cell)} ({chance_words(misfit.cell.p_value)})"
+    if misfit.effect is None:
+        return [f"But: something is left. With everything found put in, {cell}."]
+    share = "" if misfit.share is None else f", {100.0 * misfit.share:.2g} % of what it explains,"
     return [
-        f"But: the law does not fit fully. With everything found put in, "
-        f"{dependence_words(left[0])} ({chance_words(left[0].p_value)})."
+        f"But: the law of {misfit.effect} does not fit fully. What it leaves{share} is in what it "
+        f"looks at: {cell}. That is a matter of the law's form, and no other effect."
     ]
 
 
 def _at_bounds(diagnosis: Diagnosis) -> list[str]:
-    """Effects that would help at a value that physics does not allow."""
-    said: dict[str, str] = {}
-    for this in diagnosis.rounds:
-        for fit in this.tried:
-            name = fit.names[-1]
-            helps = fit.total < this.before.total and chance(fit, this.before, this.number) < SURE
-            wild = [knob for knob in fit.at_bound if knob.startswith(f"{name}.")]
-            if helps and wild and name not in diagnosis.found:
-                value = fit.point.model.robot.effects[-1].values[wild[0].rpartition(".")[2]]
-                said.setdefault(name, f"{wild[0].rpartition('.')[2]} = {value:g}")
     return [
-        f"But: {name} would lower the error too, only with {value}, beyond what physics allows: it "
-        "is not that effect. Look how the reference is made; one that was integrated from the same "
-        "counters errs so."
-        for name, value in said.items()
+        f"But: {name} would lower the error too, only with {value}, the limit of what physics "
+        "allows: it is not that effect."
+        for name, value in at_bounds(diagnosis).items()
     ]
 
 
-def _next_add(told: Told, name: str, steps: NextSteps) -> list[str]:
+def _next_add(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
-    if name == IN_DEGREES:
-        return ["Next: convert the reference's yaw to radians, and diagnose again."]
-    lines = ["Next: add it to the model, fitted with all calibration:"]
-    lines.append(f"    {steps.add.format(effect=name)}")
-    if len(diagnosis.found) > 1:
-        lines.append("and diagnose again with the new robot file.")
-    return lines
+    it = "it" if len(diagnosis.found) == 1 else "all of it"
+    return [
+        f"Next: add {it} to the model, fitted together with all calibration:",
+        f"    {steps.add(diagnosis.found)}",
+    ]
 
 
 def _not_shown(told: Told) -> list[str]:

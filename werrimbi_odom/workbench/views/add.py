@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.report.adding.words import remark_told, value_told, words_of
+from werrimbi_odom.report.numbers import listed
 from werrimbi_odom.report.page_text import unwrapped
 from werrimbi_odom.workbench.figure import figure
 from werrimbi_odom.workbench.gain import gain_figure
@@ -63,7 +64,7 @@ def _gain(tab: Tab) -> None:
 
 def _values(number: int, added: Added) -> None:
     with box("section", "values"):
-        text("h3", f"{number}. {added.effect.name}")
+        text("h3", f"{number}. {listed([effect.name for effect in added.effects])}")
         if added.parameters:
             rows(
                 ["parameter", "value ± 1 σ", "what it is"],
@@ -86,9 +87,7 @@ def _values(number: int, added: Added) -> None:
 def _proposed(tab: Tab, step: Step) -> None:
     assert step.added is not None
     with box("section", "proposed", aria_label="An objection"):
-        text(
-            "p", f"{step.added.effect.name} is not added: something speaks against it.", "headline"
-        )
+        text("p", f"{step.name}: not added, something speaks against it.", "headline")
         text("p", f"{step.added.objection}.")
         button(tab, "Leave it out", tab.decline, key="decline", classes="primary")
         button(tab, "Add it all the same", tab.insist, key="insist")

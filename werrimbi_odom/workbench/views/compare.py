@@ -9,6 +9,7 @@ from functools import partial
 import numpy as np
 
 from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.comparison.consistency import consistency
 from werrimbi_odom.inference.comparison.legs import LegStatistics
 from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.report.page_text import unwrapped
@@ -21,9 +22,6 @@ from werrimbi_odom.workbench.parts import (
 )
 from werrimbi_odom.workbench.tab import Tab, millimetres
 from werrimbi_odom.workbench.views.floor import floor
-
-LARGE = 1.25
-"""Times what was promised, beyond which a part fails."""
 
 
 def compare_view(tab: Tab) -> None:
@@ -68,7 +66,7 @@ def _next(tab: Tab) -> None:
 def _chip(tab: Tab, part: Part, words: str, figures: LegStatistics, key: str) -> None:
     """A button for a part: its error, and a mark where it errs more than promised."""
     times = np.sqrt(figures.nees)
-    fails = bool(times > LARGE)
+    fails = consistency(figures.nees, figures.freedom) == "too small"
     promised = f"{times:.2g} × promised" if np.isfinite(times) else "not measured"
     pressed = button(
         tab,

@@ -9,6 +9,7 @@ from functools import partial
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.diagnosis.phrases import at_bounds
 from werrimbi_odom.report.diagnosis.words import NextSteps, Told, words_of
 from werrimbi_odom.report.numbers import chance_words
 from werrimbi_odom.report.page_text import unwrapped
@@ -30,7 +31,7 @@ MOST_ROWS = 12
 """Variables in the map."""
 
 STEPS = NextSteps(
-    add="press Add beside {effect} below",
+    add=lambda names: "press Add below" if len(names) == 1 else "press Add all below",
     draft="werrimbi draft, on the command line",
     diagnose="step 2, Diagnose",
 )
@@ -124,7 +125,7 @@ def _ranked(tab: Tab, item: Ranked, diagnosis: Diagnosis) -> None:
     with box("li", "found" if found else ""):
         with box("div", "name"):
             text("strong", item.effect)
-            text("span", _by_chance(item), "chance")
+            text("span", _by_chance(item, diagnosis), "chance")
         if item.holdout is not None:
             _bars(item, diagnosis)
         with box("div", "do"):
@@ -178,7 +179,10 @@ def _following(tab: Tab, found: Diagnosed) -> None:
         )
 
 
-def _by_chance(item: Ranked) -> str:
+def _by_chance(item: Ranked, diagnosis: Diagnosis) -> str:
+    wild = at_bounds(diagnosis).get(item.effect)
+    if wild is not None:
+        return f"only with {wild}, the limit of what physics allows"
     if item.p_value is not None and item.p_value > SURE:
         return "not seen in these drives"
     return chance_words(item.p_value)

@@ -19,14 +19,17 @@ import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
+from werrimbi_odom.inference.fitting.directions import CALIBRATED as CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import STEP, Knob, Model, knobs_of
+from werrimbi_odom.inference.fitting.likelihood import headings_alone
 from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import Floats
 
-CALIBRATED = ("track_width", "unequal_wheel_radii", "wheel_radius_scale")
-"""Effects that are the robot file's own multipliers by another name."""
+BESIDE_POSITIONS = ("reference_heading_delay",)
+"""Effects that are of headings against positions: of headings alone they are another effect."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,6 +148,8 @@ def signatures(
     tried: Sequence[Candidate],
 ) -> tuple[Floats, Iterator[Signature]]:
     """Innovations (n,) that `knobs` cannot explain, and what each candidate does to them."""
+    if headings_alone(runs):
+        tried = [candidate for candidate in tried if candidate.name not in BESIDE_POSITIONS]
     prediction = predict_all(point.model, runs)
     columns, owners = [], []
     for number, candidate in enumerate(tried):
@@ -165,18 +170,18 @@ def signatures(
             if candidate.per_run:
                 own = of_each_run(runs, own)
             flat = own.reshape(rest.size, -1)
-            yield Signature(candidate, flat, flat - frame @ (frame.T @ flat))
+            yield Signature(candidate, flat, frame.residual(flat))
 
     return rest, each()
 
 
 def unexplained(
     runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob], prediction: Prediction
-) -> tuple[Floats, Floats]:
-    """Orthonormal basis (n, k) of what `knobs` can turn, and the innovations (n,) clear of it."""
+) -> tuple[Nuisance, Floats]:
+    """What `knobs` can turn, and the innovations (n,) clear of it."""
     white, basis = stacked(runs, point, kind, knobs, prediction).flat()
-    frame = orthonormal(basis)
-    return frame, white - frame @ (frame.T @ white)
+    frame = nuisance(basis)
+    return frame, frame.residual(white)
 
 
 def of_each_run(runs: Together, marks: Floats) -> Floats:
@@ -196,14 +201,13 @@ def scores(
     rest, found = signatures(runs, point, kind, knobs, tried)
     results = []
     for candidate, flat, free in found:
-        basis, heard = _heard(free, flat)
-        if not heard:
+        test = score_test(flat, free, rest)
+        if test is None:
             continue
-        gain = float(np.sum((basis.T @ rest) ** 2))
-        solution = np.asarray(-np.linalg.lstsq(free, rest, rcond=1e-6)[0], dtype=np.float64)
+        solution = test.coefficients
         if candidate.per_run:
             solution = solution.reshape(len(runs.runs), -1)
-        results.append(Score(candidate, gain, heard, solution))
+        results.append(Score(candidate, test.gain, test.degrees, solution))
     return tuple(results)
 
 
@@ -223,31 +227,6 @@ def _slope(
         robot = replace(model.robot, effects=(*model.robot.effects, applied))
         poses.append(legs_shown(replace(model, robot=robot), runs))
     return np.asarray(0.5 * (poses[0] - poses[1]))
-
-
-def orthonormal(columns: Floats) -> Floats:
-    """An orthonormal basis of what the columns span."""
-    if columns.shape[-1] == 0:
-        return columns
-    size = np.sqrt(np.sum(columns**2, axis=0))
-    scaled = columns[:, size > 0.0] / size[size > 0.0]
-    values, axes = np.linalg.eigh(scaled.T @ scaled)
-    alive = values > 1e-12 * values.max(initial=0.0)
-    # Twice, since squaring the columns costs half of the digits.
-    basis, _ = np.linalg.qr(scaled @ (axes[:, alive] / np.sqrt(values[alive])))
-    return np.asarray(basis)
-
-
-def _heard(free: Floats, before: Floats) -> tuple[Floats, int]:
-    """Orthonormal basis of what of some columns is not explained already, and its size."""
-    size = np.sqrt(np.sum(before**2, axis=0))
-    kept = size > 1e-6
-    if not kept.any():
-        return free[:, :0], 0
-    scaled = free[:, kept] / size[kept]
-    values, axes = np.linalg.eigh(scaled.T @ scaled)
-    alive = values > 1e-8
-    return np.asarray(scaled @ (axes[:, alive] / np.sqrt(values[alive]))), int(alive.sum())
 
 
 def put_in(model: Model, score: Score) -> Model:

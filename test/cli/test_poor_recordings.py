@@ -1,0 +1,146 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Recordings with what happens to recordings: said with what is there, and where."""
+
+from __future__ import annotations
+
+import random
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from werrimbi_odom.cli.main import main
+
+RECORDINGS = Path(__file__).parents[2] / "werrimbi_odom" / "recordings"
+SQUARE = RECORDINGS / "square"
+TICKS = (SQUARE / "ticks.csv").read_text()
+REFERENCE = (SQUARE / "reference.csv").read_text()
+
+
+@pytest.fixture
+def run(tmp_path: Path) -> Path:
+    folder = tmp_path / "run"
+    folder.mkdir()
+    (folder / "ticks.csv").write_text(TICKS)
+    (folder / "reference.csv").write_text(REFERENCE)
+    return folder
+
+
+def said(capsys: pytest.CaptureFixture[str], code: int, *words: str | Path) -> str:
+    assert main(["compare", "--robot", str(SQUARE / "robot.yaml"), *map(str, words)]) == code
+    err = capsys.readouterr().err
+    assert err.count("\n") == 1, err
+    return err
+
+
+def later(text: str, seconds: float) -> str:
+    header, *rows = text.splitlines()
+    parts = (row.split(",", 1) for row in rows)
+    return "\n".join([header, *(f"{float(t) + seconds!r},{rest}" for t, rest in parts)]) + "\n"
+
+
+@pytest.mark.parametrize("seconds", [1.7e9, -1e4])
+def test_clocks_apart_show_both_spans(
+    run: Path, capsys: pytest.CaptureFixture[str], seconds: float
+) -> None:
+    (run / "reference.csv").write_text(later(REFERENCE, seconds))
+    err = said(capsys, 2, run)
+    for text in (TICKS, (run / "reference.csv").read_text()):
+        rows = text.splitlines()[1:]
+        first, last = (float(row.split(",")[0]) for row in (rows[0], rows[-1]))
+        assert f"{first:.14g} to {last:.14g}" in err
+    assert f"lies wholly {'after' if seconds > 0 else 'before'} the ticks" in err
+
+
+def test_shuffled_rows_are_told_with_row_and_time(
+    run: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    header, *rows = TICKS.splitlines()
+    random.Random(1).shuffle(rows)
+    (run / "ticks.csv").write_text("\n".join([header, *rows]) + "\n")
+    err = said(capsys, 2, run)
+    assert "sort them by t_s" in err
+    assert "first in row " in err
+    assert " from t_s " in err
+
+
+def test_a_clock_that_is_set_back_is_told_with_row_and_time(
+    run: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    header, *rows = TICKS.splitlines()
+    again = later("\n".join([header, *rows[100:]]), -50.0).splitlines()[1:]
+    (run / "ticks.csv").write_text("\n".join([header, *rows[:100], *again]) + "\n")
+    err = said(capsys, 2, run)
+    assert "go back in time first in row 101 of" in err
+    assert f"to {float(again[0].split(',')[0]):.10g}: the clock was set back; cut the run" in err
+
+
+def test_a_bag_without_a_reference_lists_what_it_has_and_what_can_be_one(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("rosbags", reason="rosbags is not installed")
+    err = said(capsys, 2, RECORDINGS / "square_bag", "--reference-topic", "none")
+    assert "there is no reference to compare with (Imu, Odometry, PoseStamped," in err
+    assert "the bag has /" in err
+    assert "(sensor_msgs/msg/JointState)" in err
+
+
+CUTS: dict[str, Callable[[str], str]] = {
+    "in a number": lambda row: row[:-1].rsplit(",", 1)[0] + ",-",
+    "before the last cell": lambda row: row.rsplit(",", 1)[0] + ",",
+    "after one cell": lambda row: row.split(",")[0],
+    "blocks of zeros": lambda row: "\0" * 512,
+}
+
+
+@pytest.mark.parametrize("how", CUTS)
+@pytest.mark.parametrize("name", ["ticks.csv", "reference.csv"])
+def test_a_file_cut_by_a_power_failure_is_read_up_to_there(
+    run: Path, capsys: pytest.CaptureFixture[str], how: str, name: str
+) -> None:
+    if (name, how) == ("reference.csv", "before the last cell"):
+        pytest.skip("a heading that was not measured")
+    rows = (run / name).read_text().splitlines()
+    rows[-1] = CUTS[how](rows[-1])
+    (run / name).write_text("\n".join(rows))
+    err = said(capsys, 0, run)
+    wanted = f"warning: {run}: {name}, line {len(rows)}: cut off in mid-row; read up to there\n"
+    assert err == wanted
+    words = ["odom", "--robot", str(SQUARE / "robot.yaml"), str(run)]
+    assert main([*words, "--out", str(run.parent / "odom.csv")]) == 0
+    assert capsys.readouterr().err == wanted
+    (run / name).write_text("\n".join(rows) + "\n")
+    assert "read up to there" not in said(capsys, 2, run), "a whole line is no cut"
+
+
+def test_a_file_without_a_last_line_end_is_whole(run: Path) -> None:
+    for name, text in (("ticks.csv", TICKS), ("reference.csv", REFERENCE)):
+        (run / name).write_text(text.rstrip("\n"))
+    outs = []
+    for number, folder in enumerate((run, SQUARE)):
+        out = run.parent / f"{number}.csv"
+        words = ["odom", "--robot", str(SQUARE / "robot.yaml"), str(folder), "--out", str(out)]
+        assert main(words) == 0
+        outs.append(out.read_bytes())
+    assert outs[0] == outs[1]
+
+
+def test_ticks_that_are_no_number_are_told_by_compare_too(
+    run: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = TICKS.splitlines()
+    for line in (50, 51, 70):
+        rows[line] = rows[line].rsplit(",", 1)[0] + ",nan"
+    (run / "ticks.csv").write_text("\n".join(rows) + "\n")
+    err = said(capsys, 0, run)
+    first = float(rows[50].split(",")[0])
+    assert f"3 of {len(rows) - 1} rows of ticks are not finite, the first at t_s {first:g}" in err
+
+
+def test_a_copy_is_as_good(run: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """What the others are measured by: nothing is said of a whole recording."""
+    shutil.copytree(run, run.parent / "copy")
+    assert main(["compare", "--robot", str(SQUARE / "robot.yaml"), str(run.parent / "copy")]) == 0
+    assert capsys.readouterr().err == ""

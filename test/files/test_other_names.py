@@ -1,0 +1,121 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Parameter files of other drivers: read where the names are the same, else told all at once."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.robot_file import read_robot_file, write_robot_file
+from werrimbi_odom.ros.parameters import settings_of
+
+CONTROLLERS = """\
+controller_manager:
+  ros__parameters:
+    update_rate: 50  # Hz
+    joint_state_broadcaster:
+      type: joint_state_broadcaster/JointStateBroadcaster
+    diffbot_base_controller:
+      type: diff_drive_controller/DiffDriveController
+
+diffbot_base_controller:
+  ros__parameters:
+    left_wheel_names: ["left_wheel_joint"]
+    right_wheel_names: ["right_wheel_joint"]
+    wheel_separation: 0.10
+    #wheels_per_side: 1  # actually 2, but both are controlled by 1 signal
+    wheels_per_side: 1
+    wheel_radius: 0.015
+    wheel_separation_multiplier: 1.0
+    left_wheel_radius_multiplier: 1.0
+    right_wheel_radius_multiplier: 1.0
+    publish_rate: 50.0
+    odom_frame_id: odom
+    base_frame_id: base_link
+    pose_covariance_diagonal : [0.001, 0.001, 0.001, 0.001, 0.001, 0.01]
+    twist_covariance_diagonal: [0.001, 0.001, 0.001, 0.001, 0.001, 0.01]
+    open_loop: true
+    enable_odom_tf: true
+    cmd_vel_timeout: 0.5
+    use_stamped_vel: true
+    linear.x.has_velocity_limits: true
+    linear.x.max_velocity: 1.0
+    angular:
+      z:
+        max_velocity: 1.0
+"""
+TICKS = "    left_ticks_per_revolution: 2000.0\n    right_ticks_per_revolution: 2000.0\n"
+TURTLEBOT = """\
+turtlebot3_node:
+  ros__parameters:
+    opencr:
+      id: 200
+    wheels:
+      separation: 0.160
+      radius: 0.033
+diff_drive_controller:
+  ros__parameters:
+    odometry:
+      publish_tf: true
+"""
+
+
+def refused(path: Path, text: str) -> str:
+    path.write_text(text)
+    with pytest.raises(InputError) as error:
+        read_robot_file(path)
+    return str(error.value).removeprefix(str(path))
+
+
+def test_a_controllers_file_is_read_and_it_is_said_what_is_not_needed(tmp_path: Path) -> None:
+    path = tmp_path / "controllers.yaml"
+    path.write_text(CONTROLLERS + TICKS)
+    found = read_robot_file(path)
+    assert found.node == "diffbot_base_controller"
+    assert found.robot.wheel_separation == 0.1
+    (remark,) = found.remarks
+    assert remark.startswith("of diff_drive_controller; not needed here: wheels_per_side, publish_")
+    assert "linear.x.max_velocity, angular" in remark
+    out = tmp_path / "new.yaml"
+    written = write_robot_file(found, {"wheel_separation_multiplier": 1.01}, out)
+    assert written.robot.track == pytest.approx(0.101)
+    assert "publish_rate: 50.0" in out.read_text()
+
+
+def test_what_it_lacks_is_all_that_is_said_of_it(tmp_path: Path) -> None:
+    assert refused(tmp_path / "controllers.yaml", CONTROLLERS) == (
+        ": diffbot_base_controller must also give left_ticks_per_revolution (ticks), "
+        "right_ticks_per_revolution (ticks)"
+    )
+
+
+def test_the_node_reads_it_too() -> None:
+    given = {"wheel_separation": 0.1, "wheel_radius": 0.015, "publish_rate": 50.0}
+    values = settings_of({**given, "linear.x.max_velocity": 1.0, "open_loop": True}).values
+    assert values["wheel_separation"] == 0.1
+
+
+def test_turtlebots_file_is_told_what_to_write(tmp_path: Path) -> None:
+    said = refused(tmp_path / "burger.yaml", TURTLEBOT)
+    assert "line 5: wheels is of TurtleBot3's driver; write in its place" in said
+    assert "wheel_separation: 0.16 and wheel_radius: 0.033" in said
+    assert "must also give" in said
+
+
+def test_everything_wrong_is_said_at_once(tmp_path: Path) -> None:
+    said = refused(
+        tmp_path / "robot.yaml",
+        "odom_node:\n  ros__parameters:\n    wheel_separation: -1\n    wheel_radus: 0.05\n"
+        "    publish_speed: 1\n    effects: [my_own]\n    my_own: {size: 1.0}\n" + TICKS,
+    )
+    assert said == (
+        ", line 3: wheel_separation must be a number greater than 0 (m), not -1; "
+        "line 4: unknown parameter wheel_radus; the nearest known one is wheel_radius; "
+        "line 5: unknown parameter publish_speed (docs/node.md lists all); "
+        "line 6: unknown effect my_own (all: werrimbi explain; one of your own: give its file "
+        "with --effects FILE, or pip install its package); "
+        "odom_node must also give wheel_radius (m)"
+    )

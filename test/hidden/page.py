@@ -1,0 +1,120 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""docs/evidence.md: what was judged, and everything that was found."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+from test.hidden.coverage import RANKS, Scores, ranks
+from test.hidden.tables import Table
+
+HEAD = """# Evidence: effects hidden by a physics engine, and what the diagnosis made of them
+
+Made by `make evidence` (`python -m test.hidden`{how}); {judged} of {planned} sets judged, with the
+code of `{commit}`, digest `{digest}`{known}. Written by the program: change nothing by hand.
+
+Every set is a robot in a physics engine with something hidden in it, seven drives to learn from
+and four held out. Its seed is drawn from the digest of the code that is judged, so nobody who wrote
+that code has seen it. `werrimbi diagnose` is given the robot file and the runs, and the commands
+that it prints are followed, word for word, until nothing more is proposed; the hidden name reaches
+only the comparison. Errors are root mean squares of the position error of held-out legs of 1 m,
+medians over the sets. *Before*: the robot file as it was. *After*: with the first printed command
+followed, or as it was where none was. *Floor*: the model with the true effect, fitted on the train
+runs. A hidden effect *matters* when before is more than 1.1 times the floor. *Wrong*: another
+name, or `unknown` for an effect that the library holds. Intervals hold the true rate in at least 95
+of 100 cases (Clopper and Pearson 1934).
+"""
+
+
+def page(
+    tables: Sequence[Table],
+    pictures: Sequence[tuple[str, str]],
+    *,
+    how: str,
+    judged: int,
+    planned: int,
+    commit: str,
+    digest: str,
+    fresh: bool,
+) -> str:
+    """The text; pictures are (file in docs/pictures, what it shows)."""
+    known = "" if fresh else ", on seeds that were judged many times before"
+    head = HEAD.format(
+        how=how, judged=judged, planned=planned, commit=commit, digest=digest, known=known
+    )
+    shown = [f"![{says}](pictures/{name})\n\n*{says}*\n" for name, says in pictures]
+    return "\n".join([head, *(table.markdown() for table in tables if table.rows), *shown])
+
+
+def draw(
+    found: Scores,
+    ratios: dict[str, float],
+    true: list[float],
+    false: list[float],
+    sure: float,
+    place: Path,
+) -> list[tuple[str, str]]:
+    """The pictures that can be drawn; none without a browser.
+
+    Parameters
+    ----------
+    ratios
+        By effect: the size that is named over the smallest that could be seen.
+    true, false
+        Minus log10 of p-values, of what is hidden and of the likeliest where nothing is.
+    sure : float
+        The p-value below which the diagnosis believes.
+    """
+    import plotly.graph_objects as go
+
+    from werrimbi_odom.report.save import save_png
+    from werrimbi_odom.report.style import BLUE, GREY, ORANGE, styled
+
+    made = []
+
+    def save(figure: go.Figure, name: str, title: str, x: str, y: str, height: int = 520) -> None:
+        styled(figure, title, "", width=900, height=height)
+        figure.update_layout(legend={"y": -0.22}, barmode="group")
+        figure.update_xaxes(title=x)
+        figure.update_yaxes(title=y, scaleanchor=None, scaleratio=None, automargin=True)
+        if save_png(figure, place / name):
+            made.append((name, title))
+
+    if ratios:
+        names = sorted(ratios, key=ratios.__getitem__)
+        values = [ratios[name] for name in names]
+        figure = go.Figure(go.Bar(x=values, y=names, orientation="h", marker_color=BLUE))
+        figure.add_vline(x=1.0, line={"color": GREY, "dash": "dash"})
+        title = "Size named in 95 of 100 cases, over the smallest that could be seen at all"
+        save(figure, "evidence_smallest.png", title, "ratio", "", 200 + 24 * len(names))
+    if sum(ranks(found, "add")):
+        figure = go.Figure()
+        for verb, colour in (("add", BLUE), ("calibrate fit", ORANGE)):
+            counts = ranks(found, verb)
+            share = [RANKS * count / max(sum(counts), 1) for count in counts]
+            middle = [(number + 0.5) / RANKS for number in range(RANKS)]
+            figure.add_bar(x=middle, y=share, name=verb, marker_color=colour)
+        figure.add_hline(y=1.0, line={"color": GREY, "dash": "dash"})
+        title = "Where the truth lies in what is stated: even where the intervals are right"
+        save(figure, "evidence_ranks.png", title, "rank of the truth", "share, over even")
+    if true or false:
+        figure = go.Figure()
+        for values, name, colour in (
+            (true, "what is hidden", BLUE),
+            (false, "the likeliest where none is", ORANGE),
+        ):
+            figure.add_histogram(
+                x=[min(value, 60.0) for value in values],
+                name=name,
+                marker_color=colour,
+                xbins={"start": 0.0, "end": 61.0, "size": 1.0},
+            )
+        figure.add_vline(x=-math.log10(sure), line={"color": GREY, "dash": "dash"})
+        title = (
+            "How sure: minus log10 of the stated chance (60: or more); believed right of the line"
+        )
+        save(figure, "evidence_sureness.png", title, "- log10 p", "sets")
+    return made

@@ -1,0 +1,467 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The harness itself: what it counts, reads from printed words, weighs and keeps."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.stats import binom
+
+pytest.importorskip("mujoco", reason="hidden sets need the physics engine (pip install mujoco)")
+
+from test.hidden import coverage, fisher, history, margins, plan, smallest, survive, work
+from test.hidden.follow import commands, follow, typed
+from test.hidden.intervals import clopper_pearson
+from test.hidden.judged import Judged
+from test.hidden.page import page
+from test.hidden.rest import at_the_truth, without_detour
+from test.hidden.rules import RULES
+from test.hidden.sets import HiddenSet
+from test.hidden.table import tables
+from test.hidden.tables import Table
+from test.hidden.true_values import multipliers_of, values_of
+
+LINE = Judged(
+    name="own-castor_kick-1",
+    group="effect",
+    setup="own",
+    seen="",
+    hidden=("castor_kick",),
+    strengths=(0.01,),
+    entered=(),
+    commit="abc",
+    seconds=1.0,
+    verdict="named",
+    effect="castor_kick",
+    found=("castor_kick",),
+    before=5e-3,
+    after=2e-3,
+    floor=2e-3,
+    rested=2e-3,
+    verdicts=("named castor_kick", "none"),
+    steps=(("castor_kick",),),
+    ended="none",
+    mean_is_right=True,
+)
+
+
+def other(**changes: object) -> Judged:
+    return Judged.of(json.loads(json.dumps({**LINE.line(), **changes})))
+
+
+# ------------------------------------------------------------------ counting
+
+
+@pytest.mark.parametrize(("hits", "tries"), [(0, 10), (10, 10), (3, 40), (172, 172)])
+def test_an_interval_holds_the_rates_that_would_show_as_much(hits: int, tries: int) -> None:
+    low, high = clopper_pearson(hits, tries)
+    assert low == 0.0 if hits == 0 else binom.sf(hits - 1, tries, low) == pytest.approx(0.025)
+    assert high == 1.0 if hits == tries else binom.cdf(hits, tries, high) == pytest.approx(0.025)
+
+
+def test_a_count_of_more_than_all_is_refused() -> None:
+    with pytest.raises(ValueError, match="5 of 4"):
+        clopper_pearson(5, 4)
+
+
+# ------------------------------------------------------------------ the plan
+
+
+def test_seeds_of_two_states_of_the_code_have_nothing_in_common() -> None:
+    one, two = (plan.start_of(mark) for mark in ("0f0f0f0f0f0f", "0f0f0f100f0f"))
+    assert one != two
+    assert plan.OLD not in (one, two)
+    seeds = [{each.seed for each in plan.plan(start, plan.ALL)} for start in (one, two)]
+    assert not seeds[0] & seeds[1]
+    for start, own in zip((one, two), seeds, strict=True):
+        assert all(start <= seed < start + plan.APART for seed in own)
+
+
+def test_another_byte_of_the_judged_code_gives_other_seeds(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from test.hidden import sets
+
+    monkeypatch.setattr(sets, "ROOT", tmp_path)
+    starts = []
+    for text in ("SURE = 1e-3\n", "SURE = 2e-3\n"):
+        (tmp_path / "rules.py").write_text(text)
+        sets.code_mark.cache_clear()
+        starts.append(plan.start_of(sets.code_mark("rules.py")))
+    sets.code_mark.cache_clear()
+    assert starts[0] != starts[1]
+
+
+def test_the_sample_has_some_of_every_kind_and_is_part_of_no_old_set() -> None:
+    start = plan.start_of("abcdef012345")
+    some, everything = plan.plan(start, plan.SAMPLE), plan.plan(start, plan.ALL)
+    groups = Counter(each.group for each in some)
+    assert set(groups) == {each.group for each in everything}
+    assert set(some) <= set(everything)
+    assert {name for each in some if each.group == "effect" for name in each.names} == set(
+        plan.EFFECTS
+    )
+    assert not set(some) & set(plan.plan(plan.OLD, plan.ALL))
+
+
+@pytest.mark.parametrize("wanted", [0, 1, 3, 7, 9])
+def test_evenly_picks_as_many_as_wanted(wanted: int) -> None:
+    things = list("abcdefg")
+    for start in (0, 3 * plan.APART, 12 * plan.APART):
+        picked = plan.evenly(things, wanted, start)
+        assert len(picked) == len(set(picked)) == min(wanted, 7)
+
+
+# ------------------------------------------------------------------ printed commands
+
+PRINTED = """One thing is missing: castor_kick.
+Next: add it to the model, fitted with all calibration; `werrimbi add` says more:
+    werrimbi add castor_kick --robot 'my robot.yaml' \\
+      train/* \\
+      --holdout a b \\
+      --out better.yaml
+
+written: x.json
+Is more missing?  werrimbi diagnose --robot better.yaml RUN... --holdout RUN...
+Try it:      werrimbi add draft --effects draft.py \\
+               --robot r.yaml --out new.yaml RUN...
+"""
+
+
+def test_commands_are_read_as_a_shell_would(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    for name in ("two", "one"):
+        (tmp_path / "train" / name).mkdir(parents=True)
+    add, tried = commands(PRINTED, "add")
+    (again,) = commands(PRINTED, "diagnose")
+    assert typed(add, ["t"], ["h"]) == [
+        *("add", "castor_kick", "--robot", "my robot.yaml", "train/one", "train/two"),
+        *("--holdout", "a", "b", "--out", "better.yaml"),
+    ]
+    assert typed(again, ["t1", "t2"], ["h"])[1:] == [
+        *("--robot", "better.yaml", "t1", "t2", "--holdout", "h")
+    ]
+    assert typed(tried, ["t"], ["h"])[-1] == "t"
+    assert commands("Nothing is missing; `werrimbi compare` says more.", "compare") == []
+
+
+# ------------------------------------------------------------------ at the truth
+
+
+def test_the_truth_is_reached_by_its_name_and_near_the_floor() -> None:
+    assert at_the_truth(LINE)
+    assert not at_the_truth(other(steps=[["left_backlash"]]))
+    assert not at_the_truth(other(steps=[["castor_kick"], ["left_backlash"]]))
+    assert not at_the_truth(other(rested=2.6e-3))
+    assert not at_the_truth(other(ended="again"))
+    assert not at_the_truth(other(steps=[], ended="none"))
+
+
+def test_twins_and_calibration_fitted_along_are_the_truth_too() -> None:
+    twin = other(hidden=["sideways_drift"], steps=[["reference_yaw_offset"]])
+    assert at_the_truth(twin)
+    beside = other(hidden=["track_width", "castor_kick"], steps=[["castor_kick"]])
+    assert at_the_truth(beside), "calibration is fitted along with any effect"
+    several = other(hidden=["castor_kick", "encoder_skew"], steps=[["castor_kick,encoder_skew"]])
+    assert not at_the_truth(several), "names are parted by whoever follows"
+    assert at_the_truth(
+        other(hidden=["castor_kick", "encoder_skew"], steps=[["castor_kick", "encoder_skew"]])
+    )
+
+
+def test_nothing_hidden_and_outsiders_are_at_the_truth_where_nothing_is_added() -> None:
+    clean = other(group="clean", hidden=[], strengths=[], steps=[], verdicts=["none"])
+    assert at_the_truth(clean)
+    assert not at_the_truth(other(group="clean", hidden=[], strengths=[]))
+    outside = other(group="outsider", hidden=["cable_pull"], steps=[], ended="unknown")
+    assert at_the_truth(outside)
+    assert not at_the_truth(other(group="outsider", hidden=["cable_pull"]))
+
+
+def test_a_detour_is_more_steps_than_effects() -> None:
+    assert without_detour(LINE)
+    assert not without_detour(other(steps=[["castor_kick"], ["castor_kick"]]))
+
+
+# ------------------------------------------------------------------ work that can be stopped
+
+
+def _square(number: int) -> work.Line:
+    if number < 0:
+        raise ValueError(number)
+    return {"square": number * number}
+
+
+def test_work_goes_on_where_it_was_stopped_and_one_failure_is_not_the_end(tmp_path: Path) -> None:
+    file = tmp_path / "results" / "part.jsonl"
+    first = dict(work.done(file, {"two": 2, "bad": -1}, _square, 1))
+    assert first == {"two": {"square": 4}}
+    with file.open("a", encoding="utf-8") as out:
+        out.write('{"key": "cut')
+    assert work.kept(file) == {"two": {"square": 4}}
+    file.write_text(file.read_text().rsplit("\n", 1)[0] + "\n")
+    second = dict(work.done(file, {"two": 2, "three": 3}, _square, 1))
+    assert second == {"three": {"square": 9}}, "what is known is not done again"
+
+
+# ------------------------------------------------------------------ certainty that survives
+
+
+def test_agreement_tells_less_sure_from_changed() -> None:
+    def now(verdict: str, *names: str) -> work.Line:
+        rivals = list(names) if verdict == "ambiguous" else []
+        return {"verdict": verdict, "effect": names[0] if names else None, "found": list(names),
+                "rivals": rivals}  # fmt: skip
+
+    assert survive.agreement(LINE, now("named", "castor_kick")) == "the same"
+    assert survive.agreement(LINE, now("ambiguous", "left_backlash", "castor_kick")) == "less sure"
+    assert survive.agreement(LINE, now("none")) == "not seen any more"
+    assert survive.agreement(LINE, now("named", "left_backlash")) == "changed"
+    assert survive.agreement(LINE, now("unknown")) == "changed"
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    place = tmp_path / "set"
+    for part, count in (("train", 3), ("holdout", 2)):
+        for number in range(count):
+            run = place / part / f"{number}"
+            run.mkdir(parents=True)
+            (run / "ticks.csv").write_text("t_s,left_ticks,right_ticks\n")
+            rows = "".join(f"{time},0,0,0\n" for time in range(5))
+            (run / "reference.csv").write_text("t_s,x_m,y_m,yaw_rad\n" + rows)
+    (place / "robot.yaml").write_text("odom_node: {}\n")
+    return place
+
+
+def test_odd_and_even_rows_share_none_and_miss_none(folder: Path) -> None:
+    seen = []
+    for how in ("odd rows", "even rows"):
+        with survive.changed(folder, how) as place:
+            (file, *_) = sorted((place / "train").glob("*/reference.csv"))
+            head, *rows = file.read_text().splitlines()
+            assert head == "t_s,x_m,y_m,yaw_rad"
+            seen.append({row.split(",")[0] for row in rows})
+    assert seen == [{"1", "3"}, {"0", "2", "4"}]
+
+
+def test_another_split_holds_out_as_many_other_drives(folder: Path) -> None:
+    with survive.changed(folder, "another split") as place:
+        names = {
+            part: sorted(run.name for run in (place / part).iterdir())
+            for part in ("train", "holdout")
+        }
+    assert names["holdout"] == ["train_0", "train_1"]
+    assert names["train"] == ["holdout_0", "holdout_1", "train_2"]
+
+
+# ------------------------------------------------------------------ margins
+
+
+def test_every_deciding_number_can_be_perturbed_and_comes_back() -> None:
+    before = margins.constants()
+    assert len(before) > 5
+    for name, value in before.items():
+        with margins.perturbed(name, margins.times(value, 1.4)) as count:
+            assert count > 0, f"nobody holds {name}"
+            assert margins.constants()[name] == margins.times(value, 1.4) != value
+    assert margins.constants() == before
+
+
+def test_a_whole_number_moves_by_one_at_least_and_stays_above_none() -> None:
+    assert margins.times(3, 1.4) == 4
+    assert margins.times(2, 0.7) == 1
+    assert margins.times(1, 0.7) == 1
+    assert margins.times(10.0, 0.7) == pytest.approx(7.0)
+
+
+def test_sureness_parts_what_is_hidden_from_what_is_likeliest_where_nothing_is() -> None:
+    p_values = [["castor_kick", 1e-9], ["left_backlash", 1e-2], ["track_width", None]]
+    lines = [other(p_values=p_values), other(hidden=[], strengths=[], p_values=p_values[1:])]
+    true, false = margins.sureness(lines)
+    assert true == pytest.approx([9.0])
+    assert false == pytest.approx([2.0])
+
+
+# ------------------------------------------------------------------ how small
+
+
+def test_whitened_changes_hold_what_the_whole_covariance_says() -> None:
+    """The filter against one large matrix: of poses with noise that adds up and noise that does."""
+    chance = np.random.default_rng(4)
+    count, noise = 7, np.array([1e-3, 2e-3, 3e-3])
+    path = np.cumsum(chance.normal(size=(count, 3)), axis=0)
+    moves, added, cumulated = [], [], [np.zeros((3, 3))]
+    for index in range(1, count):
+        step = path[index] - path[index - 1]
+        move = np.eye(3)
+        move[0, 2], move[1, 2] = -step[1], step[0]
+        root = 1e-3 * chance.normal(size=(3, 3))
+        moves.append(move)
+        added.append(root @ root.T)
+        cumulated.append(move @ cumulated[-1] @ move.T + added[-1])
+    changes = chance.normal(size=(count, 3, 2))
+    white = fisher.whitened(changes, path, np.array(cumulated), noise)
+    # Each pose's error is linear in the start and in what was added on the way.
+    parts = np.zeros((3 * count, 3 * count))
+    for index in range(count):
+        here = np.eye(3)
+        for back in range(index, -1, -1):
+            parts[3 * index : 3 * index + 3, 3 * back : 3 * back + 3] = here
+            if back:
+                here = here @ moves[back - 1]
+    start = fisher.ANYWHERE**2 * np.eye(3)
+    blocks = np.zeros((3 * count, 3 * count))
+    for index, block in enumerate([start, *added]):
+        blocks[3 * index : 3 * index + 3, 3 * index : 3 * index + 3] = block
+    whole = parts @ blocks @ parts.T + np.kron(np.eye(count), np.diag(noise**2))
+    flat = changes.reshape(3 * count, 2)
+    assert white.T @ white == pytest.approx(flat.T @ np.linalg.solve(whole, flat), rel=1e-4)
+
+
+def test_the_curve_finds_the_size_that_is_named_in_most_cases() -> None:
+    chance = np.random.default_rng(5)
+    sizes = np.tile(smallest.LADDER, 200)
+    share = 1.0 / (1.0 + np.exp(-4.0 * np.log(sizes / 1.5)))
+    named = [bool(each) for each in chance.uniform(size=sizes.size) < share]
+    wanted = 1.5 * math.exp(math.log(19.0) / 4.0)
+    assert smallest.named_from(list(sizes), named) == pytest.approx(wanted, rel=0.1)
+
+
+def test_the_curve_stands_where_a_single_ladder_is_parted_clearly() -> None:
+    named = [size > 2.0 for size in smallest.LADDER]
+    found = smallest.named_from(smallest.LADDER, named)
+    assert found is not None
+    assert 2.0 < found < 12.0
+    assert smallest.named_from(smallest.LADDER, [True] * 6) is None
+    assert smallest.named_from(smallest.LADDER, [False] * 6) is None
+
+
+# ------------------------------------------------------------------ intervals
+
+
+def test_coverage_of_honest_and_of_too_narrow_intervals() -> None:
+    chance = np.random.default_rng(6)
+    honest = {("add", "x"): chance.normal(size=4000).tolist()}
+    narrow = {("add", "x"): (2.0 * chance.normal(size=4000)).tolist()}
+    hold = [coverage.table(each).rows[0][3] for each in (honest, narrow)]
+    assert hold[0].endswith("(95%)")
+    assert int(hold[1].partition("(")[2].rstrip("%)")) < 75
+    counts = coverage.ranks(honest, "add")
+    assert sum(counts) == 4000
+    assert min(counts) > 300
+    edges = coverage.ranks(narrow, "add")
+    assert edges[0] > 700 < edges[-1]
+
+
+# ------------------------------------------------------------------ history
+
+
+def test_a_state_of_the_code_has_one_line_and_others_stay(tmp_path: Path) -> None:
+    file = tmp_path / "history.jsonl"
+    lines = [LINE, other(verdict="none", effect=None, found=[])]
+    for digest in ("one", "two", "two"):
+        entries = history.append(history.entry_of(lines, digest, 10_000), file)
+    assert [each["digest"] for each in entries] == ["one", "two"]
+    assert history.read(file) == entries
+    assert entries[0]["rules"]["named"] == [1, 2]
+    table = history.table(entries)
+    assert isinstance(table, Table)
+    assert table.rows[0][2] == "`two`", "the newest first"
+
+
+def test_rules_have_short_names_of_their_own() -> None:
+    assert len({rule.short for rule in RULES}) == len(RULES)
+
+
+def test_the_page_holds_every_rule_with_its_interval_and_what_went_astray() -> None:
+    lost = other(name="own-castor_kick-2", ended="refused", error="no | help", steps=[])
+    text = page(
+        tables([LINE, lost]),
+        [("evidence_ranks.png", "Ranks")],
+        how="",
+        judged=2,
+        planned=3,
+        commit="abc",
+        digest="def",
+        fresh=True,
+    )
+    assert "2 of 3 sets judged" in text
+    low, high = clopper_pearson(1, 2)
+    interval = f"{100 * low:.1f} to {100 * high:.1f} %"
+    assert f"| the printed commands, followed, come to rest | 1 of 2 | 50.0% | {interval}" in text
+    assert "| `own-castor_kick-2` | named castor_kick → none | refused | no / help |" in text
+    assert "![Ranks](pictures/evidence_ranks.png)" in text
+
+
+def test_a_line_of_the_results_is_what_was_judged() -> None:
+    assert Judged.of(json.loads(json.dumps(LINE.line()))) == LINE
+    assert HiddenSet("effect", ("castor_kick",), 1).name == LINE.name
+
+
+def test_true_parameters_are_those_that_the_library_knows_within_its_bounds() -> None:
+    from dataclasses import asdict
+
+    from werrimbi_odom.effects import find
+    from werrimbi_odom.simulation import hide
+
+    for name in plan.EFFECTS:
+        hidden = hide(name, seed=3)
+        values = values_of(name, asdict(hidden.peculiarity))
+        assert values, f"nobody knows what {name} is in the library's words"
+        effect = find(name)
+        for key, value in values.items():
+            low, high = effect.parameters[key].bounds
+            assert low <= value <= high
+        away = [key for key, value in values.items() if value != effect.parameters[key].null]
+        assert away, f"{name} as it is hidden is none at all to the library"
+    assert values_of("cable_pull", {"rate": 0.01}) == {}
+
+
+def test_true_multipliers_turn_counts_into_the_true_way() -> None:
+    robot = {
+        "wheel_separation": 0.4,
+        "left_wheel_radius": 0.05,
+        "right_wheel_radius": 0.05,
+        "nominal": {"wheel_separation": 0.4, "wheel_radius": 0.05},
+    }
+    ratio = {"effect": "unequal_wheel_radii", "parameters": {"ratio": 1.01}}
+    base = {"effect": "track_width", "parameters": {"multiplier": 1.02}}
+    truth = {
+        "robot_before_hiding": robot,
+        "hidden": [ratio, base],
+        "entered": [["wheel_radius", 2.0]],
+    }
+    found = multipliers_of(truth)
+    left, right = found["left_wheel_radius_multiplier"], found["right_wheel_radius_multiplier"]
+    assert right / left == pytest.approx(1.01)
+    assert 0.5 * (left + right) == pytest.approx(0.5), "the radius was entered twice as large"
+    assert found["wheel_separation_multiplier"] == pytest.approx(1.02)
+
+
+def test_a_command_that_ends_with_an_error_ends_the_walk_where_it_began(folder: Path) -> None:
+    before = Path.cwd()
+    told = follow(folder)
+    assert told.ended == "refused"
+    assert told.error.startswith("werrimbi diagnose: ")
+    assert (told.verdicts, told.added, told.first) == ([], [], {})
+    assert Path.cwd() == before
+
+
+def test_a_crash_of_the_tool_is_a_finding_and_not_the_end(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(words: object) -> None:
+        raise ZeroDivisionError("float division by zero")
+
+    monkeypatch.setattr("test.hidden.follow.run", broken)
+    told = follow(folder)
+    assert (told.ended, told.error) == ("crashed", "ZeroDivisionError: float division by zero")

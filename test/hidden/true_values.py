@@ -1,0 +1,104 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the engine's peculiarities are in the parameters of the library's effects."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from typing import Any
+
+from werrimbi_odom.effects import find
+from werrimbi_odom.effects.library import LIBRARY
+
+Given = Mapping[str, Any]
+
+_VALUES: dict[str, Callable[[Given], dict[str, float]]] = {
+    "track_width": lambda it: {"multiplier": it["multiplier"]},
+    "unequal_wheel_radii": lambda it: {"ratio": it["ratio"]},
+    "wheel_radius_scale": lambda it: {"multiplier": it["multiplier"]},
+    "eccentric_left_wheel": lambda it: {"amplitude": it["amplitude"]},
+    "eccentric_right_wheel": lambda it: {"amplitude": it["amplitude"]},
+    "longitudinal_slip": lambda it: {"coefficient": it["coefficient"]},
+    "lateral_slip": lambda it: {"creep": it["creep"]},
+    "turn_dependent_track": lambda it: {
+        name: it["coefficient"] * (it["on"] == name) for name in ("sharpness", "sense")
+    },
+    "sideways_drift": lambda it: {"angle": it["angle"]},
+    "floor_slope": lambda it: {
+        "x": it["creep"] * math.cos(it["downhill"]),
+        "y": it["creep"] * math.sin(it["downhill"]),
+    },
+    "castor_kick": lambda it: {
+        "angle": it["angle"] * (not it["alternating"]),
+        "alternating": it["angle"] * it["alternating"],
+        "length": it["trail"],
+    },
+    "left_backlash": lambda it: {"travel": it["travel"]},
+    "right_backlash": lambda it: {"travel": it["travel"]},
+    "left_missed_ticks": lambda it: {"fraction": it["fraction"], "above": it["above"]},
+    "right_missed_ticks": lambda it: {"fraction": it["fraction"], "above": it["above"]},
+    "radius_drift": lambda it: {
+        name: it["rate"] * (it["per"] == per)
+        for name, per in (("per_metre", "metre"), ("per_second", "second"))
+    },
+    "reference_lever_arm": lambda it: {"x": it["x"], "y": it["y"]},
+    "reference_yaw_offset": lambda it: {"angle": it["yaw"]},
+    "reference_delay": lambda it: {"delay": it["delay"]},
+    "reference_heading_delay": lambda it: {"delay": it["heading_delay"]},
+    "encoder_skew": lambda it: {"delay": it["delay"]},
+}
+
+
+def values_of(effect: str, peculiarity: Given) -> dict[str, float]:
+    """Parameters of a library effect that say what the engine did; empty where nobody knows.
+
+    Where nothing is written here, those that are called the same on both sides.
+
+    Parameters
+    ----------
+    peculiarity
+        As truth.json has it under `parameters`.
+    """
+    if effect in _VALUES:
+        return {name: float(value) for name, value in _VALUES[effect](peculiarity).items()}
+    if effect not in {known.name for known in LIBRARY}:
+        return {}
+    return {
+        name: float(peculiarity[name])
+        for name in find(effect).parameters
+        if isinstance(peculiarity.get(name), (int, float))
+    }
+
+
+def multipliers_of(truth: Given) -> dict[str, float]:
+    """The robot file's multipliers that are right for a set, by its truth.json."""
+    robot = truth["robot_before_hiding"]
+    nominal = robot["nominal"]
+    base = robot["wheel_separation"] / nominal["wheel_separation"]
+    left = robot["left_wheel_radius"] / nominal["wheel_radius"]
+    right = robot["right_wheel_radius"] / nominal["wheel_radius"]
+    for hidden in truth["hidden"]:
+        name, it = hidden["effect"], hidden["parameters"]
+        if name == "track_width":
+            base *= it["multiplier"]
+        elif name == "wheel_radius_scale":
+            left, right = left * it["multiplier"], right * it["multiplier"]
+        elif name == "unequal_wheel_radii":
+            left, right = left * 2 / (1 + it["ratio"]), right * 2 * it["ratio"] / (1 + it["ratio"])
+    for key, factor in truth["entered"]:
+        if key == "wheel_separation":
+            base /= factor
+        elif key == "wheel_radius":
+            left, right = left / factor, right / factor
+    return {
+        "wheel_separation_multiplier": base,
+        "left_wheel_radius_multiplier": left,
+        "right_wheel_radius_multiplier": right,
+    }
+
+
+def noises_of(truth: Given) -> dict[str, float]:
+    """The wheels' noise [m^0.5] that the engine made."""
+    robot = truth["robot_before_hiding"]
+    return {name: float(robot[name]) for name in ("left_wheel_noise", "right_wheel_noise")}

@@ -1,0 +1,74 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Projection, rank and score test against least squares done the long way."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.inference.linear import (
+    DETERMINED,
+    admitted,
+    covariance_of,
+    nuisance,
+    score_test,
+    solved,
+)
+
+RANDOM = np.random.default_rng(4)
+NUISANCES = RANDOM.standard_normal((200, 3)) * np.array([1e-3, 1.0, 1e4])
+COLUMNS = RANDOM.standard_normal((200, 2)) * np.array([1e-5, 1e3])
+DATA = RANDOM.standard_normal(200)
+
+
+def squares_left(columns: np.ndarray) -> float:
+    left = DATA - columns @ np.linalg.lstsq(columns, DATA, rcond=None)[0]
+    return float(left @ left)
+
+
+def test_the_gain_is_what_a_fit_of_everything_would_gain() -> None:
+    beside = nuisance(NUISANCES)
+    found = score_test(COLUMNS, beside.residual(COLUMNS), beside.residual(DATA))
+    assert found is not None
+    everything = np.concatenate([NUISANCES, COLUMNS], axis=1)
+    assert found.degrees == 2
+    assert found.gain == pytest.approx(squares_left(NUISANCES) - squares_left(everything))
+    fitted = np.linalg.lstsq(everything, DATA, rcond=None)[0]
+    np.testing.assert_allclose(-found.coefficients, fitted[3:], rtol=1e-8)
+    np.testing.assert_allclose(solved(everything, DATA), fitted, rtol=1e-8)
+    expected = np.linalg.inv(everything.T @ everything)
+    spread = np.sqrt(np.diag(expected))
+    np.testing.assert_allclose(
+        covariance_of(everything) / np.outer(spread, spread),
+        expected / np.outer(spread, spread),
+        atol=1e-8,
+    )
+
+
+@pytest.mark.parametrize(("share", "degrees"), [(2.0, 2), (0.5, 1)])
+def test_a_column_that_the_nuisances_explain_is_not_counted(share: float, degrees: int) -> None:
+    """Whatever its unit: what counts is the share of it that is left."""
+    beside = nuisance(NUISANCES)
+    own = beside.residual(COLUMNS[:, 0])
+    own = own / np.sqrt(own @ own)
+    for unit in (1e-7, 1.0, 1e7):
+        hidden = unit * (beside.basis[:, 0] + share * DETERMINED * own)
+        columns = np.stack([hidden, COLUMNS[:, 1]], axis=-1)
+        found = score_test(columns, beside.residual(columns), beside.residual(DATA))
+        assert found is not None
+        assert found.degrees == degrees
+        assert admitted(columns, beside) == ([0, 1] if degrees == 2 else [1])
+
+
+def test_of_equivalent_columns_the_first_is_kept() -> None:
+    columns = np.stack([COLUMNS[:, 0], COLUMNS[:, 1], COLUMNS[:, 0] + 3e-9 * COLUMNS[:, 1]], -1)
+    beside = nuisance(NUISANCES[:, :0])
+    assert admitted(columns, beside) == [0, 1]
+    assert admitted(columns[:, ::-1], beside) == [0, 1]
+
+
+def test_a_silent_column_is_neither_tested_nor_moved() -> None:
+    none = np.zeros((200, 1))
+    assert score_test(none, none, DATA) is None
+    np.testing.assert_array_equal(solved(np.concatenate([none, COLUMNS], axis=1), DATA)[:1], 0.0)

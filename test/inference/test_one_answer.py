@@ -1,0 +1,171 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""One answer to one question: a robot's errors on some drives are the same by whatever verb."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from test.cli.written_runs import write_run
+from test.inference.driven import run_of
+from test.inference.test_gaps import parts, silent, without_ticks
+from test.model.drives import ROBOT
+from werrimbi_odom.cli.main import main
+from werrimbi_odom.effects.collection import find
+from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference.adding.adding import add_effect
+from werrimbi_odom.inference.comparison.compare import compare
+from werrimbi_odom.inference.comparison.judged_legs import figures_of, prepare
+from werrimbi_odom.inference.comparison.legs import LegStatistics
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.workbench.opened import Given, opened
+
+WRONG = replace(ROBOT, wheel_separation_multiplier=1.01)
+ECCENTRIC = find("eccentric_left_wheel")
+UNKNOWN_PHASE = replace(WRONG, effects=(ECCENTRIC.using(amplitude=0.002),))
+"""The file says how far the axle is off, and each drive begins somewhere else in the turn."""
+
+
+def jumping(run: Run) -> Run:
+    """The tracker comes to believe another place, in the middle of the drive."""
+    reference = run.reference
+    assert reference is not None
+    late = reference.time > 45.0
+    return replace(run, reference=replace(reference, x=reference.x + np.where(late, 0.8, 0.0)))
+
+
+def differing(run: Run) -> Run:
+    """Every other drive with positions alone."""
+    return parts(run, "positions") if int(run.name[-1]) % 2 else run
+
+
+CASES: dict[str, tuple[Callable[[Run], Run], ReferenceKind, Robot]] = {
+    "full poses": (lambda run: run, "absolute", WRONG),
+    "a gap of the reference": (silent, "absolute", WRONG),
+    "a gap of the ticks": (without_ticks, "absolute", WRONG),
+    "jumps": (jumping, "absolute", WRONG),
+    "positions alone": (lambda run: parts(run, "positions"), "absolute", WRONG),
+    "positions with gaps": (lambda run: silent(parts(run, "positions")), "absolute", WRONG),
+    "headings alone": (lambda run: parts(run, "yaw"), "absolute", WRONG),
+    "increments": (lambda run: run, "incremental", WRONG),
+    "increments with gaps": (silent, "incremental", WRONG),
+    "differing measures": (differing, "absolute", WRONG),
+    "a phase that nobody knows": (silent, "absolute", UNKNOWN_PHASE),
+}
+
+
+def drives(seeds: Sequence[int], robot: Robot) -> list[Run]:
+    """Of a robot like the file's but for its base; what the file does not say is chosen anew."""
+    found = []
+    for seed in seeds:
+        effects = tuple(
+            applied.effect.using(**{**applied.values, "phase": 1.1 * (seed - 51)})
+            for applied in robot.effects
+        )
+        found.append(run_of(replace(ROBOT, effects=effects), seed, 60))
+    return found
+
+
+def figures(statistics: LegStatistics) -> list[float]:
+    return [statistics.rmse_position_m, statistics.median_position_m, statistics.rmse_yaw_rad]
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_every_verb_gives_the_same_figures(case: str) -> None:
+    change, kind, robot = CASES[case]
+    train, held = ([change(run) for run in drives(seeds, robot)] for seeds in ((50, 51), (52,)))
+    compared = [compare(runs, robot, kind) for runs in (train, held)]
+    of_compare = [figures(each.main.all.figures) for each in compared]
+    added = add_effect(find("track_width"), train, robot, kind, holdout=held)
+    diagnosis = diagnose(train, robot, (), kind, holdout=held)
+    judging: Any = {"kind": kind, "leg": 1.0, "limits": None, "sigma_xy": None, "sigma_yaw": None}
+    look = opened(Given(robot, tuple(train), tuple(held), judging, ())).look(robot)
+    for other in (
+        [figures(side.figures("before")) for side in (added.train, added.holdout)],
+        [figures(each.main.all.figures) for each in (look.train, look.holdout)],
+        [figures(figures_of(prepare(runs, robot, kind), robot)) for runs in (train, held)],
+    ):
+        np.testing.assert_array_equal(other, of_compare)
+    np.testing.assert_array_equal(
+        [diagnosis.train.before, diagnosis.holdout.before],
+        [errors[0] for errors in of_compare],
+    )
+    np.testing.assert_array_equal(diagnosis.headings.before, of_compare[1][2])
+    counted = [legs.main.all.figures.count for legs in compared]
+    assert [added.train.figures("before").count, added.holdout.figures("before").count] == counted
+    left_out = (*compared[0].left_out, *compared[1].left_out)
+    assert added.left_out == diagnosis.left_out == left_out
+    whys = {part.why for part in left_out}
+    assert whys == ({"gap"} if "gap" in case or "phase" in case else set()) | (
+        {"reference"} if "jumps" in case else set()
+    )
+
+
+def test_a_phase_is_learnt_by_compare_as_well() -> None:
+    """The file's own effect, judged with a phase that fits the drive, not without the effect."""
+    true = replace(UNKNOWN_PHASE, wheel_separation_multiplier=ROBOT.wheel_separation_multiplier)
+    runs = drives((50, 51), true)
+    learnt, without = (
+        compare(runs, robot).main.all.figures.rmse_yaw_rad for robot in (true, ROBOT)
+    )
+    assert learnt < 0.9 * without
+
+
+def test_the_files_say_the_same_by_every_verb(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Through the command line: drives with gaps, a robot file whose phase is not known."""
+    robot = tmp_path / "robot.yaml"
+    robot.write_text(
+        "odom_node:\n  ros__parameters:\n"
+        f"    wheel_separation: {ROBOT.wheel_separation}\n"
+        "    wheel_separation_multiplier: 1.01\n"
+        f"    wheel_radius: {ROBOT.wheel_radius}\n"
+        f"    left_ticks_per_revolution: {ROBOT.left_ticks_per_revolution}\n"
+        f"    right_ticks_per_revolution: {ROBOT.right_ticks_per_revolution}\n"
+        f"    left_wheel_noise: {ROBOT.left_wheel_noise}\n"
+        f"    right_wheel_noise: {ROBOT.right_wheel_noise}\n"
+        "    effects: [eccentric_left_wheel]\n"
+        "    eccentric_left_wheel:\n      amplitude: 0.002\n"
+    )
+    folders = []
+    for run in drives((50, 51, 52), UNKNOWN_PHASE):
+        folders.append(str(tmp_path / run.name))
+        write_run(tmp_path / run.name, silent(run))
+    train, held = folders[:2], folders[2:]
+
+    def told(verb: list[str], runs: list[str], *more: str) -> Any:
+        out = tmp_path / "figures.json"
+        assert main([*verb, "--robot", str(robot), *runs, *more, "--json", str(out)]) == 0
+        return json.loads(out.read_text())
+
+    judged = ["--holdout", *held]
+    new, fitted = (["--out", str(tmp_path / f"{name}.yaml"), "--force"] for name in ("new", "fit"))
+    diagnosis = told(["diagnose"], train, *judged)
+    every = [
+        diagnosis,
+        told(["add", "track_width"], train, *judged, *new),
+        told(["calibrate", "fit"], train, *judged, *fitted),
+    ]
+    words = capsys.readouterr().out
+    for side, runs in (("train", train), ("holdout", held)):
+        compared = told(["compare"], runs)
+        expected = compared["legs"]["rmse_position_m"]
+        assert [figures[side]["before"] for figures in every] == [expected] * len(every)
+        gaps = [part for part in compared["left_out"] if part["why"] == "gap"]
+        assert len(gaps) == 2 * len(runs)
+        for figures in every[:2]:
+            assert [part for part in figures["left_out"] if part["run"] in runs] == gaps
+    assert [part["why"] for part in every[2]["left_out"]] == ["gap"] * 4
+    first = diagnosis["left_out"][0]
+    assert set(first) >= {"run", "from_s", "to_s", "why"}
+    assert " ".join(words.split()).count("the reference is silent while the robot") >= 3
+    assert "the reference is silent while the robot" in " ".join(capsys.readouterr().out.split())

@@ -1,0 +1,131 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What is said of a covariance is true to the table that stands below it."""
+
+from __future__ import annotations
+
+import math
+import re
+from itertools import pairwise
+
+import numpy as np
+import pytest
+from scipy import stats
+
+from werrimbi_odom.inference.comparison.consistency import (
+    FEWEST,
+    AtLength,
+    consistency,
+    honest_bounds,
+    of_all,
+    told,
+)
+from werrimbi_odom.inference.comparison.systematic import NoiseFactor, Systematic
+from werrimbi_odom.inference.comparison.verdict import Noise, Verdict
+from werrimbi_odom.inference.rules import HONEST_CHANCE, HONEST_WITHIN
+from werrimbi_odom.report.comparison.words import covariance_words
+
+SYSTEMATIC = Systematic("line", "heading", "travel", 0.1, 0.01, 1e-9, 0.1, 0.1, True)
+NUMBER = r"([\d.]+(?:e[+-]?\d+)?)"
+
+
+def table(random: np.random.Generator) -> tuple[AtLength, ...]:
+    """NEES that stays, grows, falls, or goes up and down with the length of the legs."""
+    count = int(random.integers(1, 8))
+    shape = random.choice(["flat", "grows", "falls", "any"])
+    values = np.exp(random.normal(0.0, 0.15 if shape == "flat" else 1.5, count))
+    if shape == "grows":
+        values = np.sort(values)
+    if shape == "falls":
+        values = np.sort(values)[::-1]
+    legs = int(random.integers(5, 40_000)) // 2 ** np.arange(count)
+    return tuple(
+        AtLength(0.25 * 2.0**place, int(number), float(nees), 3 * int(number))
+        for place, (number, nees) in enumerate(zip(legs, values, strict=True))
+    )
+
+
+def verdict(random: np.random.Generator, lengths: tuple[AtLength, ...]) -> Verdict:
+    noise: Noise = random.choice(["honest", "too small", "too large", "grows", "comes and goes"])
+    factor = NoiseFactor(*np.sort(np.exp(random.normal(0.0, 1.5, 3)))[[1, 0, 2]].tolist())
+    mean = () if random.random() < 0.6 else (SYSTEMATIC,)
+    judged_at = float(random.choice([item.leg for item in lengths]))
+    off = ("line",) if random.random() < 0.2 else ()
+    return Verdict(
+        True, mean, (), (), noise, factor, judged_at, False, 0.0, (), off, told(lengths), ()
+    )
+
+
+def said_of(text: str, lengths: tuple[AtLength, ...], main: float) -> list[AtLength | float]:
+    """Every NEES that a sentence holds, with the row of the table that it is of."""
+    found: list[AtLength | float] = []
+    by_leg = {f"{item.leg:g}": item for item in lengths}
+    for number, leg in re.findall(rf"{NUMBER} over (?:legs of )?{NUMBER} m", text):
+        row = by_leg[leg]
+        assert float(number) == pytest.approx(row.nees, rel=0.01)
+        found.append(row)
+    for leg, number in re.findall(rf"over legs of {NUMBER} m \(NEES {NUMBER}", text):
+        row = by_leg[leg]
+        assert float(number) == pytest.approx(row.nees, rel=0.01)
+        found.append(row)
+    if not found:
+        (number,) = re.findall(rf"NEES (?:is )?{NUMBER}", text)
+        assert float(number) == pytest.approx(main, rel=0.01, abs=0.006)
+        found.append(main)
+    return found
+
+
+@pytest.mark.parametrize("seed", range(400))
+def test_sentences_are_true_to_their_table(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    lengths = table(random)
+    judged = verdict(random, lengths)
+    main = lengths[min(2, len(lengths) - 1)].nees
+    (text,) = covariance_words(judged, main)
+    rows = said_of(text, lengths, main)
+    enough = [item for item in lengths if item.count >= FEWEST]
+    says = {item.says for item in enough}
+    if "honest" in text and "in straight driving" not in text:
+        assert says == {"honest"}
+    if "covariance is too small" in text or "times too small" in text:
+        assert "too small" in says
+        assert any(isinstance(row, AtLength) and row.says == "too small" for row in rows)
+    if "too large" in text:
+        assert says & {"too large"}
+        assert not says & {"too small"}
+    values = [item.nees for item in enough]
+    if "the more so the longer the leg" in text:
+        rises = [after > before for before, after in pairwise(values)]
+        assert all(rises) if "too small" in text else not any(rises)
+    if "the more so the shorter the leg" in text:
+        rises = [after > before for before, after in pairwise(values)]
+        assert not any(rises) if "too small" in text else all(rises)
+    for leg in re.findall(rf"most over legs of {NUMBER} m", text):
+        worst = (max if "too small" in text else min)(enough, key=lambda item: item.nees)
+        assert leg == f"{worst.leg:g}"
+    for nees, times in re.findall(rf"NEES {NUMBER}, 1 is right: errors are {NUMBER} times", text):
+        assert float(times) == pytest.approx(math.sqrt(float(nees)), rel=0.06)
+    for times in re.findall(rf"noise k were {NUMBER} times", text):
+        assert float(times) == pytest.approx(math.sqrt(judged.factor.value), rel=0.06)
+
+
+def test_one_rule_for_few_legs_and_many() -> None:
+    """Chance rules while legs are few, what matters to a user when they are many."""
+    for freedom in (15, 60, 300, 3000, 300_000):
+        low, high = honest_bounds(freedom)
+        tail = 0.5 * (1.0 - HONEST_CHANCE)
+        exact = stats.chi2.ppf([tail, 1.0 - tail], freedom) / freedom
+        assert low == pytest.approx(min(exact[0], 1.0 / HONEST_WITHIN), rel=0.09)
+        assert high == pytest.approx(max(exact[1], HONEST_WITHIN), rel=0.02)
+        assert consistency(1.0, freedom) == "honest"
+        assert consistency(1.01 * high, freedom) == "too small"
+        assert consistency(0.99 * low, freedom) == "too large"
+    assert consistency(math.nan, 100) == consistency(2.0, 0) == "unknown"
+
+
+def test_a_covariance_is_honest_only_where_it_is_so_at_every_length() -> None:
+    good = [AtLength(1.0, 1000, 1.02, 3000), AtLength(4.0, 500, 1.41, 1500)]
+    assert of_all(good) == "honest"
+    assert of_all([*good, AtLength(16.0, 100, 28.8, 300)]) == "too small"
+    assert of_all([*good, AtLength(16.0, FEWEST - 1, 28.8, 27)]) == "honest"
+    assert of_all([]) == "unknown"

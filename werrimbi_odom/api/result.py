@@ -1,0 +1,112 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a verb found, and its forms: words, JSON, figures, a page to mail, a view in a notebook."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
+
+from werrimbi_odom.errors import InputError
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+    from werrimbi_odom.files.robot_file import RobotFile
+    from werrimbi_odom.model.effect import AppliedEffect
+    from werrimbi_odom.report.page import Page
+
+Found = TypeVar("Found")
+
+
+@dataclass(frozen=True)
+class NewRobot:
+    """What a verb changes in a robot file."""
+
+    source: RobotFile
+    changes: dict[str, Any]
+    """New values by parameter."""
+    effects: Sequence[AppliedEffect] | None = None
+    """All effects of the new file; None: those that it holds stay."""
+
+
+@dataclass(frozen=True, repr=False, kw_only=True)
+class Result(Generic[Found]):
+    """A finding that shows itself.
+
+    Attributes
+    ----------
+    found
+        The finding itself, with all its numbers (`werrimbi_odom.inference`).
+    """
+
+    found: Found
+    words: Callable[[], str] = field(compare=False)
+    figures_of_json: Callable[[], dict[str, Any]] = field(compare=False)
+    page: Callable[[], Page] = field(compare=False)
+    new_robot: NewRobot | None = None
+
+    def summary(self) -> str:
+        """The words and tables of the terminal."""
+        return self.words()
+
+    def to_dict(self) -> dict[str, Any]:
+        """What `--json` writes: plain numbers, words, lists and dictionaries."""
+        return self.figures_of_json()
+
+    def figures(self) -> dict[str, go.Figure]:
+        """The figures of the report, by name; of several to choose from each by NAME: CHOICE."""
+        return {
+            f"{part.key}: {choice}" if choice and len(part.figures) > 1 else part.key: figure
+            for part in self.page().shown
+            for choice, figure in part.figures.items()
+        }
+
+    def write_report(self, path: str | Path) -> list[Path]:
+        """Write the report; returns the files.
+
+        Parameters
+        ----------
+        path
+            .html for a page, .pdf or .png for the main figures alone.
+
+        Raises
+        ------
+        InputError
+            When it cannot be written.
+        """
+        from werrimbi_odom.report.save import save_report
+
+        return save_report(self.page(), Path(path))
+
+    def write_robot(self, path: str | Path, *, force: bool = False) -> RobotFile:
+        """Write the robot file with what was found, comments and order kept.
+
+        Raises
+        ------
+        InputError
+            When this verb changes no robot, or the file exists and `force` is not set.
+        """
+        from werrimbi_odom.files.robot_file import write_robot_file
+
+        if self.new_robot is None:
+            raise InputError("this finding changes no robot file; add and calibrate do")
+        new = self.new_robot
+        return write_robot_file(
+            new.source, new.changes, Path(path), force=force, effects=new.effects
+        )
+
+    def __repr__(self) -> str:
+        first = self.summary().strip().partition("\n")[0]
+        return f"<{type(self.found).__name__}: {first}>"
+
+    def _repr_html_(self) -> str:
+        """The report page, in a frame of its own, for a notebook."""
+        from html import escape
+
+        from werrimbi_odom.report.page import page_html
+
+        page = escape(page_html(self.page()), quote=True)
+        return f'<iframe srcdoc="{page}" width="100%" height="800" frameborder="0"></iframe>'

@@ -1,0 +1,152 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Fits of a model with several effects: with none of them, with all, and with all but one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference.adding.start import (
+    Drives,
+    Start,
+    knobs_held,
+    mistake_put_in,
+    start_of_held,
+    starts,
+)
+from werrimbi_odom.inference.adding.values import parameters_of, weakest, without_phases_stuck
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.knobs import Model, changed
+from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.robot import Robot
+
+Show = Callable[[float, str], None]
+"""Told the share done, and what is being done."""
+
+
+@dataclass(frozen=True, slots=True)
+class Fits:
+    """A model with all effects, and what each of them is held against."""
+
+    none: Fitted
+    """Everything fitted but the effects; the model itself where they are calibration alone."""
+    all: Fitted
+    without: dict[str, Fitted]
+    """With all but one of several effects; empty where there is but one."""
+
+
+def fits_of(
+    effects: Sequence[Effect],
+    drives: Drives,
+    begun: Robot,
+    given: Robot,
+    also: tuple[str, ...],
+    show: Show,
+) -> Fits:
+    """Models with none of the effects, with all, and with all but one.
+
+    Set-up mistakes begin together, where the search for them ended; then one effect comes after the
+    other, the one whose score promises most first, and all before it are fitted again with it.
+
+    Parameters
+    ----------
+    begun, also
+        The robot where fits begin, and which of its effects are set-up mistakes just found.
+
+    Raises
+    ------
+    InputError
+        When the drives do not show at all what an effect looks at.
+    """
+    sought = [effect for effect in effects if effect.name not in CALIBRATED]
+    if not sought:
+        start = start_of_held(drives, begun, also)
+        fit = drives.fit(start.point, also, start.knobs, given)
+        return Fits(fit, fit, {})
+    names = {effect.name for effect in sought}
+    others = tuple(item for item in begun.effects if item.name not in (*names, *also))
+    bare = replace(begun if not also else given, effects=others)
+    start = start_of_held(drives, bare, ())
+    none = fit = drives.fit(start.point, (), start.knobs, given)
+    show(0.3, sought[0].name)
+    mended = [effect for effect in sought if effect.is_mistake and effect.name not in also]
+    if also or mended:
+        robot = bare
+        if also:
+            rest = tuple(
+                item for item in begun.effects if item.name in also or item.name not in names
+            )
+            robot = replace(begun, effects=rest)
+        for effect in mended:
+            robot = mistake_put_in(robot, effect)
+        start = start_of_held(drives, robot, (*also, *(effect.name for effect in mended)))
+        knobs = start.knobs
+        for effect in sought:
+            knobs = knobs_held(robot, knobs, effect)
+        fit = _well(drives, replace(start, knobs=knobs), given)
+    waiting = [effect for effect in sought if effect not in mended and effect.name not in also]
+    count = len(waiting)
+    while waiting:
+        show(0.65 - 0.3 * len(waiting) / count, ", ".join(effect.name for effect in waiting))
+        options = {effect.name: starts(drives, fit, effect, fit.knobs) for effect in waiting}
+        gains = {
+            name: max((start.gain for start in each), default=-1.0)
+            for name, each in options.items()
+        }
+        best = max(waiting, key=lambda effect: gains[effect.name])
+        if not options[best.name]:
+            raise InputError(
+                f"these drives do not show {best.name} at all: what it looks at never happens in "
+                "them, or is the same to them as calibration"
+            )
+        fits = [_well(drives, option, given) for option in options[best.name]]
+        fit = min(fits, key=lambda each: each.total)
+        waiting.remove(best)
+    show(0.65, "pruning")
+    for effect in sought:
+        fit = _pruned(effect, drives, fit, given)
+    if len(sought) == 1 and (not also or sought[0].name in also):
+        return Fits(none, fit, {})
+    tested = [effect for effect in sought if effect.name not in also]
+    without = {effect.name: _without(effect, drives, fit, given) for effect in tested}
+    return Fits(none, fit, without)
+
+
+def _without(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitted:
+    """The model less one of its effects, all else fitted again."""
+    model = fit.point.model
+    mine = f"{effect.name}."
+    effects = tuple(item for item in model.robot.effects if item.name != effect.name)
+    own = tuple(
+        {name: value for name, value in each.items() if not name.startswith(mine)}
+        for each in model.own
+    )
+    point = replace(fit.point, model=Model(replace(model.robot, effects=effects), own))
+    names = tuple(name for name in fit.names if name != effect.name)
+    knobs = tuple(knob for knob in fit.knobs if not knob.name.startswith(mine))
+    return drives.fit(point, names, knobs, given)
+
+
+def _well(drives: Drives, start: Start, given: Robot) -> Fitted:
+    """A fit from a start, phases led past half a turn where they ran against it."""
+    fit = drives.fit(start.point, start.names, start.knobs, given)
+    turned = without_phases_stuck(fit.point.model, fit.knobs)
+    if turned is None:
+        return fit
+    again = drives.fit(replace(fit.point, model=turned), start.names, start.knobs, given)
+    return min(fit, again, key=lambda each: each.cost)
+
+
+def _pruned(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitted:
+    """The fit without parameters that the data do not show, one after the other."""
+    while (name := weakest(effect, parameters_of(effect, fit, given))) is not None:
+        key = f"{effect.name}.{name}"
+        model = fit.point.model
+        at_null = changed(model.robot, {key: effect.parameters[name].null})
+        knobs = tuple(knob for knob in fit.knobs if knob.name != key)
+        point = replace(fit.point, model=Model(at_null, model.own))
+        fit = drives.fit(point, fit.names, knobs, given)
+    return fit

@@ -1,0 +1,164 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A law that fits but not fully is said to be that: its rest is not another effect.
+
+An effect that the robot file holds (the library's, a user's, a draft) has a law of some form, and
+nature's may be a bit another one. What that leaves goes with the effect's own variables and acts
+where the effect acts, it is little beside what the law explains, and a freer form of the law (a
+curve over one of its variables) takes it away. Some other effect may fit a part of it; to name that
+would send the user after a thing that is not there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
+from werrimbi_odom.inference.diagnosis.lasting import lasting
+from werrimbi_odom.inference.diagnosis.search import Round
+from werrimbi_odom.inference.diagnosis.selection import Fitted, rise_without
+from werrimbi_odom.inference.diagnosis.support import Support, support_of
+from werrimbi_odom.inference.diagnosis.variables import functions_of
+from werrimbi_odom.inference.fitting.candidates import (
+    CALIBRATED,
+    Candidate,
+    Score,
+    of_each_run,
+    signatures,
+    unexplained,
+)
+from werrimbi_odom.inference.fitting.design import Point, unexpected
+from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob
+from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.linear import nuisance, score_test
+from werrimbi_odom.inference.rules import LASTS, LEFT_ASKED, LITTLE_OF_A_LAW, REST_EXPLAINED
+from werrimbi_odom.model.effect import AppliedEffect
+from werrimbi_odom.model.pose import Floats
+
+
+@dataclass(frozen=True)
+class Misfit:
+    """What a law leaves, because its form is not quite nature's."""
+
+    effect: str | None
+    """Whose law; None where no law looks at that variable: then something else is left."""
+    cell: Dependence
+    """What the errors still go with."""
+    share: float | None
+    """Of what the law explains."""
+
+
+def misfit_of_held_law(
+    this: Round, best: Fitted | None, beyond: Dependence | None, runs: Together, kind: ReferenceKind
+) -> Misfit | None:
+    """The misfit that a round found in the place of an effect; None where it found one.
+
+    Parameters
+    ----------
+    best
+        The effect that the round would take.
+    beyond
+        The dependence that no effect explains, which would end the search.
+    """
+    before = this.before
+    for law, support, explained in _laws(before, runs):
+        own = (cell for cell in this.dependences if _shares(support, cell))
+        if beyond is not None:
+            share = beyond.gain / explained
+            if _shares(support, beyond) and share < LITTLE_OF_A_LAW:
+                return Misfit(law.name, beyond, share)
+            continue
+        if best is None:
+            return None
+        score = next(each for each in this.scores if each.candidate.name == best.names[-1])
+        share = score.gain / explained
+        cell = max(own, key=lambda cell: cell.gain - cell.degrees, default=None)
+        if cell is None or share >= LITTLE_OF_A_LAW:
+            continue
+        knobs = (*CALIBRATION, *before.knobs)
+        left = _gain_beside(runs, before.point, kind, knobs, score, cell)
+        if left < (1.0 - REST_EXPLAINED) * score.gain:
+            return Misfit(law.name, cell, share)
+    return None
+
+
+def misfit_of_found(
+    fit: Fitted, certain: Sequence[Dependence], runs: Together, kind: ReferenceKind
+) -> Misfit | None:
+    """What is left beside everything found, if anything lasts: what explains most for its numbers.
+
+    Parameters
+    ----------
+    certain
+        Cells of the final model's map that chance does not show.
+    """
+    worth = sorted(certain, key=lambda cell: cell.degrees * fit.price_of_one - cell.gain)
+    knobs = (*CALIBRATION, *fit.knobs)
+    asked = [cell for cell in worth if cell.gain > cell.degrees * fit.price_of_one][:LEFT_ASKED]
+    for cell, p_value in lasting(runs, fit.point, kind, knobs, asked):
+        if p_value < LASTS:
+            for law, support, explained in _laws(fit, runs):
+                if _shares(support, cell):
+                    return Misfit(law.name, cell, cell.gain / explained)
+            return Misfit(None, cell, None)
+    return None
+
+
+def _laws(fit: Fitted, runs: Together) -> Iterator[tuple[AppliedEffect, Support, float]]:
+    """Laws of a model with their reach, and by how much each lowers the cost."""
+    robot = fit.point.model.robot
+    drive = runs.drive(fit.point.model.laid_out(runs.run_of_step))
+    for applied in robot.effects:
+        if applied.effect.is_mistake or applied.name in CALIBRATED or not applied.ready:
+            continue
+        parameters = applied.effect.parameters
+        shape = {name: applied.values[name] for name, item in parameters.items() if item.tries}
+        support = support_of(Candidate(applied.effect, shape), drive)
+        explained = rise_without(applied.name, fit.design, fit.covariance, fit.point)
+        if support.outputs and explained > 0.0:
+            yield applied, support, explained
+
+
+def _shares(support: Support, cell: Dependence) -> bool:
+    """Whether a dependence is in a variable that a law looks at, where it acts."""
+    return cell.channel in support.outputs and bool(support.inputs & set(cell.variable.looks_at))
+
+
+def _gain_beside(
+    runs: Together,
+    point: Point,
+    kind: ReferenceKind,
+    knobs: Sequence[Knob],
+    score: Score,
+    cell: Dependence,
+) -> float:
+    """What a candidate would still explain if the model could turn a cell's pattern as well."""
+    prediction = predict_all(point.model, runs)
+    turned, rest = unexplained(runs, point, kind, knobs, prediction)
+    pattern = _pattern(runs, point, kind, cell)
+    freer = nuisance(turned.residual(pattern))
+    signature = next(signatures(runs, point, kind, knobs, [score.candidate])[1])
+    free, left = freer.residual(signature.free), freer.residual(rest)
+    found = score_test(signature.flat, free, left)
+    return 0.0 if found is None else found.gain
+
+
+def _pattern(runs: Together, point: Point, kind: ReferenceKind, cell: Dependence) -> Floats:
+    """What a dependence of a cell's form does to the whitened innovations, (n, k)."""
+    prediction = predict_all(point.model, runs)
+    path = path_of(point.model, runs)
+    sides = zip(
+        functions_of(cell.variable)[cell.form],
+        pushes_of(runs, path, cell.amount, point),
+        strict=True,
+    )
+    change = np.asarray(sum(legs_pushed(runs, *side) for side in sides))
+    own = unexpected(runs, point, kind, change, prediction).whitened()[1][..., :-1]
+    if cell.variable.per_run:
+        own = of_each_run(runs, own)
+    return np.asarray(own.reshape(3 * runs.count, -1))

@@ -1,0 +1,202 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Which sizes of the robot the drives move away from the given file; all others go back to it.
+
+A fit turns base, left radius and right radius together. What of that earns its price need not be
+all three: the base alone, one wheel, both wheels alike, one against the other. The cheapest of
+these is kept, and everything else is fitted again with the other sizes where the file has them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.costs import Costs
+from werrimbi_odom.inference.fitting.design import Design, stacked
+from werrimbi_odom.inference.fitting.fit import moved
+from werrimbi_odom.inference.fitting.knobs import (
+    CALIBRATION,
+    MULTIPLIERS,
+    Model,
+    changed,
+    own_of,
+    shared_of,
+)
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.linear import nuisance
+from werrimbi_odom.inference.rules import RIVAL, STILL
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+_BOUNDS = {knob.name: knob.bounds for knob in CALIBRATION}
+_BASE = {"": (), "base": ((1.0, 0.0, 0.0),)}
+_RADII: dict[str, tuple[tuple[float, float, float], ...]] = {
+    "": (),
+    "left": ((0.0, 1.0, 0.0),),
+    "right": ((0.0, 0.0, 1.0),),
+    "scale": ((0.0, 1.0, 1.0),),
+    "ratio": ((0.0, -0.5, 0.5),),
+    "both": ((0.0, 1.0, 0.0), (0.0, 0.0, 1.0)),
+}
+_MOVES = {
+    "track_width": ("base",),
+    "unequal_wheel_radii": ("left", "right", "ratio", "both"),
+    "wheel_radius_scale": ("left", "right", "scale", "both"),
+}
+"""Parts that move what an effect of calibration is about."""
+
+
+@dataclass(frozen=True, slots=True)
+class Sizes:
+    """What of the sizes is free, as directions in the logarithms of the three multipliers."""
+
+    parts: tuple[str, str]
+    """Of the base and of the radii: what moves, "" for nothing."""
+    directions: Floats
+    """(3, k)."""
+
+    @property
+    def free(self) -> int:
+        """How many numbers that is."""
+        return int(self.directions.shape[1])
+
+
+def sizes_needed(fit: Fitted, given: Robot, wanted: Collection[str]) -> Sizes:
+    """The cheapest set of sizes that may differ from the given file's.
+
+    To first order, everything else fitted again. A number is worth its price as in any choice of a
+    model (`Fitted.price_of_one`).
+
+    Parameters
+    ----------
+    wanted
+        Effects of calibration that are to be fitted whatever they are worth.
+    """
+    marks, rest = _at_given(fit.design, fit.point.model.robot, given)
+    weighed = []
+    for sizes in _choices():
+        if all(set(_MOVES[name]) & set(sizes.parts) for name in wanted):
+            gained = float(np.sum((marks @ sizes.directions @ _solved(marks, sizes, rest)) ** 2))
+            weighed.append((fit.price_of_one * sizes.free - gained / fit.scatter, sizes))
+    return min(weighed, key=lambda item: item[0])[1]
+
+
+def with_sizes(
+    runs: Together, kind: ReferenceKind, fit: Fitted, given: Robot, sizes: Sizes
+) -> Fitted:
+    """The fit again, with those sizes alone free to differ from the given file's.
+
+    The fit itself where all are free, or where putting back does not do what it promised.
+    """
+    if sizes.free == len(MULTIPLIERS):
+        return fit
+    marks, rest = _at_given(fit.design, fit.point.model.robot, given)
+    away = -_solved(marks, sizes, rest)
+    point = fit.point
+    every = [
+        *CALIBRATION,
+        *own_of([*fit.knobs, *point.model.nuisance_knobs]),
+        *shared_of(fit.knobs),
+    ]
+    for _ in range(3):
+        there = _sized(given, sizes, away)
+        if not all(low < there[name] < high for name, (low, high) in _BOUNDS.items()):
+            return fit  # a model that is far off: what is worth its price there means nothing
+        robot = changed(point.model.robot, there)
+        point = replace(point, model=Model(robot, point.model.own))
+        design = stacked(runs, point, kind, every)
+        free = _free(design, robot, sizes)
+        white, flat = design.flat()
+        columns = flat @ free
+        size = np.sqrt(np.sum(columns**2, axis=0))
+        size = np.where(size > 1e-9, size, np.inf)
+        step = -np.linalg.lstsq(columns / size, white, rcond=1e-9)[0] / size
+        away = away + step[: sizes.free]
+        others = free @ np.where(np.arange(step.size) < sizes.free, 0.0, step)
+        point = replace(point, model=moved(point.model, design, others))
+        if np.max(np.abs(step) * np.where(np.isfinite(size), size, 0.0), initial=0.0) < STILL:
+            break
+    robot = changed(point.model.robot, _sized(given, sizes, away))
+    point = replace(point, model=Model(robot, point.model.own))
+    cost = float(Costs(runs, point, kind)(point.variances)[0])
+    if not cost < fit.cost + fit.price_of_one * fit.scatter * len(MULTIPLIERS) + RIVAL:
+        return fit
+    inverse = np.linalg.pinv((columns / size).T @ (columns / size), rcond=1e-12, hermitian=True)
+    covariance = free @ (inverse / np.outer(size, size)) @ free.T
+    heard = np.isin([knob.name for knob, _ in design.columns], MULTIPLIERS)
+    mute = ~heard & (np.sum(flat**2, axis=0) < 1e-18)
+    covariance[mute, mute] = 1e12
+    return replace(fit, point=point, cost=cost, needless=0.0, covariance=covariance, design=design)
+
+
+def sizes_at(fit: Fitted, given: Robot, sizes: Sizes) -> dict[str, tuple[float, float]]:
+    """Multipliers with those sizes alone free, each with its standard deviation, to first order.
+
+    A multiplier that is not free is the given one, with a deviation of 0.
+    """
+    marks, rest = _at_given(fit.design, fit.point.model.robot, given)
+    values = _sized(given, sizes, -_solved(marks, sizes, rest))
+    free = marks @ sizes.directions
+    spread = sizes.directions @ np.linalg.pinv(free.T @ free, hermitian=True) @ sizes.directions.T
+    stds = np.sqrt(np.maximum(np.diag(spread), 0.0))
+    return {
+        name: (values[name], values[name] * float(std))
+        for name, std in zip(MULTIPLIERS, stds, strict=True)
+    }
+
+
+def _choices() -> Iterator[Sizes]:
+    """All that may be free, the fewest numbers first."""
+    every = [
+        Sizes((base, radii), np.array([*_BASE[base], *_RADII[radii]]).reshape(-1, 3).T)
+        for radii in _RADII
+        for base in _BASE
+    ]
+    yield from sorted(every, key=lambda sizes: sizes.free)
+
+
+def _at_given(design: Design, robot: Robot, given: Robot) -> tuple[Floats, Floats]:
+    """Derivatives in the logarithms of the multipliers (n, 3), and innovations (n,) at the given.
+
+    Both clear of all that else is fitted.
+    """
+    names = [knob.name for knob, _ in design.columns]
+    white, flat = design.flat()
+    now = np.array([getattr(robot, name) for name in MULTIPLIERS])
+    before = np.array([getattr(given, name) for name in MULTIPLIERS])
+    marks = flat[:, [names.index(name) for name in MULTIPLIERS]] * now
+    others = nuisance(flat[:, [name not in MULTIPLIERS for name in names]])
+    marks = others.residual(marks)
+    return marks, others.residual(white) - marks @ np.log(now / before)
+
+
+def _solved(marks: Floats, sizes: Sizes, rest: Floats) -> Floats:
+    """Least squares of what is left in the directions that are free, (k,)."""
+    if sizes.free == 0:
+        return np.zeros(0)
+    return np.asarray(np.linalg.lstsq(marks @ sizes.directions, rest, rcond=1e-6)[0])
+
+
+def _sized(given: Robot, sizes: Sizes, away: Floats) -> dict[str, float]:
+    """Multipliers so far from the given ones; what is not free is the given one to the last bit."""
+    logs = sizes.directions @ away
+    return {
+        name: float(getattr(given, name)) * float(np.exp(log))
+        for name, log in zip(MULTIPLIERS, logs, strict=True)
+    }
+
+
+def _free(design: Design, robot: Robot, sizes: Sizes) -> Floats:
+    """Columns of a design (p,) by what is free in it (q,): the sizes first, then all the rest."""
+    names = [knob.name for knob, _ in design.columns]
+    rest = [index for index, name in enumerate(names) if name not in MULTIPLIERS]
+    free = np.zeros((len(names), sizes.free + len(rest)))
+    for name, row in zip(MULTIPLIERS, sizes.directions, strict=True):
+        free[names.index(name), : sizes.free] = row * getattr(robot, name)
+    free[rest, np.arange(sizes.free, sizes.free + len(rest))] = 1.0
+    return free

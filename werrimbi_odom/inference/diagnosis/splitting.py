@@ -1,0 +1,89 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Parts of the drives put aside for judging, where nobody has given others for it."""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.inference.rules import SET_ASIDE, SET_ASIDE_BLOCKS, SET_ASIDE_ROWS
+
+Runs = tuple[Run, ...]
+
+
+def set_aside(runs: Sequence[Run]) -> tuple[Runs, Runs]:
+    """What is fitted, and what is put aside for judging: a quarter of every drive.
+
+    Two stretches of each drive's reference are taken out of it, others in every drive, so that all
+    kinds of motion are on both sides; the counters run on through them, so that what an effect
+    remembers (a wheel's angle, the travel since a reversal, the distance) is the same on both. Of
+    drives with too few poses for that, whole ones are put aside; of a single such drive the end.
+    """
+    if all(_rows(run) >= SET_ASIDE_ROWS for run in runs):
+        parts = [_parted(run, number) for number, run in enumerate(runs)]
+        return tuple(kept for kept, _ in parts), tuple(held for _, held in parts)
+    if len(runs) > 1:
+        count = max(1, round(len(runs) * len(SET_ASIDE) / SET_ASIDE_BLOCKS))
+        every = len(runs) / count
+        chosen = {int((number + 0.5) * every) for number in range(count)}
+        return (
+            tuple(run for index, run in enumerate(runs) if index not in chosen),
+            tuple(run for index, run in enumerate(runs) if index in chosen),
+        )
+    (run,) = runs
+    time = run.ticks.time
+    share = 1.0 - len(SET_ASIDE) / SET_ASIDE_BLOCKS
+    at = float(time[0] + share * (time[-1] - time[0]))
+    return tuple(_between(runs, -np.inf, at)), tuple(_between(runs, at, np.inf))
+
+
+def _rows(run: Run) -> int:
+    if run.reference is None:
+        return 0
+    return int((run.reference.has_position | run.reference.has_yaw).sum())
+
+
+def _parted(run: Run, number: int) -> tuple[Run, Run]:
+    """A run without the stretches that are put aside, and the run with nothing but these."""
+    reference = run.reference
+    assert reference is not None
+    rows = np.arange(reference.time.size)
+    block = rows * SET_ASIDE_BLOCKS // rows.size
+    held = np.isin(block, [(first + 3 * number) % SET_ASIDE_BLOCKS for first in SET_ASIDE])
+    return _without(run, reference, ~held), _without(run, reference, held)
+
+
+def _without(run: Run, reference: Reference, kept: np.ndarray) -> Run:
+    """The run with some rows of its reference; what lies between them is said to be taken out."""
+    edges = np.flatnonzero(np.diff(kept.astype(np.int8)))
+    ends = [0, *(edges + 1).tolist(), kept.size]
+    time = reference.time
+    gone = tuple(
+        (float(time[max(first - 1, 0)]), float(time[min(last, kept.size - 1)]))
+        for first, last in itertools.pairwise(ends)
+        if not kept[first]
+    )
+    return replace(run, reference=reference.chosen(kept), taken_out=gone)
+
+
+def _between(runs: Sequence[Run], begin: float, end: float) -> list[Run]:
+    parts = []
+    for run in runs:
+        ticks, reference = run.ticks, run.reference
+        which = (ticks.time >= begin) & (ticks.time < end)
+        cut = replace(
+            ticks,
+            time=ticks.time[which],
+            left=ticks.left[which],
+            right=ticks.right[which],
+            channels={name: values[which] for name, values in ticks.channels.items()},
+        )
+        if reference is not None:
+            reference = reference.chosen((reference.time >= begin) & (reference.time < end))
+        parts.append(replace(run, ticks=cut, reference=reference))
+    return parts

@@ -1,0 +1,133 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Which numbers the data hold: directions in which a fit may move, and those that it must not.
+
+The three multipliers are taken as base, ratio of the radii, and size of both. A heading knows the
+right and the left radius over the base, two numbers: base and ratio are then fitted and both radii
+keep their mean as it was given, for that is what a tape knows best. What is held is neither told
+with an error bar, nor written, nor offered as a rival.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from werrimbi_odom.inference.fitting.design import Design
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob, Model, changed
+from werrimbi_odom.inference.linear import admitted, covariance_of, nuisance
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+CALIBRATED = ("track_width", "unequal_wheel_radii", "wheel_radius_scale")
+"""Effects that are the robot file's own multipliers by another name, the first to be kept first."""
+
+
+@dataclass(frozen=True, slots=True)
+class Directions:
+    """What a fit may move: q directions in the p columns of a design."""
+
+    names: tuple[str, ...]
+    """Of each: a knob, or one of `CALIBRATED`."""
+    matrix: Floats
+    """Moves of the columns for a unit of each, shape (p, q)."""
+    limits: Floats
+    """Standard deviation of each above which the data say less than is known beforehand, (q,)."""
+    shared: list[int]
+    """Those that all runs have in common."""
+    held: tuple[str, ...]
+    """Shared directions that the data do not determine."""
+
+    def covariance(self, flat: Floats) -> Floats:
+        """Covariance of the columns' values (p, p) for whitened derivatives (n, p)."""
+        inside = covariance_of(flat @ self.matrix)
+        return np.asarray(self.matrix @ inside @ self.matrix.T)
+
+
+def every_direction(columns: Sequence[tuple[Knob, int]], robot: Robot) -> Directions:
+    """All directions of a design's columns; those of single runs have no limit."""
+    names = [knob.name for knob, _ in columns]
+    found: list[tuple[str, dict[int, float], float, bool]] = []
+    calibrated = all(name in names for name in MULTIPLIERS)
+    if calibrated:
+        base, left, right = (names.index(name) for name in MULTIPLIERS)
+        values = {index: float(getattr(robot, names[index])) for index in (base, left, right)}
+        limit = columns[base][0].undetermined
+        signs = ({base: 1.0}, {left: -0.5, right: 0.5}, {left: 1.0, right: 1.0})
+        for name, parts in zip(CALIBRATED, signs, strict=True):
+            moves = {index: sign * values[index] for index, sign in parts.items()}
+            found.append((name, moves, limit, True))
+    for index, (knob, run) in enumerate(columns):
+        if calibrated and knob.name in MULTIPLIERS:
+            continue
+        found.append((knob.name, {index: 1.0}, knob.undetermined, run < 0))
+    matrix = np.zeros((len(columns), len(found)))
+    for number, (_, moves, _, _) in enumerate(found):
+        for index, move in moves.items():
+            matrix[index, number] = move
+    return Directions(
+        tuple(name for name, *_ in found),
+        matrix,
+        np.array([limit for _, _, limit, _ in found]),
+        [number for number, (*_, common) in enumerate(found) if common],
+        (),
+    )
+
+
+def determined(design: Design, robot: Robot) -> Directions:
+    """The directions that the data determine, and those of single runs."""
+    every = every_direction(design.columns, robot)
+    marks = design.flat()[1] @ every.matrix
+    shared = every.shared
+    own = [
+        index for index in range(len(every.names)) if index not in shared and marks[:, index].any()
+    ]
+    beside = nuisance(marks[:, own])
+    free = beside.residual(marks[:, shared])
+    # One after the other: what comes first has precedence over what is much like it.
+    kept: list[int] = []
+    for index in admitted(marks[:, shared], beside):
+        tried = [*kept, index]
+        spread = np.sqrt(np.diag(covariance_of(free[:, tried])))
+        if np.all(spread <= every.limits[[shared[number] for number in tried]]):
+            kept = tried
+    kept = [shared[index] for index in kept]
+    chosen = [*kept, *own]
+    return Directions(
+        tuple(every.names[index] for index in chosen),
+        every.matrix[:, chosen],
+        every.limits[chosen],
+        list(range(len(kept))),
+        tuple(every.names[index] for index in shared if index not in kept),
+    )
+
+
+def put_back(model: Model, given: Model, held: Iterable[str], knobs: Sequence[Knob]) -> Model:
+    """The model with what is held as it was given."""
+    names = set(held)
+    changes = {knob.name: given.value(knob) for knob in knobs if knob.name in names}
+    if names & set(CALIBRATED):
+        here, there = (_sizes(item.robot) for item in (model, given))
+        base, ratio, size = (
+            before if name in names else now
+            for name, now, before in zip(CALIBRATED, here, there, strict=True)
+        )
+        changes |= dict(
+            zip(
+                MULTIPLIERS,
+                (base, size * math.exp(-0.5 * ratio), size * math.exp(0.5 * ratio)),
+                strict=True,
+            )
+        )
+        if names >= set(CALIBRATED):  # to the last digit
+            changes |= {name: float(getattr(given.robot, name)) for name in MULTIPLIERS}
+    return Model(changed(model.robot, changes), model.own)
+
+
+def _sizes(robot: Robot) -> tuple[float, float, float]:
+    """Base, logarithm of right over left radius, their geometric mean."""
+    base, left, right = (float(getattr(robot, name)) for name in MULTIPLIERS)
+    return base, math.log(right / left), math.sqrt(left * right)

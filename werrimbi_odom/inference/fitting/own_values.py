@@ -1,0 +1,99 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What each run has of its own (a phase whose counter starts anywhere), learnt in that run.
+
+Shared values stay as they are. So a robot file that does not say a phase is judged alike by every
+verb, and a model that was fitted elsewhere is judged on drives that took no part in its fit.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate, put_in, scores
+from werrimbi_odom.inference.fitting.design import Point
+from werrimbi_odom.inference.fitting.fit import fit_model, start_point
+from werrimbi_odom.inference.fitting.knobs import (
+    CALIBRATION,
+    NUISANCES,
+    Knob,
+    Model,
+    changed,
+    knobs_of,
+)
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.model.effect import AppliedEffect
+
+
+def known_at_home(model: Model, runs: Together, kind: ReferenceKind) -> Model:
+    """A model in other runs, without what belongs to the references alone."""
+    plain = model.without_nuisances()
+    if not any(plain.own) and all(applied.ready for applied in plain.robot.effects):
+        return Model(plain.robot, tuple({} for _ in runs.runs))
+    return at_home(model, runs, kind).model.without_nuisances()
+
+
+def at_home(model: Model, runs: Together, kind: ReferenceKind) -> Point:
+    """A model in other runs: shared values stay, what those runs have of their own is fitted."""
+    own = sorted({name for mine in model.own for name in mine if name not in NUISANCES})
+    effects = tuple(
+        replace(
+            applied,
+            unknown=tuple(
+                name for name in applied.effect.parameters if f"{applied.name}.{name}" in own
+            )
+            or applied.unknown,
+        )
+        for applied in model.robot.effects
+    )
+    point = start_point(runs, replace(model.robot, effects=effects))
+    point, _ = with_own_values(runs, point, kind)
+    knobs = point.model.nuisance_knobs
+    for applied in effects:
+        knobs += [
+            knob
+            for knob in knobs_of(applied.effect)
+            if knob.per_run and knob.name in point.model.own[0]
+        ]
+    return fit_model(runs, point, kind, knobs, find_jumps=False, rounds=1).point
+
+
+def with_own_values(
+    runs: Together, point: Point, kind: ReferenceKind
+) -> tuple[Point, tuple[Knob, ...]]:
+    """The point with what each run has of its own in the robot's effects, and all their knobs.
+
+    A phase can be anywhere, so it is looked for by its score, which knows no start value.
+    """
+    knobs: list[Knob] = []
+    for applied in point.model.robot.effects:
+        if applied.effect.is_mistake or applied.name in CALIBRATED:
+            continue
+        shared = tuple(
+            name
+            for name, item in applied.effect.parameters.items()
+            if item.per_run and name not in applied.unknown
+        )
+        knobs += knobs_of(applied.effect, shared)
+        if applied.unknown:
+            point = replace(point, model=_learnt(runs, point, kind, applied))
+    return point, tuple(knobs)
+
+
+def _learnt(runs: Together, point: Point, kind: ReferenceKind, applied: AppliedEffect) -> Model:
+    """The model with the phases of an effect in each run."""
+    robot = point.model.robot
+    others = tuple(item for item in robot.effects if item is not applied)
+    bare = replace(point, model=replace(point.model, robot=replace(robot, effects=others)))
+    candidate = Candidate(applied.effect, {})
+    score = scores(runs, bare, kind, CALIBRATION, [candidate])
+    if not score:
+        return bare.model
+    model = put_in(bare.model, score[0])
+    known = {
+        f"{applied.name}.{name}": value
+        for name, value in applied.values.items()
+        if name not in applied.unknown
+    }
+    return Model(changed(model.robot, known), model.own)

@@ -1,0 +1,151 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a ruler should show on this robot: an effect's check, worked out with what was found.
+
+Each is the effect's own Ruler formula (`werrimbi explain`) at the fitted values.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+
+from werrimbi_odom.model.robot import Robot
+
+SLOW, FAST = 0.1, 0.5
+"""Speeds of a check [m/s]: those of a hand-held test, which any robot reaches."""
+
+TURNS = 2.0 * math.pi * 10.0
+"""Ten turns [rad]."""
+
+Values = Mapping[str, float]
+
+
+def expected_words(name: str, values: Values, robot: Robot) -> str:
+    """A sentence without its stop; "" where there is nothing to work out.
+
+    Parameters
+    ----------
+    values
+        By the effect's parameters; what each drive has anew is NaN or absent.
+    """
+    words = _EXPECTED.get(name)
+    if words is None or not all(map(math.isfinite, _needed(name, values))):
+        return ""
+    return f"expect {words(values, robot)}"
+
+
+def _needed(name: str, values: Values) -> list[float]:
+    return [value for key, value in values.items() if key != "phase" or name not in _WITHOUT_PHASE]
+
+
+_WITHOUT_PHASE = ("eccentric_left_wheel", "eccentric_right_wheel")
+
+
+def _length(metres: float) -> str:
+    size = abs(metres)
+    if size >= 1.0:
+        return f"{size:.2f} m"
+    return f"{100.0 * size:.0f} cm" if size >= 0.1 else f"{1e3 * size:.2g} mm"
+
+
+def _angle(radians: float) -> str:
+    size = math.degrees(abs(radians))
+    return f"{size:.0f}°" if size >= 10.0 else f"{size:.2g}°"
+
+
+def _base(values: Values, robot: Robot) -> str:
+    short = TURNS * (1.0 - 1.0 / values["multiplier"])
+    return f"{_angle(short)} {'short of it' if short > 0.0 else 'beyond it'} after ten turns"
+
+
+def _radii(values: Values, robot: Robot) -> str:
+    aside = (values["ratio"] - 1.0) * 3.0**2 / (2.0 * robot.track)
+    return f"{_length(aside)} to the {'left' if aside > 0.0 else 'right'} on 3 m"
+
+
+def _scale(values: Values, robot: Robot) -> str:
+    return f"{10.0 / values['multiplier']:.3f} m by the odometry on 10.000 m of tape"
+
+
+def _track(values: Values, robot: Robot) -> str:
+    sense, sharp = 2.0 * TURNS * values["sense"], TURNS * values["sharpness"]
+    parts = []
+    if sense:
+        parts.append(f"{_angle(sense)} {_more(sense)} missing to the left than to the right")
+    if sharp:
+        parts.append(f"{_angle(sharp)} {_more(-sharp)} missing in ten turns of a wide circle")
+    return " and ".join(parts)
+
+
+def _more(value: float) -> str:
+    return "more" if value > 0.0 else "less"
+
+
+def _aside(angle: float, distance: float) -> str:
+    side = "left" if angle > 0.0 else "right"
+    return f"{_angle(angle)}, {_length(angle * distance)} to the {side} on {distance:g} m"
+
+
+def _slope(values: Values, robot: Robot) -> str:
+    seconds = 5.0 / FAST
+    x = 5.0 * values["x"] + seconds * values["x_rate"]
+    y = 5.0 * values["y"] + seconds * values["y_rate"]
+    side = _angle(math.atan2(y, x)) + (" right" if y < 0.0 else " left")
+    return f"{_length(math.hypot(x, y))} on 5 m at {FAST} m/s, towards {side} of the room's x"
+
+
+def _kick(values: Values, robot: Robot) -> str:
+    each = [values["angle"] + values["alternating"] * sign for sign in (1.0, -1.0)]
+    words = " and ".join(f"{math.degrees(kick):+.2g}°" for kick in each)
+    total = 5.0 * sum(each)
+    return f"{words} at reversals to forwards and to backwards, {_angle(total)} in all after five"
+
+
+def _seen_late(values: Values, robot: Robot) -> str:
+    return f"{_length(2.0 * values['delay'] * FAST)} at {FAST} m/s"
+
+
+def _arm(values: Values, robot: Robot) -> str:
+    along = f"{_length(values['x'])} {'ahead' if values['x'] > 0.0 else 'behind'}"
+    return f"{along} and {_length(values['y'])} to the {'left' if values['y'] > 0.0 else 'right'}"
+
+
+def _drift(values: Values, robot: Robot) -> str:
+    share = 20.0 * values["per_metre"] + 60.0 * values["per_second"]
+    longer = TURNS * robot.wheel_radius * share
+    return f"{_length(longer)} {_more(longer)} after a drive of 20 m in a minute"
+
+
+def _missed(values: Values, robot: Robot) -> str:
+    speed = f"above {values['above']:.2f} m/s"
+    return f"{100.0 * values['fraction']:.2g} turns too few of a hundred {speed}"
+
+
+_EXPECTED: dict[str, Callable[[Values, Robot], str]] = {
+    "track_width": _base,
+    "unequal_wheel_radii": _radii,
+    "wheel_radius_scale": _scale,
+    "turn_dependent_track": _track,
+    "floor_slope": _slope,
+    "castor_kick": _kick,
+    "reference_delay": _seen_late,
+    "reference_lever_arm": _arm,
+    "radius_drift": _drift,
+    "left_missed_ticks": _missed,
+    "right_missed_ticks": _missed,
+    "left_backlash": lambda values, robot: _length(values["travel"]),
+    "right_backlash": lambda values, robot: _length(values["travel"]),
+    "eccentric_left_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
+    "eccentric_right_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
+    "longitudinal_slip": lambda values, robot: (
+        f"{_length(0.5 * values['coefficient'] * FAST**2)} at {FAST} m/s"
+    ),
+    "lateral_slip": lambda values, robot: (
+        f"{_length(2.0 * values['creep'] * (FAST - SLOW))} between {SLOW} and {FAST} m/s"
+    ),
+    "sideways_drift": lambda values, robot: _aside(values["angle"], 5.0),
+    "reference_yaw_offset": lambda values, robot: _angle(values["angle"]),
+    "reference_heading_delay": lambda values, robot: f"{_angle(2.0 * values['delay'])} at 1 rad/s",
+    "encoder_skew": lambda values, robot: f"{_length(values['delay'] * FAST)} at {FAST} m/s",
+}
