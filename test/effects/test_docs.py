@@ -49,6 +49,14 @@ def test_its_test_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     names["test_my_effect_keeps_the_laws"]()  # type: ignore[operator]
 
 
+def test_the_example_with_a_twin_keeps_them_too(tmp_path: Path) -> None:
+    file = tmp_path / "with_twin.py"
+    file.write_text(examples()[3])
+    (effect,) = load_file(file)
+    check_effect(effect)
+    assert "hang a plumb line" in page_of(effect).sections["Twins"]
+
+
 def test_the_example_with_a_channel_keeps_them_too(tmp_path: Path) -> None:
     head = examples()[0].split("@wheel_effect")[0]
     file = tmp_path / "with_payload.py"

@@ -22,7 +22,12 @@ from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, Pace, ideal_run
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
-from werrimbi_odom.inference.manoeuvres.rivals import Drives, look_at, target_at, unlike
+from werrimbi_odom.inference.manoeuvres.rivals import (
+    Experiment,
+    sensitivities_of,
+    separation,
+    trace_at,
+)
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation.hidden.mount import ReferenceDelay, ReferenceMount
@@ -33,10 +38,10 @@ PACE = Pace(speed=0.6, acceleration=1.5, base=0.35)
 BY_NAME = {ideal.name: ideal for ideal in MANOEUVRES}
 
 
-def driven(ideal: Ideal, robot: Robot = ROBOT, yaw: bool = True) -> Drives:
+def driven(ideal: Ideal, robot: Robot = ROBOT, yaw: bool = True) -> Experiment:
     run = ideal_run(ideal, robot, PACE, ticks=0.02, poses=0.05, measures=(True, yaw))
     runs = together([match(run, robot, 0.25, None, 0.4)])
-    return Drives(runs, start_point(runs, robot), "absolute")
+    return Experiment(runs, start_point(runs, robot), "absolute")
 
 
 @pytest.mark.parametrize("name", BY_NAME)
@@ -71,8 +76,8 @@ def rise(drive: str, truth: AppliedEffect, rival: str, yaw: bool = True) -> floa
     wrong = Candidate(find(rival), {})
     calibration = [Candidate(find(name), {}) for name in
                    ("track_width", "unequal_wheel_radii", "wheel_radius_scale")]  # fmt: skip
-    look = look_at(drives, [wrong, *calibration], ())
-    return unlike([(look, target_at(look, truth))], wrong)
+    look = sensitivities_of(drives, [wrong, *calibration], ())
+    return separation([(look, trace_at(look, truth))], wrong)
 
 
 @pytest.mark.parametrize("drive", BY_NAME)

@@ -34,3 +34,16 @@ def fisher_above(value: float, above: float, below: float) -> float:
     from scipy.special import fdtrc
 
     return float(fdtrc(above, below, max(value, 0.0)))
+
+
+def noncentrality(degrees: float, significance: float, power: float) -> float:
+    """Of the chi-squared variable that exceeds a test's threshold in a share `power` of cases.
+
+    Parameters
+    ----------
+    significance
+        Share of cases in which the central variable exceeds that threshold.
+    """
+    from scipy.special import chdtri, chndtrinc
+
+    return float(chndtrinc(chdtri(degrees, significance), degrees, 1.0 - power))

@@ -110,6 +110,11 @@ class Effect:
         """Whether it is a set-up mistake: made or not, nothing in between."""
         return not self.parameters
 
+    def allows(self, values: Mapping[str, float]) -> bool:
+        """Whether physics allows some values of its parameters."""
+        bounds = {name: self.parameters[name].bounds for name in values}
+        return all(low <= values[name] <= high for name, (low, high) in bounds.items())
+
     def to_fit(self, values: Mapping[str, float]) -> dict[str, float]:
         """Values in coordinates that have a derivative at null, for a fit to move.
 

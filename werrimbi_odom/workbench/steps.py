@@ -13,8 +13,8 @@ from pathlib import Path
 
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
-from werrimbi_odom.inference.manoeuvres.sight import Sight
 from werrimbi_odom.workbench.opened import Look
 
 GONE = -1
@@ -27,7 +27,7 @@ class Diagnosed:
 
     diagnosis: Diagnosis
     manoeuvre: Manoeuvre | None
-    sights: tuple[Sight, ...]
+    sights: tuple[DetectionLimit, ...]
     figures: Mapping[str, str]
     """Plotly figures as JSON: response (before and after along the effect's variable), set_up,
     manoeuvre; only those that there are."""

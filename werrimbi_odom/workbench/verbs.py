@@ -9,9 +9,9 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
+from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, next_manoeuvre
-from werrimbi_odom.inference.manoeuvres.sight import sight_of
 from werrimbi_odom.report.diagnosis.figures import (
     before_after,
     before_after_figure,
@@ -37,7 +37,7 @@ def diagnosed(task: Diagnose, given: Given, collection: Collection, show: Show) 
     found = diagnose(runs, task.robot, effects, holdout=holdout, show=show, **given.judging)
     show(0.97, "the next step")
     manoeuvre = next_manoeuvre(found)
-    sights = tuple(sight_of(found, effects))
+    sights = tuple(detection_limits(found, effects))
     show(0.99, "figures")
     return Diagnosed(found, manoeuvre, sights, _figures(found, manoeuvre))
 

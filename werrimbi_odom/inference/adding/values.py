@@ -11,6 +11,7 @@ from typing import Literal
 
 import numpy as np
 
+from werrimbi_odom.inference.calibration_sizes import sizes_of, std_as_effect
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob, Model
@@ -93,35 +94,13 @@ def std_of(fit: Fitted, name: str) -> float:
 
 def _calibrated(effect: Effect, fit: Fitted, given: Robot) -> FittedParameter:
     """A calibration effect's number, relative to the given robot file."""
-    after, before = sizes(fit.point.model.robot), sizes(given)
-    base, left, right = (new / old for new, old in zip(after, before, strict=True))
+    robot = fit.point.model.robot
+    value = sizes_of(robot).over(sizes_of(given)).as_effects[effect.name]
     names = [knob.name for knob, _ in fit.design.columns]
     where = [names.index(name) for name in MULTIPLIERS]
-    robot = fit.point.model.robot
-    scale = np.array([getattr(robot, name) for name in MULTIPLIERS])
-    covariance = fit.covariance[np.ix_(where, where)] / np.outer(scale, scale)
-    value, row = {
-        "track_width": (base, [1.0, 0.0, 0.0]),
-        "unequal_wheel_radii": (right / left, [0.0, -1.0, 1.0]),
-        "wheel_radius_scale": (0.5 * (left + right), [0.0, 0.5, 0.5]),
-    }[effect.name]
-    std = value * math.sqrt(max(float(np.array(row) @ covariance @ np.array(row)), 0.0))
+    std = value * std_as_effect(effect.name, robot, fit.covariance[np.ix_(where, where)])
     declared = next(iter(effect.parameters.values()))
     return FittedParameter(declared, value, std, "fitted" if std < 0.05 * value else "undetermined")
-
-
-def sizes(robot: Robot) -> tuple[float, float, float]:
-    """Multipliers of base, left and right radius, with calibration effects that stand as such."""
-    base, left, right = (float(getattr(robot, name)) for name in MULTIPLIERS)
-    for applied in robot.effects:
-        if applied.name == "track_width":
-            base *= applied.values["multiplier"]
-        elif applied.name == "wheel_radius_scale":
-            left, right = (side * applied.values["multiplier"] for side in (left, right))
-        elif applied.name == "unequal_wheel_radii":
-            ratio = applied.values["ratio"]
-            left, right = left * 2.0 / (1.0 + ratio), right * 2.0 * ratio / (1.0 + ratio)
-    return base, left, right
 
 
 def to_write(model: Model, given: Robot) -> Robot:
@@ -142,7 +121,7 @@ def to_write(model: Model, given: Robot) -> Robot:
         replace(item, values={name: rounded(value) for name, value in item.values.items()})
         for item in effects
     ]
-    relative = [new / old for new, old in zip(sizes(model.robot), sizes(given), strict=True)]
+    relative = sizes_of(model.robot).over(sizes_of(given))
     multipliers = {
         name: rounded(float(getattr(given, name)) * share)
         for name, share in zip(MULTIPLIERS, relative, strict=True)

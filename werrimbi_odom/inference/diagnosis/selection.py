@@ -18,6 +18,7 @@ from itertools import combinations
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.calibration_sizes import calibration_deviation
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
 from werrimbi_odom.inference.fitting.directions import Directions, determined, every_direction
@@ -198,14 +199,6 @@ def covariance_of(design: Design, ways: Directions) -> Floats:
     untold = ~ways.matrix.any(axis=1)
     covariance[untold, untold] = 1e12
     return np.asarray(covariance)
-
-
-def calibration_deviation(robot: Robot, given: Robot) -> Floats:
-    """How far base, radii's ratio and radii's mean are from the given ones, in logarithms."""
-    base, left, right = (
-        math.log(getattr(robot, name) / getattr(given, name)) for name in MULTIPLIERS
-    )
-    return np.array([base, right - left, 0.5 * (left + right)])
 
 
 def rise_without(name: str, design: Design, covariance: Floats, point: Point) -> float:

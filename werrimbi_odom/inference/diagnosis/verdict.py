@@ -157,9 +157,12 @@ def told(
 
 def _possible_twins(finding: SetUpFinding) -> tuple[str, ...]:
     """What else it could be, as far as physics allows: no axle is askew by a quarter turn."""
-    angle = abs(finding.values.get("angle", 0.0))
-    possible = find("sideways_drift").parameters["angle"].bounds[1]
-    return tuple(name for name in finding.twins if name != "sideways_drift" or angle <= possible)
+    impossible = {
+        twin.name
+        for twin in find(finding.effect).indistinguishable_from
+        if not find(twin.name).allows(twin.same_as(finding.values))
+    }
+    return tuple(name for name in finding.twins if name not in impossible)
 
 
 def _plain(fit: Fitted, given: Robot) -> Model:

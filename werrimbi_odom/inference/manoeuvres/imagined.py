@@ -15,7 +15,7 @@ from werrimbi_odom.inference.fitting.knobs import NUISANCES
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.manoeuvres.drives import Ideal, Pace, ideal_run, rates_of
-from werrimbi_odom.inference.manoeuvres.rivals import Drives
+from werrimbi_odom.inference.manoeuvres.rivals import Experiment
 
 USUAL_REFERENCE = (0.05, 1e-3, 2e-3)
 """Motion capture: time between two poses [s], noise of a position [m] and of a heading [rad]."""
@@ -37,13 +37,13 @@ def imagined(
     pace: Pace,
     *,
     better: bool = False,
-) -> tuple[Drives, float]:
+) -> tuple[Experiment, float]:
     """What the manoeuvre would record, and its minutes.
 
     Parameters
     ----------
     runs, point
-        Drives that were recorded, and the model and noise that suit them.
+        Experiment that were recorded, and the model and noise that suit them.
     better : bool
         With a reference that measures positions and headings, as well as motion capture does.
     """
@@ -73,4 +73,4 @@ def imagined(
     own = {name: value for name, value in first.items() if name not in NUISANCES}
     model = replace(start.model, own=({**own, **start.model.own[0]},))
     minutes = float(run.ticks.time[-1]) / 60.0
-    return Drives(laid, replace(start, model=model, variances=variances), kind), minutes
+    return Experiment(laid, replace(start, model=model, variances=variances), kind), minutes

@@ -16,29 +16,31 @@ from itertools import combinations
 import numpy as np
 
 from werrimbi_odom.effects import find
+from werrimbi_odom.inference.calibration_sizes import sizes_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.search import Round
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
+from werrimbi_odom.inference.manoeuvres.by_hand import for_twins, twin_where
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, pace_of
-from werrimbi_odom.inference.manoeuvres.imagined import imagined
+from werrimbi_odom.inference.manoeuvres.imagined import imagined, measured_in
 from werrimbi_odom.inference.manoeuvres.rivals import (
-    Drives,
-    Look,
-    Target,
+    Experiment,
+    Sensitivities,
+    Trace,
+    best_alias,
     difference,
-    look_at,
-    mimicry,
-    target_along,
-    target_at,
-    unlike,
+    sensitivities_of,
+    separation,
+    trace_along,
+    trace_at,
 )
 from werrimbi_odom.inference.manoeuvres.unknown import Manoeuvre, for_the_unknown, strongest
 from werrimbi_odom.inference.rules import RIVAL
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.model.robot import Robot
 
-__all__ = ["Manoeuvre", "Promise", "next_manoeuvre", "promises", "strongest"]
+__all__ = ["Discrimination", "Manoeuvre", "discriminations", "next_manoeuvre", "strongest"]
 
 LONGEST = 30.0
 """Minutes of driving that one may ask for."""
@@ -48,7 +50,7 @@ ENOUGH = 3.0 * RIVAL
 
 
 @dataclass(frozen=True, slots=True)
-class Promise:
+class Discrimination:
     """What a manoeuvre of the library would show."""
 
     ideal: Ideal
@@ -72,78 +74,38 @@ class Promise:
 def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
     """The next thing to do; None where the diagnosis leaves nothing open that it could answer."""
     if diagnosis.verdict == "ambiguous":
-        by_hand = _twins(diagnosis.rivals)
+        named = [effect_named(diagnosis, name) for name in diagnosis.rivals]
+        by_hand = for_twins([effect for effect in named if effect], measured_in(diagnosis.runs)[0])
         if by_hand is not None:
             return by_hand
-        weighed = promises(diagnosis)
+        weighed = discriminations(diagnosis)
         return _best(diagnosis.rivals, weighed) if weighed else None
     if diagnosis.verdict == "unknown":
         return for_the_unknown(diagnosis)
     return None
 
 
-def _twins(rivals: Sequence[str]) -> Manoeuvre | None:
-    """For what no drive can tell, by algebra."""
-    there = set(rivals)
-    if {"reference_yaw_offset", "sideways_drift"} <= there and len(there) == 2:
-        return Manoeuvre(
-            "remount_reference",
-            "no drive can tell a robot that crabs from a marker mounted askew; turned by 90 "
-            "degrees, the mount's angle turns with it and a crab's stays",
-            "take the reference's marker or sensor off, mount it anew turned by 90 degrees, enter "
-            "that, and drive again",
-            0.0,
-        )
-    if "reference_mirrored" in there:
-        return Manoeuvre(
-            "turn_by_hand",
-            "no drive can tell a robot that turns the wrong way from a reference that does; a hand "
-            "can",
-            "turn the robot to the left by hand: the reference's yaw must grow, and so must right "
-            "minus left counts; whichever does not is wrong",
-            0.0,
-        )
-    if there & {"wheels_swapped", "left_wheel_reversed", "right_wheel_reversed"}:
-        return Manoeuvre(
-            "push_by_hand",
-            "no drive can tell them apart, because the robot file alone says which end is ahead; a "
-            "hand can",
-            "push the robot forwards by hand: both counters must grow; push it round its right "
-            "wheel: the left counter must run",
-            0.0,
-        )
-    if {"wheel_radius_scale", "track_width"} == there:
-        return Manoeuvre(
-            "out_and_back",
-            "where headings alone are measured only radii over base shows; a taped distance tells "
-            "the radii",
-            "drive 10 m straight by the odometry beside a tape, or use a reference that measures "
-            "positions",
-            2.0,
-        )
-    return None
-
-
-def promises(diagnosis: Diagnosis) -> list[Promise]:
+def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
     """What each manoeuvre of the library would tell of the rivals, the best first."""
     this = _round_of(diagnosis)
     rivals = [_candidate(name, this, diagnosis) for name in diagnosis.rivals]
     first = _as_fitted(rivals[0], this, diagnosis)
     looked_at = _once([*rivals, *(Candidate(find(name), {}) for name in CALIBRATED)])
     point, knobs = this.before.point, this.before.knobs
-    before = look_at(Drives(diagnosis.runs, point, diagnosis.kind), looked_at, knobs)
-    target = target_at(before, first)
-    sizes = {item.name: mimicry(before, target, item) for item in rivals[1:]}
+    before = sensitivities_of(Experiment(diagnosis.runs, point, diagnosis.kind), looked_at, knobs)
+    target = trace_at(before, first)
+    sizes = {item.name: best_alias(before, target, item) for item in rivals[1:]}
     pace = pace_of(diagnosis.runs, point.model.robot)
+    positions = measured_in(diagnosis.runs)[0]
     found = []
     for ideal in MANOEUVRES:
         drives, minutes = imagined(ideal, diagnosis.runs, point, diagnosis.kind, pace)
-        ahead = look_at(drives, looked_at, knobs)
-        there = target_at(ahead, first)
+        ahead = sensitivities_of(drives, looked_at, knobs)
+        there = trace_at(ahead, first)
         stands = {rivals[0].name: ((before, target), (ahead, there))} | {
             name: (
-                (before, target_along(before, name, size)),
-                (ahead, target_along(ahead, name, size)),
+                (before, trace_along(before, name, size)),
+                (ahead, trace_along(ahead, name, size)),
             )
             for name, size in sizes.items()
         }
@@ -152,7 +114,7 @@ def promises(diagnosis: Diagnosis) -> list[Promise]:
                 _gained(*stands[one.name], other), _gained(*stands[other.name], one)
             )
             for one, other in combinations(rivals, 2)
-            if other.name not in one.effect.twins
+            if twin_where(one.effect, other.effect, positions) is None
         }
         of_first = {pair[1]: rise for pair, rise in rises.items() if pair[0] == rivals[0].name}
         if not of_first:  # twins by algebra: no drive tells
@@ -161,17 +123,19 @@ def promises(diagnosis: Diagnosis) -> list[Promise]:
         rival = next(item for item in rivals if item.name == against)
         apart = difference(*stands[rivals[0].name], rival)
         found.append(
-            Promise(ideal, minutes, of_first[against], min(rises.values()), against, apart)
+            Discrimination(ideal, minutes, of_first[against], min(rises.values()), against, apart)
         )
     return sorted(found, key=lambda item: -item.rise / item.minutes)
 
 
-def _gained(known: tuple[Look, Target], ahead: tuple[Look, Target], rival: Candidate) -> float:
+def _gained(
+    known: tuple[Sensitivities, Trace], ahead: tuple[Sensitivities, Trace], rival: Candidate
+) -> float:
     """What new drives add to the cost of a rival that stands for the target."""
-    return unlike([known, ahead], rival) - unlike([known], rival)
+    return separation([known, ahead], rival) - separation([known], rival)
 
 
-def _best(rivals: Sequence[str], weighed: Sequence[Promise]) -> Manoeuvre | None:
+def _best(rivals: Sequence[str], weighed: Sequence[Discrimination]) -> Manoeuvre | None:
     """The quickest to leave one rival alone; else to tell the first from all others."""
     best = min(weighed, key=lambda item: item.minutes_for(item.every))
     minutes = best.minutes_for(best.every)
@@ -231,27 +195,10 @@ def _as_fitted(candidate: Candidate, this: Round, diagnosis: Diagnosis) -> Appli
             return next(
                 item for item in fit.point.model.of_run(0).effects if item.name == candidate.name
             )
-    sizes = sizes_of_calibration(diagnosis.robot, diagnosis.given)
+    sizes = sizes_of(diagnosis.robot).over(sizes_of(diagnosis.given)).as_effects
     return candidate.effect.using(
         **{next(iter(candidate.effect.parameters)): sizes[candidate.name]}
     )
-
-
-def sizes_of_calibration(robot: Robot, given: Robot) -> dict[str, float]:
-    """The three calibration effects as numbers: base, right over left radius, both radii."""
-    base, left, right = (
-        getattr(robot, name) / getattr(given, name)
-        for name in (
-            "wheel_separation_multiplier",
-            "left_wheel_radius_multiplier",
-            "right_wheel_radius_multiplier",
-        )
-    )
-    return {
-        "track_width": base,
-        "unequal_wheel_radii": right / left,
-        "wheel_radius_scale": 0.5 * (left + right),
-    }
 
 
 def _once(candidates: Sequence[Candidate]) -> list[Candidate]:

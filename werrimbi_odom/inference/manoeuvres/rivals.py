@@ -27,7 +27,7 @@ from werrimbi_odom.model.pose import Floats
 
 
 @dataclass(frozen=True)
-class Drives:
+class Experiment:
     """Some drives, the model to begin from, and how all that may be fitted acts in them."""
 
     runs: Together
@@ -79,10 +79,10 @@ def _holding(model: Model, applied: AppliedEffect) -> Model:
 
 
 @dataclass(frozen=True)
-class Look:
+class Sensitivities:
     """What some effects would change in some drives."""
 
-    drives: Drives
+    drives: Experiment
     legs: Mapping[str, Floats]
     """Of each effect, changes of the legs along its coordinates, (m, 3, k)."""
     white: Mapping[str, Floats]
@@ -91,15 +91,17 @@ class Look:
     """Columns of what may be fitted beside them, (3 m, q)."""
 
 
-def look_at(drives: Drives, candidates: Sequence[Candidate], knobs: Sequence[Knob]) -> Look:
+def sensitivities_of(
+    drives: Experiment, candidates: Sequence[Candidate], knobs: Sequence[Knob]
+) -> Sensitivities:
     """Try effects on drives; `knobs` are those of effects that the model holds already."""
     legs = {item.name: drives.marks(item) for item in candidates}
     white = {name: drives.whitened(marks) for name, marks in legs.items()}
-    return Look(drives, legs, white, drives.nuisances(knobs))
+    return Sensitivities(drives, legs, white, drives.nuisances(knobs))
 
 
 @dataclass(frozen=True)
-class Target:
+class Trace:
     """An effect at a size: what it changes in the legs (m, 3) and in the innovations (3 m,)."""
 
     name: str
@@ -107,25 +109,25 @@ class Target:
     white: Floats
 
 
-def target_at(look: Look, applied: AppliedEffect) -> Target:
+def trace_at(look: Sensitivities, applied: AppliedEffect) -> Trace:
     """An effect at its fitted size."""
     change = look.drives.change(applied)
-    return Target(applied.name, change[..., 0], look.drives.whitened(change)[:, 0])
+    return Trace(applied.name, change[..., 0], look.drives.whitened(change)[:, 0])
 
 
-def target_along(look: Look, name: str, sizes: Floats) -> Target:
+def trace_along(look: Sensitivities, name: str, sizes: Floats) -> Trace:
     """An effect so far along its coordinates (k,)."""
-    return Target(name, look.legs[name] @ sizes, look.white[name] @ sizes)
+    return Trace(name, look.legs[name] @ sizes, look.white[name] @ sizes)
 
 
-def mimicry(look: Look, target: Target, rival: Candidate) -> Floats:
+def best_alias(look: Sensitivities, target: Trace, rival: Candidate) -> Floats:
     """How far along its coordinates a rival looks most like the target in some drives, (k,)."""
     squeezed, width = _squeezed(look, target, (rival.name, *_beside(target.name, rival)), ())
     found = solved(squeezed[:, :width], squeezed[:, width])
     return np.asarray(found[: look.white[rival.name].shape[-1]])
 
 
-def unlike(pairs: Sequence[tuple[Look, Target]], rival: Candidate) -> float:
+def separation(pairs: Sequence[tuple[Sensitivities, Trace]], rival: Candidate) -> float:
     """Rise of the cost if the rival, fitted to all these drives, must stand for the target."""
     name = pairs[0][1].name
     beside = _beside(name, rival)
@@ -136,7 +138,9 @@ def unlike(pairs: Sequence[tuple[Look, Target]], rival: Candidate) -> float:
     return float(np.sum((rows[:, width] - rows[:, :width] @ solution) ** 2))
 
 
-def difference(known: tuple[Look, Target], ahead: tuple[Look, Target], rival: Candidate) -> Floats:
+def difference(
+    known: tuple[Sensitivities, Trace], ahead: tuple[Sensitivities, Trace], rival: Candidate
+) -> Floats:
     """Legs (m, 3) of drives ahead: the target less what the rival, known so far, would make."""
     names = (rival.name, *_beside(known[1].name, rival))
     squeezed, width = _squeezed(known[0], known[1], names, ())
@@ -151,7 +155,7 @@ def _beside(target: str, rival: Candidate) -> tuple[str, ...]:
 
 
 def _squeezed(
-    look: Look, target: Target, shared: Sequence[str], anew: Sequence[str]
+    look: Sensitivities, target: Trace, shared: Sequence[str], anew: Sequence[str]
 ) -> tuple[Floats, int]:
     """Least squares of these drives in few rows: columns of what is shared, then the target."""
     own = np.concatenate(

@@ -12,6 +12,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.set_up.delay import lag_of
 from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding
@@ -92,7 +93,7 @@ def look_for_mistakes(
         found, setting = search_positions(records, robot)
     else:
         found, setting = search_headings(records, robot)
-    mount = [each for each in found if each.effect.startswith("reference_")]
+    mount = [each for each in found if find(each.effect).stage == "reference"]
     wheels = sorted((each for each in found if each not in mount), key=lambda each: -each.gain)
     degrees = [each for each in extra if each.effect == IN_DEGREES]
     late = [each for each in extra if each.effect != IN_DEGREES]

@@ -17,10 +17,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.calibration_sizes import sizes_of
 from werrimbi_odom.inference.comparison.reference_noise import Measure
 from werrimbi_odom.inference.legs.counters import between_messages, summed
 from werrimbi_odom.inference.legs.cutting import leg_ends, usable_rows
 from werrimbi_odom.inference.legs.gaps import gaps_in, touched
+from werrimbi_odom.inference.set_up.robot import mount_of
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driving import features
 from werrimbi_odom.model.effect import after_wheel_effects, view_of, wiring_of
@@ -154,8 +156,7 @@ def measured_by(records: Sequence[Record]) -> Measure | None:
 
 def effective_track(robot: Robot) -> float:
     """Base that the robot file, its effects included, takes for true [m]."""
-    widths = [item.values["multiplier"] for item in robot.effects if item.name == "track_width"]
-    return float(robot.track * math.prod(widths))
+    return robot.wheel_separation * sizes_of(robot).base
 
 
 def cut(
@@ -173,14 +174,13 @@ def cut(
     total = sum(float(_progress(each)[-1]) for each in usable if each.seen.size > 1)
     half_turn = math.pi * robot.wheel_radius
     length = min(max(half_turn, total / MOST), total / fewest) if total > 0.0 else half_turn
-    view = view_of(robot.effects)
-    crab = sum(item.values["angle"] for item in robot.effects if item.name == "sideways_drift")
+    view = mount_of(robot)
     parts, offset, stretch = [], 0, 0
     for each in usable:
         if each.seen.size < 2:
             continue
         point = complex(view.ahead, view.left)
-        part = _cut_run(each, length, point, view.yaw - crab, stretch, offset)
+        part = _cut_run(each, length, point, view.yaw, stretch, offset)
         offset += part.left.size
         stretch = int(part.stretch[-1]) + 1 if part.count else stretch
         parts.append(part)

@@ -8,15 +8,14 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from werrimbi_odom.effects import find
+from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.inference.calibration_sizes import Sizes, sizes_of
 from werrimbi_odom.inference.set_up.explanation import Setting
 from werrimbi_odom.inference.set_up.factors import is_ordinary
 from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding
-from werrimbi_odom.model.effect import AppliedEffect, wiring_of
-from werrimbi_odom.model.pose import wrap
+from werrimbi_odom.model.effect import AppliedEffect, view_of, wiring_of
 from werrimbi_odom.model.robot import Robot
-
-_ADDING = ("reference_yaw_offset", "reference_lever_arm", "reference_delay")
+from werrimbi_odom.model.view import View
 
 
 def with_findings(
@@ -60,12 +59,10 @@ def _with(robot: Robot, name: str, values: Mapping[str, float]) -> tuple[Robot, 
         applied = effect.using(**values)
         return replace(robot, effects=(applied, *robot.effects)), dict(applied.values)
     before = held[0].values
-    if name in _ADDING:
-        joint = {key: before[key] + values.get(key, 0.0) for key in before}
-        if name == "reference_yaw_offset":
-            joint = {key: wrap(value) for key, value in joint.items()}
-    else:
-        joint = {key: before[key] * values.get(key, 1.0) for key in before}
+    joint = {
+        key: item.combined(before[key], values.get(key, item.null))
+        for key, item in effect.parameters.items()
+    }
     changed = AppliedEffect(effect, joint)
     effects = tuple(changed if each is held[0] else each for each in robot.effects)
     return replace(robot, effects=effects), joint
@@ -73,16 +70,10 @@ def _with(robot: Robot, name: str, values: Mapping[str, float]) -> tuple[Robot, 
 
 def _calibrated(robot: Robot, before: Robot, setting: Setting) -> Robot:
     """What the findings leave of the measured sizes, put into the multipliers."""
-    ratio, ratio_before = (_value(each, "unequal_wheel_radii", "ratio") for each in (robot, before))
-    scale = _value(robot, "wheel_radius_scale", "multiplier")
-    scale /= _value(before, "wheel_radius_scale", "multiplier")
-    base = setting.base * _value(before, "track_width", "multiplier")
-    base /= _value(robot, "track_width", "multiplier")
-    of_left = (1.0 + ratio_before) / (1.0 + ratio)
-    of_right = of_left * ratio / ratio_before
-    left, right = setting.left / scale / of_left, setting.right / scale / of_right
+    found = sizes_of(robot).over(sizes_of(before))
+    base, left, right = Sizes(setting.base, setting.left, setting.right).over(found)
     common = math.sqrt(left * right)
-    if ratio != ratio_before and not is_ordinary(common):
+    if abs(found.right / found.left - 1.0) > 1e-9 and not is_ordinary(common):
         # The ratio keeps the mean of the radii; here one of them was right and is to stay.
         robot, _ = _with(robot, "wheel_radius_scale", {"multiplier": common})
         left, right = left / common, right / common
@@ -96,7 +87,16 @@ def _calibrated(robot: Robot, before: Robot, setting: Setting) -> Robot:
     )
 
 
-def _value(robot: Robot, name: str, parameter: str) -> float:
-    """A factor that the robot holds as an effect, 1 where it does not."""
-    held = [each.values[parameter] for each in robot.effects if each.name == name]
-    return math.prod(held)
+def mount_of(robot: Robot) -> View:
+    """How the reference looks at the robot, with what of the body is the same to it.
+
+    A robot that crabs is one whose marker is askew.
+    """
+    view = view_of(robot.effects)
+    mounts = {effect.name: effect for effect in LIBRARY if effect.stage == "reference"}
+    for applied in robot.effects:
+        if applied.effect.stage == "body":
+            for twin in applied.effect.indistinguishable_from:
+                if twin.name in mounts and twin.values:
+                    view = mounts[twin.name].apply(view, **twin.same_as(applied.values))
+    return view

@@ -13,15 +13,15 @@ import numpy as np
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, strongest
-from werrimbi_odom.inference.manoeuvres.sight import Sight
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.values import values_of
 from werrimbi_odom.report.left_out import left_out_json
 
 
 def json_of(
-    diagnosis: Diagnosis, manoeuvre: Manoeuvre | None, sights: Sequence[Sight] = ()
+    diagnosis: Diagnosis, manoeuvre: Manoeuvre | None, sights: Sequence[DetectionLimit] = ()
 ) -> dict[str, Any]:
     """Everything that was found."""
     return {
@@ -73,7 +73,7 @@ def json_of(
             "share": diagnosis.misfit.share,
             **_cell(diagnosis.misfit.cell),
         },
-        "could_have_been_seen": [{**asdict(sight), "hidden": sight.hidden} for sight in sights],
+        "could_have_been_seen": [_limit(sight) for sight in sights],
     }
 
 
@@ -129,3 +129,8 @@ def _parameters(diagnosis: Diagnosis, name: str) -> dict[str, Any]:
         }
         for parameter, value in values_of(diagnosis, name).items()
     }
+
+
+def _limit(limit: DetectionLimit) -> dict[str, Any]:
+    values = asdict(limit)
+    return {**values, "seen_from": values.pop("minimum_detectable"), "hidden": limit.hidden}

@@ -139,10 +139,11 @@ def _values(
     shift = np.zeros(run.size)
     aligned = False
     if variable.per_run and effect is not None and after is not None:
-        key = f"{effect}.phase"
         for applied in after.model.robot.effects:
-            if applied.name == effect and "phase" in applied.values:
-                own = [mine.get(key, applied.values["phase"]) for mine in after.model.own]
+            if applied.name == effect and applied.effect.quadrature is not None:
+                phase = applied.effect.quadrature[1]
+                key, shared = f"{effect}.{phase}", applied.values[phase]
+                own = [mine.get(key, shared) for mine in after.model.own]
                 shift, aligned = np.array(own)[run], True
     if variable.per_run and not aligned:
         waves = np.atleast_2d(cell.coefficients)

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Sequence
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
 from werrimbi_odom.inference.diagnosis.holdout import Sides
-from werrimbi_odom.inference.manoeuvres.sight import Sight
+from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.report.diagnosis.dependence import short_words
 from werrimbi_odom.report.diagnosis.values import values_of
 from werrimbi_odom.report.numbers import in_unit, length, p_words
@@ -19,7 +19,7 @@ _RANKED = 8
 _MAPPED = 10
 
 
-def tables_of(diagnosis: Diagnosis, sights: Sequence[Sight] = ()) -> str:
+def tables_of(diagnosis: Diagnosis, sights: Sequence[DetectionLimit] = ()) -> str:
     """Parameters, ranking, evidence map, and what would have been seen; parted by empty lines."""
     parts = [_parameters(diagnosis), _ranking(diagnosis), _map(diagnosis)]
     if diagnosis.verdict == "none":
@@ -87,12 +87,17 @@ def _strength(cells: Iterable[Dependence], channel: str, name: str) -> str:
     return f"{best:.0f}" if best > 0.0 else "."
 
 
-def _sights(sights: Sequence[Sight]) -> str:
+def _from(limit: DetectionLimit) -> str:
+    size = limit.minimum_detectable
+    return f"{size:.2g} {limit.unit}".rstrip() if size < 1e3 else "never"
+
+
+def _sights(sights: Sequence[DetectionLimit]) -> str:
     rows = [
         [
             sight.effect,
             sight.parameter,
-            f"{sight.seen_from:.2g} {sight.unit}".rstrip() if sight.seen_from < 1e3 else "never",
+            _from(sight),
             f"{sight.typical:.2g} {sight.unit}".rstrip(),
         ]
         for sight in sights

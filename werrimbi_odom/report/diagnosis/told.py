@@ -9,8 +9,8 @@ from dataclasses import dataclass
 
 from werrimbi_odom.files.asked import Recordings
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit, detection_limits
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, next_manoeuvre
-from werrimbi_odom.inference.manoeuvres.sight import Sight, sight_of
 
 
 @dataclass(frozen=True)
@@ -19,7 +19,7 @@ class Told:
 
     diagnosis: Diagnosis
     manoeuvre: Manoeuvre | None
-    sights: Sequence[Sight]
+    sights: Sequence[DetectionLimit]
     leg: float = 1.0
     """Length of the legs that are judged [m]."""
     held_out: bool = True
@@ -47,5 +47,5 @@ def told_of(
     )
     show(0.97, "the next step")
     manoeuvre = next_manoeuvre(diagnosis)
-    sights = sight_of(diagnosis, effects)
+    sights = detection_limits(diagnosis, effects)
     return Told(diagnosis, manoeuvre, sights, given.how.leg, bool(given.holdout))

@@ -11,19 +11,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.effects import find
+from werrimbi_odom.inference.calibration_sizes import sizes_of, std_as_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
-from werrimbi_odom.inference.manoeuvres.proposal import sizes_of_calibration
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES
-
-_SHARES = {
-    "track_width": (1.0, 0.0, 0.0),
-    "unequal_wheel_radii": (0.0, -1.0, 1.0),
-    "wheel_radius_scale": (0.0, 0.5, 0.5),
-}
-"""How the logarithm of each calibration effect is made of those of the three multipliers."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,19 +68,14 @@ def ranked_of(diagnosis: Diagnosis, name: str) -> Ranked | None:
 def _calibrated(diagnosis: Diagnosis, name: str) -> Value:
     """A multiplier by its effect's name; what the set-up search put in and what was fitted."""
     effect = find(name)
-    parameter, item = next(iter(effect.parameters.items()))
-    size = sizes_of_calibration(diagnosis.robot, diagnosis.given)[name]
-    before = [each.values[parameter] for each in diagnosis.given.effects if each.name == name]
-    now = [each.values[parameter] for each in diagnosis.robot.effects if each.name == name]
-    size *= math.prod(now) / math.prod(before)
+    item = next(iter(effect.parameters.values()))
+    size = sizes_of(diagnosis.robot).over(sizes_of(diagnosis.given)).as_effects[name]
     names = [knob.name for knob, _ in diagnosis.final.design.columns]
     std = math.nan
     if set(MULTIPLIERS) <= set(names):
         where = [names.index(multiplier) for multiplier in MULTIPLIERS]
-        scale = np.array([getattr(diagnosis.robot, multiplier) for multiplier in MULTIPLIERS])
-        share = np.array(_SHARES[name]) / scale
         spread = diagnosis.final.covariance[np.ix_(where, where)]
-        std = size * math.sqrt(max(float(share @ spread @ share), 0.0))
+        std = size * std_as_effect(name, diagnosis.robot, spread)
     return Value(size, std, item.unit, item.says, item.null)
 
 

@@ -1,0 +1,147 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What effects declare of their twins is what is done about them, a user's own effect too."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from test.inference.driven import runs_of
+from test.model.drives import ROBOT
+from werrimbi_odom.cli import explain
+from werrimbi_odom.effects import LIBRARY, find, load_file
+from werrimbi_odom.effects.contract import check_effect
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.verdict import _possible_twins
+from werrimbi_odom.inference.manoeuvres.by_hand import for_twins
+from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
+from werrimbi_odom.inference.set_up.findings import SetUpFinding
+from werrimbi_odom.inference.set_up.robot import mount_of
+from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.report.diagnosis.page import write_diagnosis_page
+from werrimbi_odom.report.diagnosis.phrases import Told
+from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+
+OWN = '''
+import math
+
+from werrimbi_odom.model.effect import Parameter, Sketch, Twin, body_effect
+from werrimbi_odom.model.motion import BodyMotion
+
+
+@body_effect(
+    twins=(
+        Twin(
+            "reference_yaw_offset",
+            told_apart_by="a mast that leans carries the marker aside, and a plumb line shows it",
+            do="hang a plumb line from the mast's top",
+            manoeuvre="plumb_line",
+            values={"angle": ("lean", -1.0)},
+        ),
+    ),
+    sketch=Sketch("sideways", "the mast leans", "the mast leans, and the robot seems to crab"),
+    lean=Parameter("rad", 0.0, 0.01, (-0.3, 0.3), "how the mast leans"),
+)
+def leaning_mast(motion, drive, lean):
+    """The mast leans, so the robot seems to crab.
+
+    Formula    along, sideways are turned by lean             [m]
+    Signature  a sideways error in proportion to distance
+    Ruler      hang a plumb line from its top
+    """
+    cos, sin = math.cos(lean), math.sin(lean)
+    return BodyMotion(
+        cos * motion.along - sin * motion.sideways,
+        sin * motion.along + cos * motion.sideways,
+        motion.turn,
+    )
+'''
+
+
+@pytest.fixture(scope="module")
+def own(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("own") / "own.py"
+    path.write_text(OWN, encoding="utf-8")
+    return path
+
+
+def test_a_users_effect_brings_its_twin_and_its_sketch(
+    own: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (mast,) = load_file(own)
+    check_effect(mast)
+
+    parser = argparse.ArgumentParser()
+    explain.add_arguments(parser)
+    assert explain.run(parser.parse_args(["leaning_mast", "--effects", str(own)])) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    assert "reference_yaw_offset (angle = -lean): a mast that leans carries" in said
+    assert "So hang a plumb line from the mast's top" in said
+
+    truth = replace(ROBOT, effects=(find("sideways_drift").using(angle=-0.02),))
+    others = [effect for effect in LIBRARY if effect.name != "sideways_drift"]
+    found = diagnose(runs_of(truth, (1, 2, 3, 4), 60), ROBOT, [*others, mast])
+    assert found.verdict == "ambiguous"
+    assert set(found.rivals) == {"leaning_mast", "reference_yaw_offset"}
+    proposed = next_manoeuvre(found)
+    assert proposed is not None
+    assert (proposed.name, proposed.do) == ("plumb_line", "hang a plumb line from the mast's top")
+
+    told = Told(found, proposed, ())
+    assert "are one and the same, on any drive" in " ".join(words_of(told, NextSteps()).split())
+    page = tmp_path / "page.html"
+    write_diagnosis_page(found, page, told=told)
+    shown = page.read_text(encoding="utf-8")
+    assert "the mast leans, and the robot seems to crab</text>" in shown
+    assert "hang a plumb line" in shown
+
+
+def named(*names: str) -> list[Effect]:
+    return [find(name) for name in names]
+
+
+@pytest.mark.parametrize(
+    ("rivals", "positions", "manoeuvre"),
+    [
+        (("sideways_drift", "reference_yaw_offset"), True, "remount_reference"),
+        (("wheels_swapped", "reference_mirrored"), True, "turn_by_hand"),
+        (("reference_mirrored", "wheels_swapped"), False, "turn_by_hand"),
+        (("left_wheel_reversed", "right_wheel_reversed"), True, "push_by_hand"),
+        (("reference_yaw_offset", "wheels_swapped", "left_wheel_reversed"), True, "push_by_hand"),
+        (("track_width", "wheel_radius_scale"), False, "out_and_back"),
+        (("track_width", "wheel_radius_scale"), True, None),
+        (("sideways_drift", "reference_yaw_offset", "lateral_slip"), True, None),
+        (("lateral_slip", "reference_lever_arm"), True, None),
+    ],
+)
+def test_what_to_do_by_hand(
+    rivals: tuple[str, ...], positions: bool, manoeuvre: str | None
+) -> None:
+    proposed = for_twins(named(*rivals), positions)
+    assert (proposed.name if proposed else None) == manoeuvre
+
+
+def test_pushing_says_what_to_look_at_for_each_counter() -> None:
+    proposed = for_twins(named("left_wheel_reversed", "wheels_swapped"), True)
+    assert proposed is not None
+    assert "both counters must grow" in proposed.do
+    assert "the left counter must run" in proposed.do
+
+
+def test_no_axle_is_askew_by_a_quarter_turn() -> None:
+    twins = ("sideways_drift", "wheels_swapped")
+    for angle, possible in ((-0.2, twins), (0.5 * math.pi, ("wheels_swapped",))):
+        finding = SetUpFinding("reference_yaw_offset", {"angle": angle}, None, "", twins)
+        assert _possible_twins(finding) == possible
+
+
+def test_to_the_reference_a_crab_is_a_mount_askew() -> None:
+    crab = find("sideways_drift").using(angle=0.1)
+    mount = find("reference_yaw_offset").using(angle=0.3)
+    assert mount_of(replace(ROBOT, effects=(crab, mount))).yaw == pytest.approx(0.2)
+    assert mount_of(ROBOT).yaw == 0.0

@@ -1,0 +1,128 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The information limit is where a score test finds an effect in 95 % of cases, by trying it."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from test.inference.driven import NOISE_XY, NOISE_YAW, runs_of
+from test.model.drives import ROBOT
+from werrimbi_odom.effects import find
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.chances import chi2_above, noncentrality
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
+from werrimbi_odom.inference.fitting.fit import start_point
+from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.manoeuvres.detection_limits import information_limits
+from werrimbi_odom.inference.manoeuvres.rivals import Experiment
+from werrimbi_odom.inference.rules import SURE
+from werrimbi_odom.model.pose import Floats
+
+TRIED = 60
+NOISE = {"sigma_xy": NOISE_XY, "sigma_yaw": NOISE_YAW}
+
+
+@pytest.fixture(scope="module")
+def runs() -> list[Run]:
+    return runs_of(ROBOT, (1, 2), 30)
+
+
+def limits(names: tuple[str, ...], runs: list[Run], **others: float) -> dict[str, dict[str, float]]:
+    effects = [find(name) for name in names]
+    return information_limits(effects, ROBOT, runs, tried=TRIED, **{**NOISE, **others})  # type: ignore[arg-type]
+
+
+def drives_of(runs: list[Run]) -> Experiment:
+    laid = together(match_finely(runs, ROBOT, 1.0))
+    return Experiment(laid, start_point(laid, ROBOT, NOISE_XY, NOISE_YAW), "absolute")
+
+
+def change(drives: Experiment, name: str, **values: float) -> Floats:
+    """What an effect of a size does to the innovations, in units of their noise."""
+    return drives.whitened(drives.change(find(name).using(**values)))[:, 0]
+
+
+def columns(drives: Experiment, name: str) -> Floats:
+    return drives.whitened(drives.marks(Candidate(find(name), {})))
+
+
+@pytest.mark.parametrize(
+    ("name", "parameter"),
+    [
+        ("lateral_slip", "creep"),
+        ("longitudinal_slip", "coefficient"),
+        ("floor_slope", "x"),
+        ("radius_drift", "per_second"),
+        ("track_width", "multiplier"),
+    ],
+)
+def test_at_the_limit_95_in_100_are_found(name: str, parameter: str, runs: list[Run]) -> None:
+    """Monte Carlo of the linear model: signal, nuisances of any size, and white noise."""
+    item = find(name).parameters[parameter]
+    size = limits((name,), runs)[name][parameter]
+    drives, random = drives_of(runs), np.random.default_rng(7)
+    signal = change(drives, name, **{parameter: item.null + size})
+    wanted = columns(drives, name)
+    beside = [columns(drives, each) for each in CALIBRATED if each != name]
+    nuisance = np.concatenate([drives.nuisances(()), *beside], axis=-1)
+    draws = 4000
+    shown = signal[:, None] + random.normal(size=(signal.size, draws))
+    shown += nuisance @ random.normal(0.0, 100.0, (nuisance.shape[1], draws))
+
+    def cost(design: Floats) -> Floats:
+        basis = np.linalg.svd(design / np.linalg.norm(design, axis=0), full_matrices=False)[0]
+        return np.asarray(np.sum((shown - basis @ (basis.T @ shown)) ** 2, axis=0))
+
+    gains = cost(nuisance) - cost(np.concatenate([nuisance, wanted], axis=-1))
+    found = [chi2_above(gain, wanted.shape[1]) < SURE / TRIED for gain in gains]
+    assert np.mean(found) == pytest.approx(0.95, abs=0.012)
+
+
+def test_a_phase_of_each_run_costs_two_numbers_a_run(runs: list[Run]) -> None:
+    """The amplitude at the phase that shows least, for twice as many numbers as runs."""
+    amplitude = limits(("eccentric_left_wheel",), runs)["eccentric_left_wheel"]["amplitude"]
+    drives = drives_of(runs)
+    nuisance = np.concatenate(
+        [drives.nuisances(()), *(columns(drives, each) for each in CALIBRATED)], axis=-1
+    )
+    basis = np.linalg.svd(nuisance / np.linalg.norm(nuisance, axis=0), full_matrices=False)[0]
+    wanted = noncentrality(4, SURE / TRIED, 0.95)
+    shown = []
+    for phase in (0.0, 0.5 * np.pi):
+        signal = change(drives, "eccentric_left_wheel", amplitude=amplitude, phase=phase)
+        by_run = drives.each_run(signal[:, None])
+        shown.append(float(np.sum((by_run - basis @ (basis.T @ by_run)) ** 2)))
+    assert min(shown) == pytest.approx(wanted, rel=0.02)
+
+
+def test_more_noise_and_fewer_drives_show_less(runs: list[Run]) -> None:
+    names = ("lateral_slip",)
+    here = limits(names, runs)["lateral_slip"]["creep"]
+    assert limits(names, runs[:1])["lateral_slip"]["creep"] > 1.2 * here
+    noisy = limits(names, runs, sigma_xy=5.0 * NOISE_XY)["lateral_slip"]["creep"]
+    assert noisy > 1.5 * here
+    half = limits(names, runs, power=0.5)["lateral_slip"]["creep"]
+    assert half < here
+
+
+def test_what_leaves_no_trace_has_no_limit() -> None:
+    positions = runs_of(ROBOT, (3,), 30)
+    for run in positions:
+        assert run.reference is not None
+        run.reference.yaw[:] = np.nan
+    found = limits(("reference_yaw_offset", "lateral_slip"), positions)
+    assert found["reference_yaw_offset"]["angle"] == np.inf
+    assert np.isfinite(found["lateral_slip"]["creep"])
+
+
+def test_the_noncentrality_gives_the_power() -> None:
+    random = np.random.default_rng(2)
+    for degrees in (1, 3):
+        value = noncentrality(degrees, 1e-3, 0.9)
+        drawn = random.normal(size=(100_000, degrees))
+        drawn[:, 0] += np.sqrt(value)
+        found = [chi2_above(each, degrees) < 1e-3 for each in np.sum(drawn**2, axis=1)[:20_000]]
+        assert np.mean(found) == pytest.approx(0.9, abs=0.01)

@@ -1,0 +1,77 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Three multipliers, three effects: base and both radii of a robot under two names.
+
+A robot file has them as multipliers, UMBmark's C_B, C_L and C_R; the library as effects,
+`track_width`, `unequal_wheel_radii` (E_d) and `wheel_radius_scale`, which a file may hold as well.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+LOGARITHMS = {
+    "track_width": (1.0, 0.0, 0.0),
+    "unequal_wheel_radii": (0.0, -1.0, 1.0),
+    "wheel_radius_scale": (0.0, 0.5, 0.5),
+}
+"""How the logarithm of each calibration effect is made of those of the three multipliers."""
+
+
+class Sizes(NamedTuple):
+    """True over nominal base, left and right radius."""
+
+    base: float
+    left: float
+    right: float
+
+    def over(self, others: Sizes) -> Sizes:
+        """These over others."""
+        return Sizes(*(one / other for one, other in zip(self, others, strict=True)))
+
+    @property
+    def as_effects(self) -> dict[str, float]:
+        """The number of each calibration effect that does the same."""
+        return {
+            "track_width": self.base,
+            "unequal_wheel_radii": self.right / self.left,
+            "wheel_radius_scale": 0.5 * (self.left + self.right),
+        }
+
+
+def sizes_of(robot: Robot) -> Sizes:
+    """A robot's multipliers, with the calibration effects that it holds."""
+    base, left, right = (float(getattr(robot, name)) for name in MULTIPLIERS)
+    for applied in robot.effects:
+        if applied.name == "track_width":
+            base *= applied.values["multiplier"]
+        elif applied.name == "wheel_radius_scale":
+            left, right = (side * applied.values["multiplier"] for side in (left, right))
+        elif applied.name == "unequal_wheel_radii":
+            ratio = applied.values["ratio"]
+            left, right = left * 2.0 / (1.0 + ratio), right * 2.0 * ratio / (1.0 + ratio)
+    return Sizes(base, left, right)
+
+
+def calibration_deviation(robot: Robot, given: Robot) -> Floats:
+    """How far base, radii's ratio and radii's mean are from the given ones, in logarithms."""
+    relative = sizes_of(robot).over(sizes_of(given))
+    return np.asarray(np.array(list(LOGARITHMS.values())) @ np.log(relative))
+
+
+def std_as_effect(name: str, robot: Robot, covariance: Floats) -> float:
+    """Standard deviation of a calibration effect's logarithm, from the multipliers' covariance.
+
+    Parameters
+    ----------
+    covariance : ndarray, shape (3, 3)
+        Of the multipliers of the `robot`, in the order of `MULTIPLIERS`.
+    """
+    row = np.array(LOGARITHMS[name]) / [getattr(robot, multiplier) for multiplier in MULTIPLIERS]
+    return float(np.sqrt(max(row @ covariance @ row, 0.0)))

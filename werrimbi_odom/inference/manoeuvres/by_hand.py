@@ -1,0 +1,42 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What to do where no drive can tell rivals apart, by algebra: what they declare of their twins."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import combinations
+
+from werrimbi_odom.effects.page import page_of
+from werrimbi_odom.inference.manoeuvres.unknown import Manoeuvre
+from werrimbi_odom.model.effect import Effect, Twin, twin_of
+
+
+def twin_where(one: Effect, other: Effect, positions: bool) -> Twin | None:
+    """What makes two effects one, where the reference measures `positions` or does not."""
+    twin = twin_of(one, other)
+    return None if twin is None or (twin.of_headings and positions) else twin
+
+
+def for_twins(rivals: Sequence[Effect], positions: bool) -> Manoeuvre | None:
+    """What to do; None where drives may tell at least some of them apart, or nobody says what can.
+
+    Set-up mistakes explain each other in larger sets than pairs: two of them may do what a third
+    does. A hand at the robot tells them all.
+    """
+    pairs = [twin_where(*pair, positions) for pair in combinations(rivals, 2)]
+    twins = [twin for twin in pairs if twin is not None]
+    mistakes = [effect for effect in rivals if effect.is_mistake]
+    said = next((twin for twin in twins if twin.do), None)
+    if said is not None and (len(twins) == len(pairs) or mistakes):
+        return Manoeuvre(said.manoeuvre, said.told_apart_by, said.do, said.minutes)
+    if not mistakes:
+        return None
+    checks = dict.fromkeys(" ".join(page_of(each).sections["Ruler"].split()) for each in mistakes)
+    return Manoeuvre(
+        "push_by_hand",
+        "no drive can tell them apart, because the robot file alone says which end is ahead; a "
+        "hand can",
+        "; ".join(checks),
+        0.0,
+    )

@@ -1,0 +1,226 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Detection limits: from which size on drives show an effect.
+
+The limit is that of the information in the drives (Fisher's, calibration and what each run has of
+its own being unknown): the size at which the score test, as sure as the diagnosis asks for and all
+candidates counted, finds the effect in 95 % of cases; its statistic is then non-central
+chi-squared.
+
+"Nothing is missing" is worth as much as what would have been seen. Where an effect of the size that
+robots show would have stayed hidden, the drive of the library that shows it with this reference is
+named, or it is said that no drive does and a reference that measures more is needed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from werrimbi_odom.effects import find
+from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference.chances import noncentrality
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
+from werrimbi_odom.inference.fitting.fit import start_point
+from werrimbi_odom.inference.fitting.knobs import STEP
+from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
+from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
+from werrimbi_odom.inference.manoeuvres.imagined import imagined
+from werrimbi_odom.inference.manoeuvres.rivals import Experiment, Sensitivities, sensitivities_of
+from werrimbi_odom.inference.rules import SURE
+from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.robot import Robot
+
+POWER = 0.95
+"""Share of cases in which an effect of the limit's size is found."""
+
+HIDDEN = 3.0
+"""An effect that would be seen only from so many times its typical size on counts as hidden."""
+
+
+@dataclass(frozen=True, slots=True)
+class DetectionLimit:
+    """From which size on an effect would have been seen."""
+
+    effect: str
+    parameter: str
+    """The one that shows best, beside its shape."""
+    unit: str
+    null: float
+    minimum_detectable: float
+    """Distance from null; infinite where it leaves no trace at all."""
+    typical: float
+    """Distance from null that robots show."""
+    shown_by: str | None = None
+    """A manoeuvre that shows it with this reference; where it is hidden."""
+    needs_more: bool = False
+    """No drive shows it with this reference, but with one of positions and headings it shows."""
+
+    @property
+    def hidden(self) -> bool:
+        """Whether an effect of usual size would have stayed hidden."""
+        return not self.minimum_detectable < HIDDEN * self.typical
+
+
+def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[DetectionLimit, ...]:
+    """For all effects that are not in the model, in the library's order."""
+    final, tried = diagnosis.final, diagnosis.rounds[-1].number
+    held = {applied.name for applied in final.point.model.robot.effects}
+    measured = set.intersection(*(set(run.counters.channels) for run in diagnosis.runs.runs))
+    candidates = [
+        _typical(effect)
+        for effect in effects
+        if not effect.is_mistake and effect.name not in held and set(effect.channels) <= measured
+    ]
+    seen = _seen(Experiment(diagnosis.runs, final.point, diagnosis.kind), candidates, final, tried)
+    hidden = [item for item in candidates if seen[item.name].hidden]
+    if not hidden:
+        return tuple(seen.values())
+    shown = _shown_by(diagnosis, hidden, better=False)
+    lost = [item for item in hidden if item.name not in shown]
+    better = _shown_by(diagnosis, lost, better=True) if lost else {}
+    return tuple(_with_remedy(item, shown, better) for item in seen.values())
+
+
+def _typical(effect: Effect) -> Candidate:
+    shape = {name: item.typical for name, item in effect.parameters.items() if item.tries}
+    return Candidate(effect, shape)
+
+
+def information_limits(
+    effects: Sequence[Effect],
+    robot: Robot,
+    runs: Sequence[Run],
+    kind: ReferenceKind = "absolute",
+    *,
+    sigma_xy: float,
+    sigma_yaw: float,
+    tried: int,
+    leg: float = 1.0,
+    power: float = POWER,
+) -> dict[str, dict[str, float]]:
+    """Limits of some effects by parameter, where robot and noise are known but for calibration.
+
+    Parameters
+    ----------
+    robot : Robot
+        The true one, its wheels' noise included, without the effects.
+    runs
+        Drives with a reference; where it measured, and how the wheels turned, is all that counts.
+    sigma_xy, sigma_yaw : float
+        The reference's noise [m, rad].
+    tried : int
+        Candidates among which the diagnosis chooses (`search.Round.number`).
+
+    Returns
+    -------
+    dict
+        By effect and parameter the distance from null, in the parameter's unit; infinite where the
+        drives do not show it.
+    """
+    laid = together(match_finely(runs, robot, leg))
+    look = sensitivities_of(
+        Experiment(laid, start_point(laid, robot, sigma_xy, sigma_yaw), kind),
+        [_typical(effect) for effect in effects] + _calibrated(),
+        (),
+    )
+    return {
+        effect.name: {
+            limit.parameter: limit.minimum_detectable
+            for limit in _limits(_typical(effect), look, tried, power)
+        }
+        for effect in effects
+    }
+
+
+def _seen(
+    drives: Experiment, candidates: Sequence[Candidate], final: Fitted, tried: int
+) -> dict[str, DetectionLimit]:
+    look = sensitivities_of(drives, candidates, final.knobs)
+    return {item.name: _best(item, look, tried, final.held) for item in candidates}
+
+
+def _best(
+    candidate: Candidate, look: Sensitivities, tried: int, held: Sequence[str]
+) -> DetectionLimit:
+    """The parameter of an effect that shows best."""
+    limits = _limits(candidate, look, tried, POWER, held)
+    return min(limits, key=lambda limit: limit.minimum_detectable / limit.typical)
+
+
+def _limits(
+    candidate: Candidate,
+    look: Sensitivities,
+    tried: int,
+    power: float,
+    held: Sequence[str] = (),
+) -> Iterator[DetectionLimit]:
+    """For each parameter but its shape, beside what calibration may explain."""
+    effect = candidate.effect
+    beside = [name for name in CALIBRATED if name in look.white and name != candidate.name]
+    if candidate.name in CALIBRATED:
+        # What the runs do not determine is held, so that it hides nothing (`Fitted.held`).
+        beside = [name for name in beside if name not in held]
+    others = [look.white[name] for name in beside]
+    frame = nuisance(np.concatenate([look.own, *others], axis=-1))
+    marks = look.white[candidate.name]
+    width = marks.shape[-1]
+    if candidate.per_run:
+        marks = look.drives.each_run(marks)
+    free = frame.residual(marks)
+    heard, before = (np.sum(columns**2, axis=0) for columns in (free, marks))
+    heard = np.where(heard > DETERMINED**2 * np.maximum(before, SILENT), heard, 0.0)
+    wanted = noncentrality(max(int(np.sum(heard > 0.0)), 1), SURE / max(tried, 1), power)
+    information = heard.reshape(-1, width).sum(axis=0)
+    if effect.quadrature is not None:  # the phase that shows least
+        names, information = [effect.quadrature[0]], information.min(keepdims=True)
+    else:
+        names = [name for name, item in effect.parameters.items() if not item.tries]
+    for name, of_step in zip(names, information.tolist(), strict=True):
+        item = effect.parameters[name]
+        size = STEP * item.scale * math.sqrt(wanted / of_step) if of_step > 0.0 else math.inf
+        yield DetectionLimit(effect.name, name, item.unit, item.null, size, item.scale)
+
+
+def _shown_by(diagnosis: Diagnosis, hidden: Sequence[Candidate], *, better: bool) -> dict[str, str]:
+    """For each effect the first manoeuvre that shows it at its typical size within some minutes."""
+    final = diagnosis.final
+    pace = pace_of(diagnosis.runs, final.point.model.robot)
+    wanted, found = list(hidden), {}
+    for ideal in MANOEUVRES:
+        drives, _ = imagined(
+            ideal, diagnosis.runs, final.point, diagnosis.kind, pace, better=better
+        )
+        beside = [item for item in _calibrated() if item.name not in _names(wanted)]
+        look = sensitivities_of(drives, [*wanted, *beside], final.knobs)
+        for item in list(wanted):
+            if not _best(item, look, diagnosis.rounds[-1].number, final.held).hidden:
+                found[item.name] = ideal.name
+                wanted.remove(item)
+        if not wanted:
+            break
+    return found
+
+
+def _names(candidates: Sequence[Candidate]) -> set[str]:
+    return {item.name for item in candidates}
+
+
+def _calibrated() -> list[Candidate]:
+    return [Candidate(find(name), {}) for name in CALIBRATED]
+
+
+def _with_remedy(
+    limit: DetectionLimit, shown: dict[str, str], better: dict[str, str]
+) -> DetectionLimit:
+    if not limit.hidden:
+        return limit
+    shown_by = shown.get(limit.effect)
+    return replace(limit, shown_by=shown_by, needs_more=shown_by is None and limit.effect in better)
