@@ -12,8 +12,10 @@ from werrimbi_odom.effects.shapes import mean_curve, mean_square, mean_step
 from werrimbi_odom.inference.adding.draft_laws import Seen, forms_of, spot_form
 from werrimbi_odom.inference.adding.draft_source import source_of
 from werrimbi_odom.inference.adding.drafting import keeps_laws, loaded
-from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS, Amount
+from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS, Amount, Dependence, place_of
+from werrimbi_odom.inference.diagnosis.variables import Variable, floor_cells
 from werrimbi_odom.model.drive import Span
+from werrimbi_odom.report.diagnosis.dependence import dependence_words
 
 SPEED = Seen(
     "speed",
@@ -88,3 +90,16 @@ def test_means_over_a_step_are_integrals() -> None:
         (mean_step(span, 1.2, 0.2), np.clip((middle - 1.1) / 0.2, 0.0, 1.0)),
     ):
         assert mean == pytest.approx(float(np.mean(values)), abs=1e-9)
+
+
+def test_a_place_is_told_finer_than_the_floors_cells() -> None:
+    random = np.random.default_rng(3)
+    x, y = random.uniform(-1.5, 1.5, (2, 20_000))
+    lost = np.where(np.hypot(x - 0.45, y - 0.15) < 0.4, -0.1, 0.0)
+    cells = floor_cells(x, y)
+    coefficients = cells.T @ lost / cells.sum(axis=0)
+    variable = Variable("position", "m", x, y, "place", ("x", "y"))
+    cell = Dependence(Amount("along", "travel"), variable, "place", coefficients, 1.0, 1, 0.0)
+    at_x, at_y = place_of(cell)
+    assert np.hypot(at_x - 0.45, at_y - 0.15) < 0.12
+    assert f"about x {at_x:.1f} m, y {at_y:.1f} m" in dependence_words(cell)

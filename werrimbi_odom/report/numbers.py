@@ -67,7 +67,7 @@ def in_unit(value: float, std: float, unit: str) -> tuple[str, str]:
 def quantity(value: float, std: float, unit: str) -> str:
     """Value, standard deviation and unit; an angle in degrees as well."""
     text, small = in_unit(value, std, unit)
-    angle = f" ({math.degrees(value):.3g}°)" if unit == "rad" and math.isfinite(value) else ""
+    angle = f", {math.degrees(value):.3g}°" if unit == "rad" and math.isfinite(value) else ""
     return f"{text} {small}".rstrip() + angle
 
 

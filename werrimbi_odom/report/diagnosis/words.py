@@ -113,8 +113,8 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
     if hidden:
         lines += _not_shown(told)
     lines.append(
-        "Next: `werrimbi compare` says whether the covariance is honest; `werrimbi calibrate fit` "
-        "fits the wheels' noise."
+        "Next: there is nothing to add. On drives held out, `werrimbi compare` says whether the "
+        "covariance is honest; where it is not, `werrimbi calibrate fit` fits the wheels' noise."
     )
     return lines
 
