@@ -34,3 +34,9 @@ def pytest_make_collect_report(collector: pytest.Collector) -> Generator[None, A
         report.outcome, report.result = "skipped", []
         reason = f"Skipped: needs {absent[1]} (pip install werrimbi_odom[all])"
         report.longrepr = (str(getattr(collector, "path", "")), 0, reason)
+
+
+@pytest.fixture(autouse=True)
+def no_line_by_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What stderr holds does not depend on how busy the machine is."""
+    monkeypatch.setattr("werrimbi_odom.cli.progress.EVERY", float("inf"))

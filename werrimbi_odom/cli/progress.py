@@ -6,26 +6,12 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
-from typing import TypeVar
-
-Item = TypeVar("Item")
 
 EVERY = 30.0
 """Seconds from line to line where nobody looks at a bar."""
-
-
-def with_progress(items: Sequence[Item], words: str) -> Iterator[Item]:
-    """The items one by one, with a bar on stderr if that is a terminal."""
-    if not sys.stderr.isatty():
-        yield from items
-        return
-    from rich.console import Console
-    from rich.progress import track
-
-    yield from track(items, words, console=Console(stderr=True), transient=True)
 
 
 @contextmanager
