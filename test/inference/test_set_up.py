@@ -6,12 +6,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from test.inference.driven import runs_of
 from test.inference.set_up_mistakes import (
     DELAYS,
     ONE_SIDE,
@@ -27,7 +29,11 @@ from test.inference.set_up_mistakes import (
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_folder import read_run_folder
+from werrimbi_odom.inference.adding.draft_laws import Seen, spot_form
+from werrimbi_odom.inference.adding.draft_source import source_of
+from werrimbi_odom.inference.adding.drafting import loaded
 from werrimbi_odom.inference.comparison.legs import leg_errors, statistics
+from werrimbi_odom.inference.diagnosis.evidence import Amount
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding, look_for_mistakes
 from werrimbi_odom.model.effect import AppliedEffect
@@ -231,3 +237,14 @@ def test_no_reference_no_findings(session: list[Run]) -> None:
         assert run.reference is not None
         run.reference.x[:] = np.nan
     assert look_for_mistakes(blank, NOMINAL, "absolute") == SetUp((), NOMINAL)
+
+
+def test_an_effect_of_the_file_that_looks_at_the_place_is_no_hindrance() -> None:
+    """Nobody knows where the robot is before its set-up is known: the effect is left as it is."""
+    form = spot_form([(0.2, 0.1)], (0.4,), -0.1, 0.175)
+    seen = Seen("position", "m", lambda side: "")
+    amount = Amount("along", "travel")
+    spot = loaded(source_of("slippery_spot", amount, seen, form, 4, "p = 1e-9"))
+    plain = Robot(0.35, 0.05, 2000.0, 2000.0)
+    robot = replace(plain, effects=(spot.using(share=-0.1, x=0.2, y=0.1, radius=0.4),))
+    assert look_for_mistakes(runs_of(robot, (1, 2)), robot, "absolute").findings == ()

@@ -18,7 +18,7 @@ def look(error: float) -> Any:
 
 
 def step(name: str, error: float, objection: str | None = None) -> Step:
-    added = SimpleNamespace(effect=SimpleNamespace(name=name), objection=objection)
+    added = SimpleNamespace(name=name, objection=objection)
     return Step(look(error), cast(Any, added))
 
 

@@ -115,7 +115,9 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | 
     wheels = wiring_of(robot.effects).wheels
     left, right = wheels(steps.left / robot.left_tick, steps.right / robot.right_tick)
     raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
-    if any(applied.effect.stage == "wheels" for applied in robot.effects):
+    # What looks at the place cannot be undone while nobody knows where the robot is.
+    undone = tuple(applied for applied in robot.effects if not applied.effect.pose)
+    if any(applied.effect.stage == "wheels" for applied in undone):
         first = (float(ticks.left[steps.first_row]), float(ticks.right[steps.first_row]))
         channels = {}
         for name, values in ticks.channels.items():
@@ -125,7 +127,7 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | 
                 there = np.interp(time, time[known], there[known])
                 channels[name] = Span(there[:-1], there[1:])
         drive = features(robot, np.diff(time), raw, wheels(*first), channels)
-        raw = after_wheel_effects(robot.effects, raw, drive)
+        raw = after_wheel_effects(undone, raw, drive)
     view = view_of(robot.effects)
     sign = -1.0 if view.mirrored else 1.0
     known = (np.isfinite(reference.x) & np.isfinite(reference.y)) | np.isfinite(reference.yaw)
