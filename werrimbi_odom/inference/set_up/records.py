@@ -28,6 +28,7 @@ from werrimbi_odom.model.driving import features
 from werrimbi_odom.model.effect import after_wheel_effects, view_of, wiring_of
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.motion import WheelTravel
+from werrimbi_odom.model.passes import PLACE, watched
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
@@ -115,9 +116,8 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | 
     wheels = wiring_of(robot.effects).wheels
     left, right = wheels(steps.left / robot.left_tick, steps.right / robot.right_tick)
     raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
-    # What looks at the place cannot be undone while nobody knows where the robot is.
-    undone = tuple(applied for applied in robot.effects if not applied.effect.pose)
-    if any(applied.effect.stage == "wheels" for applied in undone):
+    of_wheels = [applied for applied in robot.effects if applied.effect.stage == "wheels"]
+    if of_wheels:
         first = (float(ticks.left[steps.first_row]), float(ticks.right[steps.first_row]))
         channels = {}
         for name, values in ticks.channels.items():
@@ -127,7 +127,11 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | 
                 there = np.interp(time, time[known], there[known])
                 channels[name] = Span(there[:-1], there[1:])
         drive = features(robot, np.diff(time), raw, wheels(*first), channels)
-        raw = after_wheel_effects(undone, raw, drive)
+        for applied in of_wheels:
+            seen = watched(drive)
+            after = after_wheel_effects((applied,), raw, seen)
+            # What looks at the place cannot be undone while nobody knows where the robot is.
+            raw = raw if seen.asked & PLACE else after
     view = view_of(robot.effects)
     sign = -1.0 if view.mirrored else 1.0
     known = (np.isfinite(reference.x) & np.isfinite(reference.y)) | np.isfinite(reference.yaw)
