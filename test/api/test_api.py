@@ -132,3 +132,5 @@ def test_what_is_given_in_the_wrong_order_is_told(drives: Path) -> None:
     robot = wo.read_robot(drives / "robot.yaml")
     with pytest.raises(TypeError, match="the robot comes first"):
         wo.compare(runs(drives), robot)  # type: ignore[arg-type]
+    with pytest.raises(TypeError, match="unknown option legs; there are reference_kind, leg"):
+        wo.compare(robot, runs(drives), legs=2.0)  # type: ignore[call-arg]

@@ -9,14 +9,14 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.api.calibrate_umbmark import before_after
-from werrimbi_odom.api.drives import Drives, recordings_of
+from werrimbi_odom.api.drives import Drives, Options, recordings_of
 from werrimbi_odom.api.result import NewRobot, Result
 from werrimbi_odom.files.asked import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import ReferenceKind
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
+    from typing_extensions import Unpack
 
     from werrimbi_odom.files.run import Run
     from werrimbi_odom.inference.calibration.any_driving import Calibration
@@ -29,10 +29,7 @@ def calibrate_fit(
     runs: Drives,
     *,
     holdout: Drives = (),
-    reference_kind: ReferenceKind = "absolute",
-    leg: float = 1.0,
-    reference_sigma_xy: float | None = None,
-    reference_sigma_yaw: float | None = None,
+    **options: Unpack[Options],
 ) -> Result[Calibration]:
     """Maximum likelihood of multipliers and k_L, k_R, with standard deviations.
 
@@ -46,15 +43,7 @@ def calibrate_fit(
     InputError
         When the drives cannot be used; the message says why.
     """
-    given = recordings_of(
-        robot,
-        runs,
-        holdout,
-        reference_kind=reference_kind,
-        leg=leg,
-        reference_sigma_xy=reference_sigma_xy,
-        reference_sigma_yaw=reference_sigma_yaw,
-    )
+    given = recordings_of(robot, runs, holdout, **options)
     return calibrated(given)
 
 

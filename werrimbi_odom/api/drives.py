@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypedDict
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.asked import How, Recordings
@@ -16,10 +16,27 @@ from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from werrimbi_odom.effects.collection import Collection
 
 Drives = Run | str | Path | Sequence[Run | str | Path]
 """One drive or several, read already or to be read."""
+
+
+class Options(TypedDict, total=False):
+    """How drives are judged; what is left out is as the command line has it."""
+
+    reference_kind: ReferenceKind
+    """"absolute": each pose of the reference has noise of its own; "incremental": it adds up."""
+    leg: float
+    """Length of the legs that are judged [m]; 1 where it is not given."""
+    reference_sigma_xy: float | None
+    """The reference's noise in x and in y, where it is known [m]."""
+    reference_sigma_yaw: float | None
+    """The same in heading [rad]."""
+    effects: Sequence[str | Path]
+    """Files with effects of your own, which the robot file may name."""
 
 
 def read_robot(path: str | Path, effects: Sequence[str | Path] = ()) -> RobotFile:
@@ -63,24 +80,26 @@ def collection_of(effects: Sequence[str | Path] = ()) -> Collection:
 
 
 def recordings_of(
-    robot: RobotFile,
-    runs: Drives,
-    holdout: Drives,
-    *,
-    reference_kind: ReferenceKind,
-    leg: float,
-    reference_sigma_xy: float | None,
-    reference_sigma_yaw: float | None,
-    effects: Sequence[str | Path] = (),
+    robot: RobotFile, runs: Drives, holdout: Drives = (), **options: Unpack[Options]
 ) -> Recordings:
     """Everything that a verb needs, as the command line reads it."""
     if not isinstance(robot, RobotFile):
         raise TypeError(f"the robot comes first, from read_robot, and not {type(robot).__name__}")
-    how = How(reference_kind, leg, reference_sigma_xy, reference_sigma_yaw)
-    fitted, held = (_read(each, robot, reference_kind) for each in (runs, holdout))
+    unknown = sorted(set(options) - set(Options.__annotations__))
+    if unknown:
+        raise TypeError(
+            f"unknown option {unknown[0]}; there are {', '.join(Options.__annotations__)}"
+        )
+    how = How(
+        options.get("reference_kind", "absolute"),
+        options.get("leg", 1.0),
+        options.get("reference_sigma_xy"),
+        options.get("reference_sigma_yaw"),
+    )
+    fitted, held = (_read(each, robot, how.kind) for each in (runs, holdout))
     if not fitted:
         raise InputError("no drives were given")
-    return Recordings(robot, collection_of(effects), fitted, held, how)
+    return Recordings(robot, collection_of(options.get("effects", ())), fitted, held, how)
 
 
 def _read(runs: Drives, robot: RobotFile, kind: ReferenceKind) -> tuple[Run, ...]:

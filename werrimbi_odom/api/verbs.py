@@ -5,17 +5,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.api.drives import Drives, recordings_of
+from werrimbi_odom.api.drives import Drives, Options, recordings_of
 from werrimbi_odom.api.result import NewRobot, Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.asked import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import ReferenceKind
 
 if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
     from werrimbi_odom.inference.adding.added import Added
     from werrimbi_odom.inference.adding.drafting import Draft
     from werrimbi_odom.inference.comparison.compare import Comparison
@@ -34,11 +34,8 @@ def compare(
     robot: RobotFile,
     runs: Drives,
     *,
-    reference_kind: ReferenceKind = "absolute",
-    leg: float = 1.0,
-    reference_sigma_xy: float | None = None,
-    reference_sigma_yaw: float | None = None,
     show: Show = silent,
+    **options: Unpack[Options],
 ) -> Result[Comparison]:
     """Model against measurement: where it fails.
 
@@ -48,29 +45,17 @@ def compare(
         From `read_robot`.
     runs
         Drives from `read_run`, or their paths.
-    reference_kind
-        "absolute": each pose of the reference has noise of its own; "incremental": it adds up.
-    leg
-        Length of the legs that are judged [m].
-    reference_sigma_xy, reference_sigma_yaw
-        The reference's noise [m, rad] where it is known.
     show
         Told the share done, and what is being done.
+    **options
+        How drives are judged: `reference_kind`, `leg`, `reference_sigma_xy`, ... (`Options`).
 
     Raises
     ------
     InputError
         When the drives cannot be used; the message says why.
     """
-    given = recordings_of(
-        robot,
-        runs,
-        (),
-        reference_kind=reference_kind,
-        leg=leg,
-        reference_sigma_xy=reference_sigma_xy,
-        reference_sigma_yaw=reference_sigma_yaw,
-    )
+    given = recordings_of(robot, runs, (), **options)
     return compared(given, show)
 
 
@@ -97,12 +82,8 @@ def diagnose(
     runs: Drives,
     *,
     holdout: Drives = (),
-    effects: Sequence[str | Path] = (),
-    reference_kind: ReferenceKind = "absolute",
-    leg: float = 1.0,
-    reference_sigma_xy: float | None = None,
-    reference_sigma_yaw: float | None = None,
     show: Show = silent,
+    **options: Unpack[Options],
 ) -> Result[Told]:
     """Which physical effect is missing; see `compare` for what it has in common.
 
@@ -110,19 +91,8 @@ def diagnose(
     ----------
     holdout
         Drives that report alone. None given: parts of every drive are put aside for it.
-    effects
-        Files with effects of your own, to be tried with the library's.
     """
-    given = recordings_of(
-        robot,
-        runs,
-        holdout,
-        reference_kind=reference_kind,
-        leg=leg,
-        reference_sigma_xy=reference_sigma_xy,
-        reference_sigma_yaw=reference_sigma_yaw,
-        effects=effects,
-    )
+    given = recordings_of(robot, runs, holdout, **options)
     return diagnosed(given, show)
 
 
@@ -149,13 +119,9 @@ def add(
     runs: Drives,
     *,
     holdout: Drives = (),
-    effects: Sequence[str | Path] = (),
     force: bool = False,
-    reference_kind: ReferenceKind = "absolute",
-    leg: float = 1.0,
-    reference_sigma_xy: float | None = None,
-    reference_sigma_yaw: float | None = None,
     show: Show = silent,
+    **options: Unpack[Options],
 ) -> Result[Added]:
     """Add physical effects to the model, fitted together with all calibration, and judge them.
 
@@ -176,16 +142,7 @@ def add(
     InputError
         When the drives cannot be used, or an effect does not earn its place.
     """
-    given = recordings_of(
-        robot,
-        runs,
-        holdout,
-        reference_kind=reference_kind,
-        leg=leg,
-        reference_sigma_xy=reference_sigma_xy,
-        reference_sigma_yaw=reference_sigma_yaw,
-        effects=effects,
-    )
+    given = recordings_of(robot, runs, holdout, **options)
     result = added(given, _effects(effect, given), show)
     if result.found.objection is not None and not force:
         raise InputError(f"{result.found.objection} (force=True takes it all the same)")
@@ -227,13 +184,9 @@ def draft(
     runs: Drives,
     *,
     holdout: Drives = (),
-    effects: Sequence[str | Path] = (),
     force: bool = False,
-    reference_kind: ReferenceKind = "absolute",
-    leg: float = 1.0,
-    reference_sigma_xy: float | None = None,
-    reference_sigma_yaw: float | None = None,
     show: Show = silent,
+    **options: Unpack[Options],
 ) -> Result[Draft]:
     """Where the verdict is unknown: an effect whose law is the dependence that the drives show.
 
@@ -248,16 +201,7 @@ def draft(
         `found.source` is the effect's file, `found.effect` the effect, to be read, and given to
         `add`.
     """
-    given = recordings_of(
-        robot,
-        runs,
-        holdout,
-        reference_kind=reference_kind,
-        leg=leg,
-        reference_sigma_xy=reference_sigma_xy,
-        reference_sigma_yaw=reference_sigma_yaw,
-        effects=effects,
-    )
+    given = recordings_of(robot, runs, holdout, **options)
     return drafted(given, force=force, show=show)
 
 
