@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -56,15 +57,11 @@ def run(arguments: argparse.Namespace) -> int:
     if given.holdout:
         held_out = [match(run, source.robot, how.leg, source.limits) for run in given.holdout]
         figures["holdout"] = _judged(held_out, source, result)
-    changes = {name: item.value for name, item in result.multipliers.items() if item.determined}
-    for name in ("left_wheel_noise", "right_wheel_noise"):
-        if result.noises[name].determined:
-            changes[name] = result.noises[name].value
     figure = _figure(runs, source, result) if arguments.report is not None else None
     write_all(
         arguments,
         source,
-        changes,
+        result.changes,
         figures,
         figure,
         title="Calibration by maximum likelihood",
@@ -95,20 +92,24 @@ def _judged(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) 
     from werrimbi_odom.inference.calibration.any_driving import errors_of_legs
 
     headings: list[float | None] = [None] * len(runs)
-    figures: dict[str, Any] = {}
-    for word, robot in (("before", source.robot), ("after", result.robot)):
-        legs = errors_of_legs(robot, runs, headings)
-        errors = np.hypot(legs[:, 0], legs[:, 1])
-        errors = errors[np.isfinite(errors)]
-        if errors.size == 0:
-            print("held-out runs have no headings; legs cannot be judged one by one")
-            return figures
-        figures[word] = float(np.sqrt(np.mean(errors**2)))
-        figures[f"median_{word}"] = float(np.median(errors))
+    legs = [errors_of_legs(robot, runs, headings) for robot in (source.robot, result.robot)]
+    by_place = bool(np.isfinite(legs[0][:, :2]).any())
+    figures: dict[str, Any] = {"judged_by": "position" if by_place else "heading"}
+    for word, errors in zip(("before", "after"), legs, strict=True):
+        size = np.hypot(errors[:, 0], errors[:, 1]) if by_place else np.abs(errors[:, 2])
+        size = size[np.isfinite(size)]
+        if size.size == 0:
+            print("held-out runs have positions without headings; legs cannot be judged one by one")
+            return {}
+        figures[word] = float(np.sqrt(np.mean(size**2)))
+        figures[f"median_{word}"] = float(np.median(size))
+    unit, factor = ("mm", 1e3) if by_place else ("°", math.degrees(1.0))
+    of = "" if by_place else ", in heading"
     print(
-        f"\nheld-out legs, before and after: "
-        f"rms {1e3 * figures['before']:.2f} and {1e3 * figures['after']:.2f} mm, "
-        f"median {1e3 * figures['median_before']:.2f} and {1e3 * figures['median_after']:.2f} mm"
+        f"\nheld-out legs, before and after{of}: "
+        f"rms {factor * figures['before']:.2f} and {factor * figures['after']:.2f} {unit}, "
+        f"median {factor * figures['median_before']:.2f} and "
+        f"{factor * figures['median_after']:.2f} {unit}"
     )
     return figures
 
@@ -121,6 +122,7 @@ def _json(result: Calibration) -> dict[str, Any]:
         parameters[name] = {
             "value": noise.value,
             "std": noise.std if noise.determined and result.trusted else None,
+            "interval_95": list(noise.interval) if noise.determined and result.trusted else None,
             "determined": noise.determined,
         }
     return {
@@ -129,6 +131,9 @@ def _json(result: Calibration) -> dict[str, Any]:
             "names": [knob.name for knob in result.fit.free],
             "matrix": result.correlation.tolist(),
         },
+        "numbers": result.fit.numbers,
+        "not_determined": list(result.fit.held),
+        "or_as_well": result.twin,
         "trusted": result.trusted,
         "something_else_is_missing": [
             *result.strange,

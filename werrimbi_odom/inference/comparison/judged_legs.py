@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -38,6 +38,7 @@ from werrimbi_odom.inference.fitting.matching import (
     match_finely,
 )
 from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.rules import FAR_ABOVE_NOISE
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -344,3 +345,26 @@ def _in_order(parts: list[Legs]) -> Legs:
         whole("end_y"),
         variables,
     )
+
+
+def judged_by(prepared: Prepared) -> Literal["position", "heading"]:
+    """What legs are judged by: their positions, or where none are measured, their headings."""
+    return "heading" if all(measure == "heading" for measure in prepared.measures) else "position"
+
+
+def far_above_noise(prepared: Prepared, model: Model) -> bool:
+    """Whether a model's errors are beyond anything that its noise, and the reference's, explain.
+
+    A likelihood that was free to choose the noise calls any model right; this asks with the noise
+    of the robot file, and of the reference by its own small differences. By what a usual leg is
+    promised: a first one, whose heading nobody measured, is promised anything.
+    """
+    legs = judged_legs(prepared, model, prepared.leg)
+    kept = legs.errors.chosen(~legs.outlier)
+    places = slice(2, 3) if judged_by(prepared) == "heading" else slice(0, 2)
+    error = np.sum(kept.error[:, places] ** 2, axis=1)
+    promised = np.trace(kept.covariance[:, places, places], axis1=1, axis2=2)
+    known = np.isfinite(error)
+    if not known.any():
+        return False
+    return bool(np.mean(error[known]) > FAR_ABOVE_NOISE**2 * np.median(promised[known]))

@@ -6,11 +6,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind, Run, Ticks
-from werrimbi_odom.inference.comparison.judged_legs import Prepared, finely, judged_legs, prepare
+from werrimbi_odom.inference.comparison.judged_legs import (
+    Prepared,
+    finely,
+    judged_by,
+    judged_legs,
+    prepare,
+)
 from werrimbi_odom.inference.comparison.legs import statistics
 from werrimbi_odom.inference.diagnosis.search import with_own_values
 from werrimbi_odom.inference.fitting.costs import Costs
@@ -31,11 +38,13 @@ class Sides:
 
     before: float
     after: float
+    unit: Literal["m", "rad"] = "m"
+    """Radians where headings alone were measured, and errors are those of the heading."""
 
 
 @dataclass(frozen=True, slots=True)
 class Errors:
-    """Root mean square position errors of legs [m]."""
+    """Root mean square errors of legs: of position [m], or of headings alone [rad]."""
 
     train: float
     holdout: float
@@ -43,6 +52,7 @@ class Errors:
     holdout_median: float
     holdout_yaw: float
     """Root mean square heading error [rad]."""
+    unit: Literal["m", "rad"]
 
 
 @dataclass(frozen=True)
@@ -67,7 +77,9 @@ class Judge:
         """Errors of a model; what each held-out run has of its own is fitted to that run alone."""
         train = _figures(self.train, model.without_nuisances())
         holdout = _figures(self.holdout, known_at_home(model, self.fine, self.kind))
-        return Errors(train[0], holdout[0], train[1], holdout[1], holdout[2])
+        if judged_by(self.train) == "heading":
+            return Errors(train[2], holdout[2], train[3], holdout[3], holdout[2], "rad")
+        return Errors(train[0], holdout[0], train[1], holdout[1], holdout[2], "m")
 
     def at_home(self, model: Model) -> Point:
         """The model in the held-out runs: shared values as they are, the runs' own learnt."""
@@ -168,8 +180,10 @@ def _part(run: Run, begin: float, end: float) -> Run:
     return replace(run, ticks=cut, reference=reference.chosen(there))
 
 
-def _figures(prepared: Prepared, model: Model) -> tuple[float, float, float]:
+def _figures(prepared: Prepared, model: Model) -> tuple[float, float, float, float]:
     legs = judged_legs(prepared, model, prepared.leg)
     figures = statistics(legs.errors.chosen(~legs.outlier))
     whole = statistics(legs.errors)
-    return figures.rmse_position_m, whole.median_position_m, figures.rmse_yaw_rad
+    turned = np.abs(legs.errors.error[:, 2])
+    middle = float(np.median(turned[np.isfinite(turned)])) if np.isfinite(turned).any() else np.nan
+    return figures.rmse_position_m, whole.median_position_m, figures.rmse_yaw_rad, middle

@@ -10,7 +10,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.words import NextSteps, Told, words_of
-from werrimbi_odom.report.numbers import chance_words
+from werrimbi_odom.report.numbers import chance_words, error_words
 from werrimbi_odom.report.page_text import unwrapped
 from werrimbi_odom.workbench.figure import figure
 from werrimbi_odom.workbench.html import box, button, paragraphs, text
@@ -199,7 +199,10 @@ def _bars(item: Ranked, diagnosis: Diagnosis) -> None:
     sides = [one.holdout for one in diagnosis.ranking if one.holdout is not None]
     top = max(max(one.before, one.after) for one in sides)
     before, after = item.holdout.before, item.holdout.after
-    told = f"{millimetres(before)} → {millimetres(after)}"
+    unit = item.holdout.unit
+    told = " → ".join(
+        millimetres(value) if unit == "m" else error_words(value, unit) for value in (before, after)
+    )
     with box("div", "beforeafter", role="img", aria_label=f"Held-out error {told}"):
         for value, kind in ((before, "before"), (after, "after")):
             share = 100.0 * value / top if top > 0.0 and value == value else 0.0
