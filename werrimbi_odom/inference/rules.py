@@ -33,8 +33,11 @@ STRANGE_NOISE = 0.01
 """A wheel noise [m^0.5] above this (1 cm after 1 m) is no rolling wheel's: three times what the
 softest have (`TYPICAL_WHEEL_NOISE`). What a fit calls so is something else that is missing."""
 
-FAR_ABOVE_NOISE = 3.0
-"""How many times what noise promises the errors of legs must be for a model to be wrong whatever
-its likelihood says. Wheels that are all the noise there is would need a k three times the robot
-file's, which is a bad guess for wheels; a base that is 17 % wrong makes 3.3 times in a short drive
-measured to 14 mm."""
+MOST_WHEEL_NOISE = 3e-3
+"""The noise of the softest wheels that roll [m^0.5] (see `TYPICAL_WHEEL_NOISE`)."""
+
+FAR_ABOVE_NOISE = 2.5
+"""How many times what noise promises, with the softest wheels there are, the errors of legs must be
+for a model to be wrong whatever its likelihood says. Errors of ten legs that are noise are 2.5 times
+it once in 10^16; a base that is 17 % wrong makes 2.8 times in a short drive with positions of 14 mm
+alone."""

@@ -38,7 +38,7 @@ from werrimbi_odom.inference.fitting.matching import (
     match_finely,
 )
 from werrimbi_odom.inference.fitting.together import Together, together
-from werrimbi_odom.inference.rules import FAR_ABOVE_NOISE
+from werrimbi_odom.inference.rules import FAR_ABOVE_NOISE, MOST_WHEEL_NOISE
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -356,14 +356,17 @@ def far_above_noise(prepared: Prepared, model: Model) -> bool:
     """Whether a model's errors are beyond anything that its noise, and the reference's, explain.
 
     A likelihood that was free to choose the noise calls any model right; this asks with the noise
-    of the robot file, and of the reference by its own small differences. By what a usual leg is
-    promised: a first one, whose heading nobody measured, is promised anything.
+    of the softest wheels there are, and of the reference by its own small differences. By what a
+    usual leg is promised: a first one, whose heading nobody measured, is promised anything.
     """
     legs = judged_legs(prepared, model, prepared.leg)
     kept = legs.errors.chosen(~legs.outlier)
     places = slice(2, 3) if judged_by(prepared) == "heading" else slice(0, 2)
     error = np.sum(kept.error[:, places] ** 2, axis=1)
-    promised = np.trace(kept.covariance[:, places, places], axis1=1, axis2=2)
+    least = max(min(model.robot.left_wheel_noise, model.robot.right_wheel_noise), 1e-6)
+    softest = max((MOST_WHEEL_NOISE / least) ** 2 - 1.0, 0.0)
+    covariance = kept.covariance + softest * kept.wheels
+    promised = np.trace(covariance[:, places, places], axis1=1, axis2=2)
     known = np.isfinite(error)
     if not known.any():
         return False
