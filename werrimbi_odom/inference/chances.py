@@ -34,3 +34,10 @@ def fisher_above(value: float, above: float, below: float) -> float:
     from scipy.special import fdtrc
 
     return float(fdtrc(above, below, max(value, 0.0)))
+
+
+def student_quantile(share: float, degrees: float) -> float:
+    """Value below which a share of a variable of Student's t lies."""
+    from scipy.special import stdtrit
+
+    return float(stdtrit(degrees, share))

@@ -38,6 +38,6 @@ MOST_WHEEL_NOISE = 3e-3
 
 FAR_ABOVE_NOISE = 2.5
 """How many times what noise promises, with the softest wheels there are, the errors of legs must be
-for a model to be wrong whatever its likelihood says. Errors of ten legs that are noise are 2.5 times
-it once in 10^16; a base that is 17 % wrong makes 2.8 times in a short drive with positions of 14 mm
+for a model to be wrong whatever its likelihood says. Errors of ten legs that are noise are as large
+once in 10^16; a base that is 17 % wrong makes 2.8 times in a short drive with positions of 14 mm
 alone."""
