@@ -75,10 +75,7 @@ def calibrated(given: Recordings) -> Result[Calibration]:
         figures["holdout"] = _judged(given.holdout, given, found)
         parts.append(_told(figures["holdout"]))
     words = "\n\n".join(parts)
-    changes = {name: item.value for name, item in found.multipliers.items() if item.determined}
-    for name in ("left_wheel_noise", "right_wheel_noise"):
-        if found.noises[name].determined:
-            changes[name] = found.noises[name].value
+    changes = found.changes
 
     def page() -> Page:
         return calibration_page(
@@ -132,11 +129,12 @@ def _left_out(
 
 def _judged(runs: Sequence[Run], given: Recordings, result: Calibration) -> dict[str, Any]:
     """Errors over legs before and after, as every verb has them; NaN where not measured."""
-    from werrimbi_odom.inference.comparison.judged_legs import figures_of, prepare
+    from werrimbi_odom.inference.comparison.judged_legs import figures_of, judged_by, prepare
 
     prepared = prepare(runs, given.source.robot, **given.judging)
     before, after = (figures_of(prepared, each) for each in (given.source.robot, result.robot))
     return {
+        "judged_by": judged_by(prepared),
         "before": before.rmse_position_m,
         "after": after.rmse_position_m,
         "median_before": before.median_position_m,
@@ -166,6 +164,7 @@ def _json(result: Calibration) -> dict[str, Any]:
         parameters[name] = {
             "value": noise.value,
             "std": noise.std if noise.determined and result.trusted else None,
+            "interval_95": list(noise.interval) if noise.determined and result.trusted else None,
             "determined": noise.determined,
         }
     return {
@@ -174,6 +173,9 @@ def _json(result: Calibration) -> dict[str, Any]:
             "names": [knob.name for knob in result.fit.free],
             "matrix": result.correlation.tolist(),
         },
+        "numbers": result.fit.numbers,
+        "not_determined": list(result.fit.held),
+        "or_as_well": result.twin,
         "trusted": result.trusted,
         "something_else_is_missing": [
             *result.strange,

@@ -47,3 +47,10 @@ def noncentrality(degrees: float, significance: float, power: float) -> float:
     from scipy.special import chdtri, chndtrinc
 
     return float(chndtrinc(chdtri(degrees, significance), degrees, 1.0 - power))
+
+
+def student_quantile(share: float, degrees: float) -> float:
+    """Value below which a share of a variable of Student's t lies."""
+    from scipy.special import stdtrit
+
+    return float(stdtrit(degrees, share))

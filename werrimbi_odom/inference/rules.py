@@ -157,10 +157,28 @@ TYPICAL_STAMP_NOISE, STAMP_NOISE_SPREAD = 3e-3, 0.6
 another by some milliseconds; 1 and 10 ms are two standard deviations off. What asks for more than
 20 ms is a clock that is late (`reference_delay`), and must not pass for its scatter."""
 
-FAR_ABOVE_NOISE = 5.0
-"""How many times what noise promises the errors of legs must be for the model to be wrong whatever
-the likelihood says: a wheels' noise five times too small is that of another floor, and the robot
-file's stated noise is seldom wrong by more."""
+TYPICAL_GYRO_WALK, GYRO_WALK_SPREAD = 3e-4, 0.8
+"""The same of a gyro's random walk [rad/s^0.5]: 1 degree per root hour, as data sheets of gyros for
+robots have it; 0.2 to 5 are two standard deviations off."""
+
+CALIBRATION_BOUNDS = (0.25, 4.0)
+"""Multipliers of base and radii that a robot can have: wheels that skid turn it as if they stood
+1.5 (Jackal) to 2 times (four driven wheels on carpet) as far apart, and a radius entered for a
+diameter is 2. Beyond four a number was entered in another unit, which the set-up search names."""
+
+STRANGE_NOISE = 0.01
+"""A wheel noise [m^0.5] above this (1 cm after 1 m) is no rolling wheel's: three times what the
+softest have (`TYPICAL_WHEEL_NOISE`). What a fit calls so is something else that is missing."""
+
+MOST_WHEEL_NOISE = 3e-3
+"""The noise of the softest wheels that roll [m^0.5] (see `TYPICAL_WHEEL_NOISE`)."""
+
+FAR_ABOVE_NOISE = 2.5
+"""How many times what noise promises, with the softest wheels there are, the errors of legs must be
+for a model to be wrong whatever its likelihood says. Errors of ten legs that are noise are as large
+once in 10^16; a base that is 17 % wrong makes 2.8 times in a short drive with positions of 14 mm
+alone."""
+
 # ------------------------------------------------------------------------- honest covariances
 
 HONEST_WITHIN = 1.5

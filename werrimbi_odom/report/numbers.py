@@ -18,6 +18,13 @@ def length(value: float) -> str:
     return f"{millimetres:.1f} mm" if millimetres < 100.0 else f"{millimetres:.0f} mm"
 
 
+def error_words(value: float, unit: str) -> str:
+    """An error of legs, in the unit that reads best: of position [m], or of heading [rad]."""
+    if unit != "rad":
+        return length(value)
+    return f"{math.degrees(value):.2f}°" if math.isfinite(value) else "-"
+
+
 def with_std(value: float, std: float) -> str:
     """Value and standard deviation, to the two digits that this leaves."""
     if not math.isfinite(value):

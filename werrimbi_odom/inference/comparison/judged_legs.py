@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +52,7 @@ from werrimbi_odom.inference.legs.cutting import (
     joined as joined_legs,
 )
 from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.inference.rules import FAR_ABOVE_NOISE, MOST_WHEEL_NOISE
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -469,3 +471,29 @@ def _in_order(parts: list[Legs]) -> Legs:
         **columns,
     )
     return whole.chosen(np.argsort(whole.run, kind="stable"))
+
+
+def judged_by(prepared: Prepared) -> Literal["position", "heading"]:
+    """What legs are judged by: their positions, or where none are measured, their headings."""
+    return "heading" if all(measure == "heading" for measure in prepared.measures) else "position"
+
+
+def far_above_noise(prepared: Prepared, model: Model) -> bool:
+    """Whether a model's errors are beyond anything that its noise, and the reference's, explain.
+
+    A likelihood that was free to choose the noise calls any model right; this asks with the noise
+    of the softest wheels there are, and of the reference by its own small differences. By what a
+    usual leg is promised: a first one, whose heading nobody measured, is promised anything.
+    """
+    legs = judged_legs(prepared, model, prepared.leg)
+    kept = legs.errors.chosen(~legs.outlier)
+    places = slice(2, 3) if judged_by(prepared) == "heading" else slice(0, 2)
+    error = np.sum(kept.error[:, places] ** 2, axis=1)
+    least = max(min(model.robot.left_wheel_noise, model.robot.right_wheel_noise), 1e-6)
+    softest = max((MOST_WHEEL_NOISE / least) ** 2 - 1.0, 0.0)
+    covariance = kept.covariance + softest * kept.wheels
+    promised = np.trace(covariance[:, places, places], axis1=1, axis2=2)
+    known = np.isfinite(error)
+    if not known.any():
+        return False
+    return bool(np.mean(error[known]) > FAR_ABOVE_NOISE**2 * np.median(promised[known]))

@@ -6,6 +6,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
@@ -13,6 +16,7 @@ from werrimbi_odom.inference.comparison.judged_legs import (
     Prepared,
     finely,
     in_runs,
+    judged_by,
     judged_legs,
     prepare,
     statistics_of,
@@ -35,11 +39,13 @@ class Sides:
 
     before: float
     after: float
+    unit: Literal["m", "rad"] = "m"
+    """Radians where headings alone were measured, and errors are those of the heading."""
 
 
 @dataclass(frozen=True, slots=True)
 class Errors:
-    """Root mean square position errors of legs [m]."""
+    """Root mean square errors of legs: of position [m], or of headings alone [rad]."""
 
     train: float
     holdout: float
@@ -47,6 +53,7 @@ class Errors:
     holdout_median: float
     holdout_yaw: float
     """Root mean square heading error [rad]."""
+    unit: Literal["m", "rad"]
 
 
 @dataclass(frozen=True)
@@ -76,7 +83,9 @@ class Judge:
         """Errors of a model; what each held-out run has of its own is fitted to that run alone."""
         train = _figures(self.train, in_runs(self.train, model))
         holdout = _figures(self.holdout, known_at_home(model, self.fine, self.kind))
-        return Errors(train[0], holdout[0], train[1], holdout[1], holdout[2])
+        if judged_by(self.train) == "heading":
+            return Errors(train[2], holdout[2], train[3], holdout[3], holdout[2], "rad")
+        return Errors(train[0], holdout[0], train[1], holdout[1], holdout[2], "m")
 
     def at_home(self, model: Model) -> Point:
         """The model in the held-out runs: shared values as they are, the runs' own learnt."""
@@ -156,6 +165,10 @@ def judge_of(
     return Judge(robot, kind, fitted_on, kept_back, train, held, finely(held))
 
 
-def _figures(prepared: Prepared, model: Model) -> tuple[float, float, float]:
-    figures = statistics_of(judged_legs(prepared, model, prepared.leg))
-    return figures.rmse_position_m, figures.median_position_m, figures.rmse_yaw_rad
+def _figures(prepared: Prepared, model: Model) -> tuple[float, float, float, float]:
+    legs = judged_legs(prepared, model, prepared.leg)
+    figures = statistics_of(legs)
+    turned = np.abs(legs.errors.error[:, 2])
+    known = turned[np.isfinite(turned)]
+    middle = float(np.median(known)) if known.size else float("nan")
+    return figures.rmse_position_m, figures.median_position_m, figures.rmse_yaw_rad, middle

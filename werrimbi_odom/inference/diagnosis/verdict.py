@@ -10,6 +10,7 @@ from typing import Literal
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
+from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge, Sides
@@ -124,7 +125,8 @@ def told(
         rivals = tuple(dict.fromkeys((*(rivals or (found[0],)), *torn))) if torn else rivals
     verdict: Verdict
     if not found:
-        verdict = "none" if beyond is None else "unknown"
+        wrong = beyond is not None or far_above_noise(judge.train, _plain(final, set_up.robot))
+        verdict = "unknown" if wrong else "none"
     elif beyond is not None and not mistakes and len(rounds) == 1:
         verdict, found, rivals, torn = "unknown", (), (), ()
     else:
@@ -147,10 +149,10 @@ def told(
         final,
         laid,
         kind,
-        Sides(start.train, last.train),
-        Sides(start.holdout, last.holdout),
-        Sides(start.holdout_median, last.holdout_median),
-        Sides(start.holdout_yaw, last.holdout_yaw),
+        Sides(start.train, last.train, start.unit),
+        Sides(start.holdout, last.holdout, start.unit),
+        Sides(start.holdout_median, last.holdout_median, start.unit),
+        Sides(start.holdout_yaw, last.holdout_yaw, "rad"),
         judge.left_out,
     )
 
@@ -259,6 +261,6 @@ def _worth(effect: str, p_value: float | None, before: Errors, after: Errors) ->
     return Ranked(
         effect,
         p_value,
-        Sides(before.train, after.train),
-        Sides(before.holdout, after.holdout),
+        Sides(before.train, after.train, after.unit),
+        Sides(before.holdout, after.holdout, after.unit),
     )

@@ -33,7 +33,7 @@ from werrimbi_odom.inference.fitting.prediction import legs_shown, predict, pred
 from werrimbi_odom.inference.fitting.together import Together, laid_out
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.linear import solved
-from werrimbi_odom.inference.rules import TYPICAL_STAMP_NOISE
+from werrimbi_odom.inference.rules import TYPICAL_GYRO_WALK, TYPICAL_STAMP_NOISE
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -61,14 +61,22 @@ class ModelFit:
     """Of the values of `free`; singular where they are more than the `numbers` that data hold."""
     mute: tuple[Knob, ...]
     """Shared knobs that the driving does not determine; left alone."""
-    held: tuple[str, ...]
-    """Directions that it does not determine (`directions.CALIBRATED`, or knobs): as given."""
-    numbers: int
-    """How many shared numbers the data hold."""
+    ways: Directions
+    """What the data determine, in the columns of the design for the fitted knobs."""
     at_bound: tuple[Knob, ...]
     """Fitted knobs that ran against what is physically possible."""
     minus_two_log_likelihood: float
     """With what is known of wheels' noise beforehand (`noise.prior_cost`)."""
+
+    @property
+    def held(self) -> tuple[str, ...]:
+        """Directions that the driving does not determine (of `CALIBRATED`, or knobs): as given."""
+        return self.ways.held
+
+    @property
+    def numbers(self) -> int:
+        """How many shared numbers the data hold."""
+        return len(self.ways.shared)
 
     @property
     def robot(self) -> Robot:
@@ -91,6 +99,8 @@ def start_point(
         sigma_yaw or 2e-3,
         TYPICAL_STAMP_NOISE,
     )
+    if headings_alone(laid) and sigma_yaw is None:
+        guess = (*guess[:3], TYPICAL_GYRO_WALK, guess[4])
     own = tuple(_nuisances(robot, run) for run in laid.runs)
     return Point(
         Model(robot, own),
@@ -156,10 +166,9 @@ def fit_model(
         tuple(free),
         covariance[np.ix_(where, where)],
         tuple(knob for knob in shared_of(knobs) if knob not in free),
-        ways.held,
-        len(ways.shared),
+        ways,
         tuple(knob for knob in free if _at_bound(point.model.value(knob), knob)),
-        float((costs(point.variances) + prior_cost(point.variances))[0]),
+        float((costs(point.variances) + prior_cost(costs, point.variances))[0]),
     )
 
 

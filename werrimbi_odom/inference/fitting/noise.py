@@ -19,7 +19,9 @@ from werrimbi_odom.inference.fitting.likelihood import Variances, headings_alone
 from werrimbi_odom.inference.fitting.prediction import Prediction
 from werrimbi_odom.inference.fitting.together import laid_out
 from werrimbi_odom.inference.rules import (
+    GYRO_WALK_SPREAD,
     STAMP_NOISE_SPREAD,
+    TYPICAL_GYRO_WALK,
     TYPICAL_STAMP_NOISE,
     TYPICAL_WHEEL_NOISE,
     WHEEL_NOISE_SPREAD,
@@ -34,9 +36,8 @@ STAMP_NOISE = "reference_sigma_stamp"
 
 _ALL = (*NOISES, STAMP_NOISE)
 
-_KNOWN = [0, 1, 4]  # of which something is known beforehand: both wheels, stamps
-_MIDDLE = np.log([TYPICAL_WHEEL_NOISE, TYPICAL_WHEEL_NOISE, TYPICAL_STAMP_NOISE])
-_SPREAD = np.array([WHEEL_NOISE_SPREAD, WHEEL_NOISE_SPREAD, STAMP_NOISE_SPREAD])
+NORMAL_95 = 1.959963984540054
+
 _LOWEST, _HIGHEST = np.log(1e-14), np.log(10.0)
 
 
@@ -48,12 +49,28 @@ class NoiseEstimate:
     std: float
     determined: bool
 
+    @property
+    def interval(self) -> tuple[float, float]:
+        """Of 95 %, in the logarithm, where the likelihood of a scale is nearly normal."""
+        factor = float(np.exp(NORMAL_95 * self.std / self.value))
+        return self.value / factor, self.value * factor
+
 
 def with_noise(robot: Robot, noises: Mapping[str, NoiseEstimate]) -> Robot:
     """The robot with the wheels' noise put in, where it was determined."""
     wheels = ("left_wheel_noise", "right_wheel_noise")
-    found = {name: noises[name].value for name in wheels if noises[name].determined}
+    found = {
+        name: noises[name].value for name in wheels if name in noises and noises[name].determined
+    }
     return replace(robot, **found)  # type: ignore[arg-type]
+
+
+def with_noises(variances: Variances, sigmas: Mapping[str, float]) -> Variances:
+    """Variances with some standard deviations put in, by their names in `NOISES`."""
+    parts = zip(_ALL, _each(variances), strict=True)
+    return Variances(
+        *(np.array([sigmas[name] ** 2]) if name in sigmas else part for name, part in parts)
+    )
 
 
 def held_variances(
@@ -97,14 +114,26 @@ def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Varian
     return _variances(start, moving, logs[None, :])
 
 
-def prior_cost(variances: Variances) -> Floats:
+def prior_cost(costs: Costs, variances: Variances) -> Floats:
     """What is known before any drive, as minus two log-likelihood; shape (g,).
 
-    Log-normal laws of k_L, k_R and the scatter of stamps (`rules`): enough that a few legs cannot
-    call a wrong base noise, nothing beside the data of an hour.
+    Log-normal laws (`rules`) of k_L, k_R, and of a gyro's random walk and stamps: enough that a few
+    legs cannot call a wrong base or a late clock noise, nothing beside the data of an hour.
     """
-    rows = np.stack([variances.left, variances.right, variances.stamp], axis=-1)
-    return np.asarray(np.sum(((0.5 * np.log(rows) - _MIDDLE) / _SPREAD) ** 2, axis=-1))
+    middle, spread = _prior(costs)
+    rows = np.stack(_each(variances), axis=-1)
+    return np.asarray(np.sum(((0.5 * np.log(rows) - middle) / spread) ** 2, axis=-1))
+
+
+def _prior(costs: Costs) -> tuple[Floats, Floats]:
+    """Logarithms of usual standard deviations, and their spread; infinite where unknown."""
+    runs = laid_out(costs.runs)
+    middle = np.array([TYPICAL_WHEEL_NOISE, TYPICAL_WHEEL_NOISE, 1.0, 1.0, TYPICAL_STAMP_NOISE])
+    spread = np.array([WHEEL_NOISE_SPREAD, WHEEL_NOISE_SPREAD, np.inf, np.inf, STAMP_NOISE_SPREAD])
+    if costs.kind == "incremental" and headings_alone(runs):
+        seconds = float(runs.duration.sum() / runs.intervals.sum())
+        middle[3], spread[3] = TYPICAL_GYRO_WALK * np.sqrt(seconds), GYRO_WALK_SPREAD
+    return np.log(middle), spread
 
 
 def _scored(
@@ -118,7 +147,7 @@ def _scored(
     step = 1e-4
     sets = _variances(base, moving, np.concatenate([logs[None], logs + step * np.eye(logs.size)]))
     found = costs.innovations(sets, prediction)
-    cost = found.minus_two_log_likelihood() + prior_cost(sets)
+    cost = found.minus_two_log_likelihood() + prior_cost(costs, sets)
     counted = found.known.any(axis=-1)
     root = np.linalg.inv(np.linalg.cholesky(found.covariance[0, counted]))
     of_covariance = (found.covariance[1:, counted] - found.covariance[0, counted]) / step
@@ -126,24 +155,39 @@ def _scored(
     spread = (root @ of_covariance @ root.swapaxes(-1, -2)).reshape(logs.size, -1)
     shift = (root @ of_value[..., None]).reshape(logs.size, -1)
     curvature = spread @ spread.T + 2.0 * shift @ shift.T
-    known = np.zeros(moving.size)
-    known[_KNOWN] = 0.5 / _SPREAD**2
-    curvature += np.diag(known[moving])
+    curvature += np.diag(0.5 / _prior(costs)[1][moving] ** 2)
     return float(cost[0]), (cost[1:] - cost[0]) / step, curvature
 
 
 def noise_estimates(
-    costs: Costs, variances: Variances, held: tuple[bool, bool]
+    costs: Costs,
+    variances: Variances,
+    held: tuple[bool, bool],
+    information: Callable[[Variances], float] | None = None,
 ) -> dict[str, NoiseEstimate]:
     """The noises [m^0.5, m^0.5, m, rad] (and [s] of stamps) that the data can tell.
 
     What the reference does not measure has none; standard deviations are from the curvature.
+
+    Parameters
+    ----------
+    information
+        Logarithm of the determinant of the information on what was fitted beside the noise. Fitted
+        numbers take errors away that were noise; with it the estimates are those of restricted
+        likelihood (Patterson and Thompson, Biometrika 58, 1971), by one Newton step.
     """
     moving = _moving(costs, held)
     function = _in_logs(costs, variances, moving)
     sigmas = np.sqrt(_row(variances))
     logs = 2.0 * np.log(sigmas[moving])
     covariance = 2.0 * np.linalg.pinv(_hessian(function, logs), hermitian=True)
+    if information is not None:
+        step = 0.1
+        sides = logs + step * np.concatenate([np.eye(logs.size), -np.eye(logs.size)])
+        found = [information(_variances(variances, moving, row[None])) for row in sides]
+        gradient = np.subtract(*np.split(np.array(found), 2)) / (2.0 * step)
+        logs = logs + np.clip(-0.5 * covariance @ gradient, -1.0, 1.0)
+        sigmas[moving] = np.exp(0.5 * logs)
     share = np.zeros(len(_ALL))
     share[moving] = 0.5 * np.sqrt(np.maximum(np.diag(covariance), 0.0))
     told = moving | np.array([False, False, *held, False])
@@ -169,16 +213,13 @@ def _moving(costs: Costs, held: tuple[bool, bool]) -> NDArray[np.bool_]:
     )
 
 
+def _each(variances: Variances) -> tuple[Floats, ...]:
+    """In the order of `_ALL`."""
+    return (variances.left, variances.right, variances.xy, variances.yaw, variances.stamp)
+
+
 def _row(variances: Variances) -> Floats:
-    return np.array(
-        [
-            variances.left[0],
-            variances.right[0],
-            variances.xy[0],
-            variances.yaw[0],
-            variances.stamp[0],
-        ]
-    )
+    return np.array([part[0] for part in _each(variances)])
 
 
 def _variances(base: Variances, moving: NDArray[np.bool_], logs: Floats) -> Variances:
@@ -195,7 +236,7 @@ def _in_logs(
 
     def cost(logs: Floats) -> Floats:
         sets = _variances(base, moving, logs)
-        return costs(sets, prediction) + prior_cost(sets)
+        return costs(sets, prediction) + prior_cost(costs, sets)
 
     return cost
 

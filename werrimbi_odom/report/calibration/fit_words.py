@@ -7,7 +7,7 @@ from __future__ import annotations
 from werrimbi_odom.inference.calibration.any_driving import Calibration
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
-from werrimbi_odom.report.numbers import scaled_with_std
+from werrimbi_odom.report.numbers import listed, scaled_with_std
 from werrimbi_odom.report.printed import filled, table
 
 _MOST = 3  # dependences that are told
@@ -23,6 +23,19 @@ _UNITS = {
 def fit_in_words(result: Calibration) -> str:
     """Whether the model explains the drives, the values, and how far they may be believed."""
     parts = [_verdict(result), _values(result)]
+    if result.twin:
+        parts.append(filled(_twin_words(result)))
+    elif held := [name for name in result.fit.held if name != "wheel_radius_scale"]:
+        parts.append(
+            filled(f"What these drives do not determine is left as it was: {listed(held)}.")
+        )
+    if unwritten := [name for name in _UNITS if _strange(result, name)]:
+        parts.append(
+            filled(
+                f"{_capital(listed(unwritten))} stays as it was in the robot file: a noise that no "
+                "wheel has is not written."
+            )
+        )
     left_out = sum(int(legs.sum()) for legs in result.excluded)
     if left_out:
         parts.append(f"{left_out} legs on which the reference jumped were left out.")
@@ -35,6 +48,25 @@ def fit_in_words(result: Calibration) -> str:
             )
         )
     return "\n\n".join(parts)
+
+
+def _twin_words(result: Calibration) -> str:
+    base, left, right = result.twin.values()
+    return (
+        "Headings alone hold two numbers, the right and the left radius over the base. The radii's "
+        "mean is left as it was; their ratio and the base are fitted. Or else the base is right as "
+        f"it was ({base:.6f}), and the radii are {left:.6f} and {right:.6f}: no heading can tell. "
+        "A taped distance can."
+    )
+
+
+def _strange(result: Calibration, name: str) -> bool:
+    noise = result.noises.get(name)
+    return (
+        name.endswith("wheel_noise")
+        and noise is not None
+        and (noise.determined and name not in result.changes)
+    )
 
 
 def _verdict(result: Calibration) -> str:

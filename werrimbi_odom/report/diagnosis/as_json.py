@@ -63,7 +63,7 @@ def json_of(
             for each in diagnosis.otherwise
         ],
         "train": _sides(diagnosis.train),
-        "holdout": _sides(diagnosis.holdout),
+        "holdout": _sides(diagnosis.holdout, diagnosis.headings),
         "left_out": left_out_json(diagnosis.left_out),
         "remaining": [_cell(cell) for cell in _once(_sure(diagnosis.remaining))],
         "misfit": None
@@ -115,8 +115,18 @@ def _cell(cell: Dependence) -> dict[str, Any]:
     }
 
 
-def _sides(sides: Sides | None) -> dict[str, float | None]:
-    return {"before": None, "after": None} if sides is None else asdict(sides)
+def _sides(sides: Sides | None, headings: Sides | None = None) -> dict[str, Any]:
+    """Position errors [m]; of headings alone there are none, and theirs stand beside."""
+    found: dict[str, Any] = {"before": None, "after": None}
+    if sides is not None:
+        both = {"before": sides.before, "after": sides.after}
+        if sides.unit == "m":
+            found = both
+        else:
+            headings = sides
+    if headings is not None:
+        found["rmse_yaw_rad"] = {"before": headings.before, "after": headings.after}
+    return found
 
 
 def _parameters(diagnosis: Diagnosis, name: str) -> dict[str, Any]:

@@ -20,7 +20,7 @@ from werrimbi_odom.report.diagnosis.before_after_figure import before_after, bef
 from werrimbi_odom.report.diagnosis.dependence_figure import dependence_figure
 from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure, ordered_cells
 from werrimbi_odom.report.diagnosis.manoeuvre_figure import ideal_of, manoeuvre_figure
-from werrimbi_odom.report.numbers import length, p_words
+from werrimbi_odom.report.numbers import error_words, p_words
 from werrimbi_odom.report.sketches.library import effect_sketch
 from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, escaped, paled, plain
 
@@ -131,7 +131,7 @@ def _gain(sides: Sides | None) -> float:
 def _text(sides: Sides | None) -> str:
     if sides is None or not np.isfinite(sides.before):
         return ""
-    return f"{length(sides.before)} → {length(sides.after)}"
+    return " → ".join(error_words(value, sides.unit) for value in (sides.before, sides.after))
 
 
 def set_up_figure(diagnosis: Diagnosis) -> go.Figure:

@@ -20,7 +20,7 @@ from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
 from werrimbi_odom.report.diagnosis.told import Told
 from werrimbi_odom.report.diagnosis.values import Value, ranked_of, values_of
-from werrimbi_odom.report.numbers import chance_words, length, listed, quantity
+from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity
 from werrimbi_odom.report.sizes import sizes_words
 
 
@@ -121,14 +121,20 @@ def _fall(told: Told, sides: Sides) -> list[str]:
     where = f"on {judged(told)}"
     if after >= before:
         return [
-            f"What it costs: little so far; {where} the position error is {length(before)} without "
-            f"it and {length(after)} with it."
+            f"What it costs: little so far; {where} the {_of(sides)} error is "
+            f"{error_words(before, sides.unit)} without it and "
+            f"{error_words(after, sides.unit)} with it."
         ]
     part = math.sqrt(before**2 - after**2)
     return [
-        f"What it costs: {length(part)} {_each(told)}; {where} the position error falls from "
-        f"{length(before)} to {length(after)} when it is put in."
+        f"What it costs: {error_words(part, sides.unit)} {_each(told)}; {where} the {_of(sides)} "
+        f"error falls from {error_words(before, sides.unit)} to "
+        f"{error_words(after, sides.unit)} when it is put in."
     ]
+
+
+def _of(sides: Sides) -> str:
+    return "heading" if sides.unit == "rad" else "position"
 
 
 def _each(told: Told) -> str:
@@ -181,8 +187,8 @@ def whole(told: Told) -> list[str]:
     if len(diagnosis.found) < 2 or not math.isfinite(sides.before):
         return []
     return [
-        f"With all of them put in, the position error on {judged(told)} falls from "
-        f"{length(sides.before)} to {length(sides.after)}."
+        f"With all of them put in, the {_of(sides)} error on {judged(told)} falls from "
+        f"{error_words(sides.before, sides.unit)} to {error_words(sides.after, sides.unit)}."
     ]
 
 

@@ -12,7 +12,7 @@ from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.report.diagnosis.dependence import short_words
 from werrimbi_odom.report.diagnosis.values import values_of
-from werrimbi_odom.report.numbers import in_unit, length, p_words
+from werrimbi_odom.report.numbers import error_words, in_unit, p_words
 from werrimbi_odom.report.printed import table
 
 _RANKED = 8
@@ -55,11 +55,15 @@ def _ranking(diagnosis: Diagnosis) -> str:
     heads = ("effect", "chance", "train", "with it", "held out", "with it")
     if not any(row[2] for row in rows):
         return table("Effects, best first", heads[:2], [row[:2] for row in rows])
-    return table("Effects, best first (position error of legs without it and with it)", heads, rows)
+    of = "heading" if diagnosis.holdout.unit == "rad" else "position"
+    title = f"Effects, best first ({of} error of legs without it and with it)"
+    return table(title, heads, rows)
 
 
 def _fall(sides: Sides | None) -> tuple[str, str]:
-    return ("", "") if sides is None else (length(sides.before), length(sides.after))
+    if sides is None:
+        return "", ""
+    return error_words(sides.before, sides.unit), error_words(sides.after, sides.unit)
 
 
 def _map(diagnosis: Diagnosis) -> str:

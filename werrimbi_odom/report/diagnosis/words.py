@@ -29,7 +29,7 @@ from werrimbi_odom.report.diagnosis.phrases import (
 )
 from werrimbi_odom.report.diagnosis.told import Told
 from werrimbi_odom.report.left_out import jumps_words, left_out_words
-from werrimbi_odom.report.numbers import chance_words, length, listed
+from werrimbi_odom.report.numbers import chance_words, error_words, listed
 from werrimbi_odom.report.printed import filled
 
 
@@ -97,7 +97,9 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
     errors = diagnosis.holdout.after
     if math.isfinite(errors):
         like = "" if wanders or misfit else ", and they look like noise"
-        lines.append(f"Its errors on {judged(told)} are {length(errors)}{like}.")
+        lines.append(
+            f"Its errors on {judged(told)} are {error_words(errors, diagnosis.holdout.unit)}{like}."
+        )
     if wanders:
         lines.append(
             "But: for seconds together the errors are alike, more than noise is, and the parts of "
@@ -209,7 +211,8 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
     if best is not None and best.holdout is not None and best.holdout.after < best.holdout.before:
         lines.append(
             f"Nearest in the library is {best.effect}: errors fall from "
-            f"{length(best.holdout.before)} to {length(best.holdout.after)} with it. The above "
+            f"{error_words(best.holdout.before, best.holdout.unit)} to "
+            f"{error_words(best.holdout.after, best.holdout.unit)} with it. The above "
             "explains far more than it does, so that is not what it is."
         )
     lines += _at_bounds(diagnosis)

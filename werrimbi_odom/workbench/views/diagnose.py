@@ -12,7 +12,7 @@ from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_wo
 from werrimbi_odom.report.diagnosis.phrases import at_bounds
 from werrimbi_odom.report.diagnosis.told import Told
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
-from werrimbi_odom.report.numbers import chance_words, listed
+from werrimbi_odom.report.numbers import chance_words, error_words, listed
 from werrimbi_odom.report.page_text import unwrapped
 from werrimbi_odom.workbench.figure import figure
 from werrimbi_odom.workbench.html import box, button, paragraphs, text
@@ -223,7 +223,10 @@ def _bars(item: Ranked, diagnosis: Diagnosis) -> None:
     sides = [one.holdout for one in diagnosis.ranking if one.holdout is not None]
     top = max(max(one.before, one.after) for one in sides)
     before, after = item.holdout.before, item.holdout.after
-    told = f"{millimetres(before)} → {millimetres(after)}"
+    unit = item.holdout.unit
+    told = " → ".join(
+        millimetres(value) if unit == "m" else error_words(value, unit) for value in (before, after)
+    )
     with box("div", "beforeafter", role="img", aria_label=f"Held-out error {told}"):
         for value, kind in ((before, "before"), (after, "after")):
             share = 100.0 * value / top if top > 0.0 and value == value else 0.0

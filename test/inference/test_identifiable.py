@@ -1,0 +1,162 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""No number that the data do not hold, and no certainty that they do not give."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from werrimbi_odom.inference.fitting.matching import match_finely
+
+from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.effects import LIBRARY
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
+from werrimbi_odom.files.run_folder import read_run_folder
+from werrimbi_odom.inference.calibration.any_driving import calibrate
+from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, judged_by, prepare
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.rules import STRANGE_NOISE
+from werrimbi_odom.model.robot import Robot
+
+NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=5e-4, right_wheel_noise=5e-4)
+ROBOTS = (
+    Path(os.environ.get("WERRIMBI_DATA", Path(__file__).parents[3] / "shared" / "data")) / "robots"
+)
+
+
+def plain(run: Any) -> Run:
+    ticks, reference = run.ticks, run.reference
+    return Run(
+        "simulated",
+        Path("simulated"),
+        Ticks(ticks.time, ticks.left, ticks.right, {}),
+        Reference(reference.time, reference.x, reference.y, reference.yaw),
+    )
+
+
+def short_drive(seed: int) -> Run:
+    """Positions alone, 14 mm, now and then; 8.7 m of turning; the base is 17 % larger than said."""
+    random = np.random.default_rng(seed)
+    true = WhiteNoiseRobot(0.35 / 0.83, 0.05, 0.05, 5e-4, 5e-4)
+    speed, rate = wandering(random, 60.0)
+    sense = np.sign(np.convolve(random.standard_normal(rate.size), np.ones(200) / 200, "same"))
+    end = int(np.searchsorted(np.cumsum(np.abs(speed)) / 50.0, 8.7))
+    commands = speed[:end], (1.6 * rate + 0.9 * sense)[:end]
+    run = drive(true, commands, random, sigma_xy=14e-3, every=30)
+    run.reference.yaw[:] = np.nan
+    return plain(run)
+
+
+def test_a_wrong_base_is_found_in_one_short_drive_with_positions_alone() -> None:
+    run = short_drive(2)
+    found = diagnose([run], NOMINAL, LIBRARY)
+    assert (found.verdict, found.effect) == ("named", "track_width")
+    assert found.robot.wheel_separation_multiplier == pytest.approx(1.0 / 0.83, rel=0.02)
+    assert found.train.before > 0.1
+    assert found.train.after < 0.028, "what two positions of 14 mm leave of a leg"
+    result = calibrate(match_finely([run], NOMINAL, 1.0), NOMINAL)
+    assert max(result.robot.left_wheel_noise, result.robot.right_wheel_noise) < 3e-3
+    assert result.robot.wheel_separation_multiplier == pytest.approx(1.0 / 0.83, rel=0.02)
+
+
+def test_an_error_that_no_noise_makes_is_told_from_one_that_noise_makes() -> None:
+    prepared = prepare([short_drive(2)], NOMINAL)
+    right = replace(NOMINAL, wheel_separation_multiplier=1.0 / 0.83)
+    assert far_above_noise(prepared, Model(NOMINAL, ({},)))
+    assert not far_above_noise(prepared, Model(right, ({},)))
+
+
+def gyro_drive(
+    seed: int, *, late: float = 0.0, stamps: float = 0.0, rounding: float = 0.0, every: int = 1
+) -> Run:
+    """Headings alone at 50 Hz, of a robot whose base is a tenth larger than said."""
+    random = np.random.default_rng(seed)
+    true = WhiteNoiseRobot(0.385, 0.05, 0.05, 5e-4, 5e-4)
+    run = drive(true, wandering(random, 60.0), random, sigma_yaw=0.0, every=1)
+    reference = run.reference
+    reference.x[:] = reference.y[:] = np.nan
+    seen = reference.time - late + stamps * random.standard_normal(reference.time.size)
+    reference.yaw = np.interp(seen, reference.time, reference.yaw)
+    if rounding:
+        reference.yaw = rounding * np.round(reference.yaw / rounding)
+    for name in ("time", "x", "y", "yaw"):
+        setattr(reference, name, getattr(reference, name)[::every])
+    return plain(run)
+
+
+def test_a_gyro_does_not_jump_at_starts_and_fast_turns() -> None:
+    prepared = prepare([gyro_drive(seed, late=0.08) for seed in (1, 2)], NOMINAL, "incremental")
+    assert judged_by(prepared) == "heading"
+    assert not any(jumps.any() for group in prepared.groups for jumps in group.jumps)
+
+
+def test_the_scatter_of_stamps_is_told_from_noise_of_the_heading() -> None:
+    [(_, noise)] = prepare([gyro_drive(3, stamps=6e-3)], NOMINAL).noises
+    assert noise.sigma_stamp == pytest.approx(6e-3, rel=0.25)
+    [(_, noise)] = prepare([gyro_drive(3)], NOMINAL).noises
+    assert noise.sigma_stamp < 1.5e-3
+
+
+@pytest.mark.parametrize("kind", ["absolute", "incremental"])
+def test_no_reference_is_better_than_the_step_of_its_values(kind: ReferenceKind) -> None:
+    step = 2e-3
+    [(_, noise)] = prepare([gyro_drive(4, rounding=step)], NOMINAL, kind).noises
+    assert noise.sigma_yaw >= 0.999 * step / np.sqrt(12.0)
+
+
+@pytest.mark.parametrize("kind", ["absolute", "incremental"])
+@pytest.mark.parametrize("every", [1, 5])
+def test_a_gyro_gives_base_and_delay_and_nothing_else_at_any_rate(
+    kind: ReferenceKind, every: int
+) -> None:
+    runs = [gyro_drive(seed, late=0.08, stamps=2e-3, every=every) for seed in range(20, 24)]
+    found = diagnose(runs, NOMINAL, LIBRARY, kind)
+    assert set(found.found) == {"reference_delay", "track_width"}
+    assert found.rivals == ()
+    assert found.final.held == ("wheel_radius_scale",)
+    assert found.holdout.unit == "rad"
+    assert found.holdout.after < 0.2 * found.holdout.before
+
+
+def test_a_noise_that_no_wheel_has_is_not_written() -> None:
+    """The reference measures a point half a metre ahead, and is said to be good to a millimetre."""
+    random = np.random.default_rng(7)
+    run = drive(WhiteNoiseRobot(), wandering(random, 60.0), random)
+    run.reference.x += 0.5 * np.cos(run.reference.yaw)
+    run.reference.y += 0.5 * np.sin(run.reference.yaw)
+    runs = match_finely([plain(run)], NOMINAL, 1.0)
+    result = calibrate(runs, NOMINAL, sigma_xy=1e-3, sigma_yaw=2e-3)
+    strange = [name for name, item in result.noises.items() if item.value > STRANGE_NOISE]
+    assert strange
+    assert not result.trusted
+    for name in strange:
+        assert name not in result.changes
+        assert getattr(result.robot, name) == getattr(NOMINAL, name)
+
+
+@pytest.mark.skipif(not ROBOTS.exists(), reason=f"no recorded robots at {ROBOTS} (WERRIMBI_DATA)")
+@pytest.mark.parametrize("kind", ["absolute", "incremental"])
+@pytest.mark.parametrize("every", [1, 2, 10])
+def test_the_kobuki_has_a_late_gyro_and_a_wide_base_at_any_rate(
+    kind: ReferenceKind, every: int
+) -> None:
+    folder = ROBOTS / "kobuki_sound"
+    runs = [read_run_folder(folder / f"part_{number}") for number in range(3)]
+    thinned = []
+    for run in runs:
+        assert run.reference is not None
+        rows = np.arange(0, run.reference.time.size, every)
+        thinned.append(replace(run, reference=run.reference.chosen(rows)))
+    robot = read_robot_file(folder / "robot.yaml").robot
+    found = diagnose(thinned[:2], robot, LIBRARY, kind, holdout=thinned[2:])
+    assert set(found.found) == {"reference_delay", "track_width"}
+    assert found.rivals == ()
+    assert found.robot.wheel_separation_multiplier == pytest.approx(1.035, abs=0.004)
+    assert found.holdout.after < 0.35 * found.holdout.before
