@@ -18,8 +18,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
-from werrimbi_odom.model.pieces import PieceRule
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.stretch import PieceRule, allowed_lead, off_arc
 
 # Steps looked at together. How many is a matter of speed; no figure depends on it.
 _FEW, _MANY = 64, 4096
@@ -174,8 +174,8 @@ class _Cutter:
 
     def _allowed_lead(self, u: Floats) -> Floats | float:
         if self._travelled[-1] >= self.rule.settled:
-            return self.rule.allowed_lead(1.0)
-        return self.rule.allowed_lead(self._share(self._travelled[-1] + u))
+            return allowed_lead(self.rule, 1.0)
+        return allowed_lead(self.rule, self._share(self._travelled[-1] + u))
 
     def _share(self, travelled: Floats) -> Floats:
         """Of the full tolerance, that holds after so much travel u since the start of the run."""
@@ -193,7 +193,7 @@ class _Cutter:
         dx, dy = displacement(BodyMotion(*motion), self.yaw[start])
         miss_x = self.x[begin + 1 : end + 1] - self.x[start] - dx
         miss_y = self.y[begin + 1 : end + 1] - self.y[start] - dy
-        off = self.rule.off_arc(u, self._share(travelled + u), miss_x, miss_y) > 0.0
+        off = off_arc(self.rule, u, self._share(travelled + u), miss_x, miss_y) > 0.0
         off[starts[(starts >= begin) & (starts < end)] - begin] = False
         return begin + _until(off)
 

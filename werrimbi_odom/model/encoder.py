@@ -166,8 +166,9 @@ class Encoder:
     def _advance(self, reading: Reading, duration: float) -> WheelStep | None:
         assert self._last is not None
         last, robot = self._last, self.robot
-        left = wrapped(reading.left - last.left, robot.encoder_bits)
-        right = wrapped(reading.right - last.right, robot.encoder_bits)
+        left, right = reading.left - last.left, reading.right - last.right
+        if robot.encoder_bits:
+            left, right = self._unwrapped(left, right)
         lasted = self.pace.lasted(duration)
         if self._was_reset(reading, left, right, lasted):
             self.tally.resets += 1
@@ -182,9 +183,11 @@ class Encoder:
                 return None
             self.tally.jumps += 1
             return self._anchor_anew(reading, duration)
-        self.tally.wraps += int(left != reading.left - last.left)
-        self.tally.wraps += int(right != reading.right - last.right)
-        self.tally.gaps += int(duration > self.limits.gap_duration)
+        if robot.encoder_bits:
+            self.tally.wraps += int(left != reading.left - last.left)
+            self.tally.wraps += int(right != reading.right - last.right)
+        if duration > self.limits.gap_duration:
+            self.tally.gaps += 1
         self._accept(reading, duration)
         turns = max(
             abs(left) / robot.left_ticks_per_revolution,
@@ -195,6 +198,9 @@ class Encoder:
         left_travel, right_travel = left * robot.left_tick, right * robot.right_tick
         self._left_speed, self._right_speed = left_travel / lasted, right_travel / lasted
         return WheelStep(reading.time, duration, left_travel, right_travel)
+
+    def _unwrapped(self, left: float, right: float) -> tuple[float, float]:
+        return wrapped(left, self.robot.encoder_bits), wrapped(right, self.robot.encoder_bits)
 
     def _anchor_anew(self, reading: Reading, duration: float) -> WheelStep:
         lost_left, lost_right = self._left_speed * duration, self._right_speed * duration
@@ -241,15 +247,17 @@ class Encoder:
         last, robot = self._last, self.robot
         per_left, per_right = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
         rate = reach_rate(robot, self.limits, self.pace.fastest)
-        if reading.left == 0 and reading.right == 0:
-            far = max(abs(left) / per_left, abs(right) / per_right)
+        reach = lasted * rate
+        new_left, new_right = reading.left / per_left, reading.right / per_right
+        if abs(new_left) > reach and abs(new_right) > reach:
+            return False
+        step_left, step_right = left / per_left, right / per_right
+        if new_left == new_right == 0.0:
+            far = max(abs(step_left), abs(step_right))
             if far > self.pace.usual * rate:
                 return True
-        reach = lasted * rate
-        return fell_to_zero(
-            reading.left / per_left, last.left / per_left, left / per_left, reach
-        ) or fell_to_zero(
-            reading.right / per_right, last.right / per_right, right / per_right, reach
+        return fell_to_zero(new_left, last.left / per_left, step_left, reach) or fell_to_zero(
+            new_right, last.right / per_right, step_right, reach
         )
 
 

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
+from functools import cached_property
 from typing import Literal
 
 from werrimbi_odom.model.effect import AppliedEffect
@@ -14,7 +15,7 @@ CovarianceOrder = Literal["first", "exact"]
 COVARIANCE_ORDERS: tuple[CovarianceOrder, ...] = ("first", "exact")
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Robot:
     """A differential-drive robot; names as in diff_drive_controller, units SI.
 
@@ -80,18 +81,18 @@ class Robot:
                 f"encoder_bits must be 0 (never wraps) or from 2 to 64, it is {self.encoder_bits}"
             )
 
-    @property
+    @cached_property
     def track(self) -> float:
         """Effective wheel separation B [m]."""
         return self.wheel_separation * self.wheel_separation_multiplier
 
-    @property
+    @cached_property
     def left_tick(self) -> float:
         """Travel of the left wheel for one count [m]."""
         radius = self.wheel_radius * self.left_wheel_radius_multiplier
         return 2.0 * math.pi * radius / self.left_ticks_per_revolution
 
-    @property
+    @cached_property
     def right_tick(self) -> float:
         """Travel of the right wheel for one count [m]."""
         radius = self.wheel_radius * self.right_wheel_radius_multiplier
