@@ -132,6 +132,7 @@ def rows_together(count: int | None) -> Iterator[None]:
         (recorded_counts, "_BLOCK", 2 * count),
         (cutting, "_FEW", count),
         (cutting, "_MANY", 3 * count),
+        (cutting, "_SHORT", count),
         (course, "_BLOCK", count),
     ]
     with ExitStack() as stack:

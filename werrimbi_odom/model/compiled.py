@@ -11,23 +11,13 @@ asked to, and the node never asks.
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Callable
 from functools import cache
 from hashlib import sha256
 from pathlib import Path
-from types import FunctionType
 from typing import Any, TypeVar, cast
 
-from werrimbi_odom.model.covariance import entire, entire_of_float
-from werrimbi_odom.model.motion import cos_sin, cos_sin_of_float, sinc, sinc_of_float
-
-_OF_FLOATS: dict[Any, Any] = {
-    sinc: sinc_of_float,
-    cos_sin: cos_sin_of_float,
-    entire: entire_of_float,
-}
-"""Functions that tell floats from arrays, and what is left of them for floats."""
+from werrimbi_odom.model.of_floats import copied_for_floats
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -42,28 +32,16 @@ def compiled(function: Function) -> Function | None:
         It compiles when it is first called, or loads what an earlier process has compiled. None
         where there is no numba, or no folder that it may write to.
     """
-    if importlib.util.find_spec("numba") is None:
+    try:
+        import numba
+    except ImportError:
         return None
-    import numba
-
-    own = _for_floats(cast("FunctionType", function), numba.njit(error_model="numpy"))
+    own = copied_for_floats(function, numba.njit(error_model="numpy"))
     own.__qualname__ += f"_{_digest()}"  # names the file that it is kept in
     try:
         return cast("Function", numba.njit(cache=True, error_model="numpy")(own))
     except RuntimeError:  # no folder to keep it in; to compile anew each time costs too much
         return None
-
-
-def _for_floats(function: FunctionType, translate: Callable[[Any], Any]) -> FunctionType:
-    """A copy of a function that calls translated functions in place of the model's own."""
-    names = dict(function.__globals__)
-    for name in function.__code__.co_names:
-        called = _OF_FLOATS.get(names.get(name), names.get(name))
-        if isinstance(called, FunctionType) and called.__module__.startswith(__package__):
-            names[name] = translate(_for_floats(called, translate))
-    copy = FunctionType(function.__code__, names, function.__name__, function.__defaults__)
-    copy.__module__, copy.__qualname__ = function.__module__, function.__qualname__
-    return copy
 
 
 def _digest() -> str:

@@ -17,11 +17,15 @@ from werrimbi_odom.model.driving import Channels, DrivenStep, Driving
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder import Encoder, EncoderLimits, EncoderTally, WheelStep
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
+from werrimbi_odom.model.of_floats import of_floats
 from werrimbi_odom.model.pieces import OpenPiece, Piece
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.stretch import PieceRule, PieceTolerance, Stretch
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known
+
+_displacement = of_floats(displacement)
+_after_stretch = of_floats(after_stretch)
 
 
 class TwistCovariance(NamedTuple):
@@ -243,7 +247,7 @@ class Odometer:
 
     def _moved(self, motion: BodyMotion[float]) -> Pose:
         x, y, yaw = self._pose
-        dx, dy = displacement(motion, yaw)
+        dx, dy = _displacement(motion, yaw)
         return Pose(x + dx, y + dy, yaw + motion.turn)
 
     def _cut(
@@ -284,7 +288,7 @@ def errors_along(
     if errors.moments is not None:
         return after_piece(errors, stretch.motion, noise, start.yaw, dx, dy)
     return Uncertainty(
-        after_stretch(errors.covariance, stretch.motion, noise, stretch.chord, dx, dy)
+        _after_stretch(errors.covariance, stretch.motion, noise, stretch.chord, dx, dy)
     )
 
 

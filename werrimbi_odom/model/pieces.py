@@ -10,6 +10,7 @@ from typing import Literal
 
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
+from werrimbi_odom.model.of_floats import of_floats
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.stretch import PieceRule, Stretch, extended
 from werrimbi_odom.model.stretch import PieceTolerance as PieceTolerance
@@ -23,6 +24,8 @@ LINE_CURVATURE = 0.05
 """... and its wheels differ by no more than this share of their travel."""
 SPIN_RADIUS = 0.05
 """A spin turns about a point no further from the axle's middle than this share of the track."""
+
+_extended = of_floats(extended)
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +90,7 @@ class OpenPiece:
         self, rule: PieceRule, travel: WheelTravel[float], motion: BodyMotion[float], pose: Pose
     ) -> bool:
         """Take one more step that ends at `pose`, or leave the piece as it is and return False."""
-        goes_on, self.stretch = extended(
+        goes_on, self.stretch = _extended(
             rule, self.start, self.travelled, self.stretch, travel, motion, pose
         )
         return goes_on
