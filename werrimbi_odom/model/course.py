@@ -18,7 +18,6 @@ from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.covariance import (
     PathNoise,
     PoseCovariance,
-    WheelNoise,
     carried,
     noise_of_wheel_variances,
     path_noise,
@@ -96,7 +95,7 @@ def _marched(
     block = np.empty((5, _BLOCK))
     reset: dict[int, PoseCovariance[float]] = {}
     at, pieces = Marching(start, covariance, start, covariance, 0.0, NOTHING), 0
-    wheels = WheelNoise.of(robot)
+    wheels = robot.wheel_noise
     for some in _blocks(count, lost):
         if some.start in lost:
             if pieces:

@@ -23,7 +23,7 @@ import numpy as np
 
 from werrimbi_odom.model.motion import BodyMotion, Chord, Number, chord_of, cos_sin
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.robot import Robot, WheelNoise
 
 Entry = TypeVar("Entry")  # a Number: mypy takes no methods on a tuple of a restricted type
 
@@ -64,23 +64,9 @@ class PathNoise(NamedTuple, Generic[Number]):
     c: Number
 
 
-class WheelNoise(NamedTuple):
-    """What makes noise of travel: a robot's k_L² and k_R² [m], and its track [m]."""
-
-    left: float
-    right: float
-    track: float
-
-    @staticmethod
-    def of(robot: Robot) -> WheelNoise:
-        """The noise of a robot's wheels."""
-        left, right = robot.left_wheel_noise, robot.right_wheel_noise
-        return WheelNoise(left * left, right * right, robot.track)
-
-
 def path_noise(robot: Robot, left: Number, right: Number) -> PathNoise[Number]:
     """Noise of wheels that travelled `left` and `right` metres without reversing (equation 4)."""
-    return path_noise_of(WheelNoise.of(robot), left, right)
+    return path_noise_of(robot.wheel_noise, left, right)
 
 
 def path_noise_of(wheels: WheelNoise, left: Number, right: Number) -> PathNoise[Number]:
@@ -167,13 +153,15 @@ def carried(covariance: PoseCovariance[Number], dx: Number, dy: Number) -> PoseC
 
 def plus(one: PoseCovariance[Number], other: PoseCovariance[Number]) -> PoseCovariance[Number]:
     """Covariance of the sum of two independent errors, both given in one frame."""
+    xx, xy, xyaw, yy, yyaw, yawyaw = one
+    more_xx, more_xy, more_xyaw, more_yy, more_yyaw, more_yawyaw = other
     return PoseCovariance(
-        one.xx + other.xx,
-        one.xy + other.xy,
-        one.xyaw + other.xyaw,
-        one.yy + other.yy,
-        one.yyaw + other.yyaw,
-        one.yawyaw + other.yawyaw,
+        xx + more_xx,
+        xy + more_xy,
+        xyaw + more_xyaw,
+        yy + more_yy,
+        yyaw + more_yyaw,
+        yawyaw + more_yawyaw,
     )
 
 

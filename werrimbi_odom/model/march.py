@@ -16,12 +16,12 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.model.covariance import (
     PoseCovariance,
-    WheelNoise,
     after_stretch,
     path_noise_of,
 )
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.model.robot import WheelNoise
 from werrimbi_odom.model.stretch import NOTHING, PieceRule, Stretch, extended
 
 

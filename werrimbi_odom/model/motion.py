@@ -39,8 +39,9 @@ class BodyMotion(NamedTuple, Generic[Number]):
 
 def wheels_to_body(travel: WheelTravel[Number], track: float) -> BodyMotion[Number]:
     """Body motion of a wheel travel: D = (L + R) / 2 and Δ = (R - L) / B."""
-    along = 0.5 * (travel.left + travel.right)
-    return BodyMotion(along, 0.0 * along, (travel.right - travel.left) / track)
+    left, right = travel
+    along = 0.5 * (left + right)
+    return BodyMotion(along, 0.0 * along, (right - left) / track)
 
 
 @overload
@@ -85,7 +86,11 @@ def displacement(motion: BodyMotion[Number], yaw: Number) -> tuple[Number, Numbe
     -------
     dx, dy : float or ndarray, [m]
     """
-    return along_chord(motion, chord_of(motion.turn, yaw))
+    along, sideways, turn = motion
+    half = 0.5 * turn
+    shrink = sinc(half)
+    cos, sin = cos_sin(yaw + half)
+    return shrink * (cos * along - sin * sideways), shrink * (sin * along + cos * sideways)
 
 
 class Chord(NamedTuple, Generic[Number]):
@@ -107,7 +112,7 @@ def chord_of(turn: Number, yaw: Number) -> Chord[Number]:
 
 
 def along_chord(motion: BodyMotion[Number], chord: Chord[Number]) -> tuple[Number, Number]:
-    """The displacement [m] of a motion, given the chord of its turn."""
+    """`displacement` [m] of a motion, given the chord of its turn."""
     along, sideways, _ = motion
     shrink, cos, sin = chord
     return shrink * (cos * along - sin * sideways), shrink * (sin * along + cos * sideways)

@@ -11,7 +11,7 @@ from werrimbi_odom.model.covariance import (
     PoseCovariance,
     after_stretch,
     noise_of_wheel_variances,
-    path_noise,
+    path_noise_of,
 )
 from werrimbi_odom.model.driving import Channels, DrivenStep, Driving
 from werrimbi_odom.model.effect import wiring_of
@@ -25,6 +25,7 @@ from werrimbi_odom.model.stretch import PieceRule, PieceTolerance, Stretch
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known
 
 _displacement = of_floats(displacement)
+_path_noise = of_floats(path_noise_of)
 _after_stretch = of_floats(after_stretch)
 
 
@@ -283,7 +284,7 @@ def errors_along(
     robot: Robot, start: Pose, errors: Uncertainty[float], stretch: Stretch, pose: Pose
 ) -> Uncertainty[float]:
     """Errors of a pose to which a stretch has led, from those of the pose at its start."""
-    noise = path_noise(robot, stretch.left, stretch.right)
+    noise = _path_noise(robot.wheel_noise, stretch.left, stretch.right)
     dx, dy = pose.x - start.x, pose.y - start.y
     if errors.moments is not None:
         return after_piece(errors, stretch.motion, noise, start.yaw, dx, dy)

@@ -7,12 +7,23 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, fields
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 from werrimbi_odom.model.effect import AppliedEffect
 
 CovarianceOrder = Literal["first", "exact"]
 COVARIANCE_ORDERS: tuple[CovarianceOrder, ...] = ("first", "exact")
+
+
+class WheelNoise(NamedTuple):
+    """What makes noise of travel."""
+
+    left: float
+    """k_L² [m]."""
+    right: float
+    """k_R² [m]."""
+    track: float
+    """[m]"""
 
 
 @dataclass(frozen=True)
@@ -85,6 +96,12 @@ class Robot:
     def track(self) -> float:
         """Effective wheel separation B [m]."""
         return self.wheel_separation * self.wheel_separation_multiplier
+
+    @cached_property
+    def wheel_noise(self) -> WheelNoise:
+        """What makes noise of travel."""
+        left, right = self.left_wheel_noise, self.right_wheel_noise
+        return WheelNoise(left * left, right * right, self.track)
 
     @cached_property
     def left_tick(self) -> float:

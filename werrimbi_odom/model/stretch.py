@@ -156,17 +156,21 @@ def extended(
     right_low = right if right < right_low else right_low
     right_high = right if right > right_high else right_high
     u, v = abs(left) + abs(right), abs(right) - abs(left)
-    share = min(1.0, (earlier + u) / rule.settled)
+    share = 1.0 if earlier >= rule.settled else min(1.0, (earlier + u) / rule.settled)
+    slope = 0.0
     if u > 0.0:
         lead = allowed_lead(rule, share)
-        low, high = max(low, (v - lead) / u), min(high, (v + lead) / u)
+        slope, lowest, highest = v / u, (v - lead) / u, (v + lead) / u
+        low = lowest if lowest > low else low
+        high = highest if highest < high else high
     chord = chord_of(whole.turn, start.yaw)
     if not empty:
-        if _reversed(left, left_low, left_high, rule.flicker):
-            return False, stretch
-        if _reversed(right, right_low, right_high, rule.flicker):
-            return False, stretch
-        if u > 0.0 and not low <= v / u <= high:
+        flicker = rule.flicker
+        if (
+            (u > 0.0 and not low <= slope <= high)
+            or _reversed(left, left_low, left_high, flicker)
+            or _reversed(right, right_low, right_high, flicker)
+        ):
             return False, stretch
         dx, dy = along_chord(whole, chord)
         if off_arc(rule, u, share, pose.x - start.x - dx, pose.y - start.y - dy) > 0.0:
