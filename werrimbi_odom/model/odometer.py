@@ -308,8 +308,9 @@ def twist_covariance(robot: Robot, step: WheelStep) -> TwistCovariance:
     a variance of a sixth of a squared count beside the noise of the wheel (equation 4).
     """
     _, duration, left, right, left_lost, right_lost = step
-    left = robot.left_wheel_noise**2 * abs(left) + robot.left_tick**2 / 6.0
-    right = robot.right_wheel_noise**2 * abs(right) + robot.right_tick**2 / 6.0
-    a, b, c = noise_of_wheel_variances(left + left_lost, right + right_lost, robot.track)
+    k_left, k_right, track = robot.wheel_noise
+    left = k_left * abs(left) + robot.left_tick * robot.left_tick / 6.0
+    right = k_right * abs(right) + robot.right_tick * robot.right_tick / 6.0
+    a, b, c = noise_of_wheel_variances(left + left_lost, right + right_lost, track)
     scale = 1.0 / (duration * duration)
     return TwistCovariance(a * scale, c * scale, b * scale)
