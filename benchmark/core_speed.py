@@ -2,8 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """Speed of the numeric core: closed form over pieces against plain propagation tick by tick.
 
-Both are timed by turns in one run, so their ratio holds whatever else the machine does. What goes
-tick by tick is timed on a slice and scaled: it grows in proportion to the ticks.
+All are timed by turns in one run, in processor time, so their ratio holds whatever else the machine
+does. What goes tick by tick is timed on a slice and scaled: it grows in proportion to the ticks.
+Recorded runs go along machine code where numba is installed, and along arrays where it is not.
 
     python benchmark/core_speed.py [--most TICKS]
 """
@@ -11,11 +12,13 @@ tick by tick is timed on a slice and scaled: it grows in proportion to the ticks
 from __future__ import annotations
 
 import argparse
+import importlib.util
 import sys
 import time
 from collections.abc import Callable, Iterator
 from functools import partial
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 from rich.console import Console
@@ -26,6 +29,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from benchmark.per_tick import per_tick
 from test.model.drives import ROBOT, Ticks, random_drive, square
 from test.plain_twin import plain_run
+from werrimbi_odom.model import course
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -47,44 +51,70 @@ def main() -> None:
         "squares at 200 Hz": square(rate=200.0, laps=120),
         "the recorded square, again and again": recorded(),
         "wandering without rest": random_drive(0, duration=20_000.0),
+        "wheels at random": at_random(MILLION),
     }
+    first_call = loading()
+    if first_call is not None:
+        console.print(f"machine code: {first_call:.2f} s of CPU for its first call in a process")
     console.print(race({name: first(drive, MILLION) for name, drive in drives.items()}))
     console.print(growth(square(rate=50.0, laps=480 * max(most // MILLION, 1)), most))
 
 
 def race(drives: dict[str, Ticks]) -> Table:
     """All ways to odometry on the same ticks."""
-    table = titled("A million ticks: pose and covariance at each (odometer, plain: scaled)")
+    table = titled("A million ticks: pose and covariance at each, CPU time (and of plain Python)")
     for heading in (
         "drive",
         "pieces",
-        "trajectory",
+        "numba",
+        "arrays",
         "odometer",
+        "asked for all",
         "plain numpy",
         "plain Python",
-        "Python/trajectory",
     ):
         table.add_column(heading, justify="left" if heading == "drive" else "right")
     for name, ticks in drives.items():
         part, scale = first(ticks, SLICE), ticks.time.size / SLICE
         agree(part)
         counts = part.left.tolist(), part.right.tolist()
-        whole, live, plain, floats = shortest(
+        machine, arrays, live, asked, plain, floats = shortest(
             partial(trajectory, ROBOT, *ticks),
+            partial(in_arrays, ticks),
             partial(streamed, part),
+            partial(streamed, part, ask=True),
             partial(plain_run, ROBOT, part.left, part.right),
             partial(per_tick, ROBOT, *counts),
         )
+        times = [machine, arrays, live * scale, asked * scale, plain * scale]
         table.add_row(
             name,
             f"{len(trajectory(ROBOT, *ticks).pieces):,}",
-            f"{whole:.2f} s",
-            f"{live * scale:.1f} s",
-            f"{plain * scale:.1f} s",
-            f"{floats * scale:.1f} s",
-            f"{floats * scale / whole:.0f} ×",
+            *(f"{each:.2f} s ({each / (floats * scale):.2f})" for each in times),
+            f"{floats * scale:.2f} s",
         )
     return table
+
+
+def in_arrays(ticks: Ticks) -> None:
+    """A recorded run as it goes where numba is not installed."""
+    with patch.object(course, "machine_for", lambda steps: None):
+        trajectory(ROBOT, *ticks)
+
+
+def loading() -> float | None:
+    """CPU time [s] of the first run along machine code in a process; None without numba."""
+    if importlib.util.find_spec("numba") is None:
+        return None
+    begin = time.process_time()
+    trajectory(ROBOT, *at_random(course.WORTH_COMPILING + 1))
+    return time.process_time() - begin
+
+
+def at_random(count: int) -> Ticks:
+    """Every step another, as no robot drives: a piece lasts one or two of them."""
+    left, right = np.cumsum(np.random.default_rng(0).integers(-20, 60, (2, count)), axis=1)
+    return Ticks(np.arange(count) / 50.0, left, right)
 
 
 def agree(ticks: Ticks) -> None:
@@ -122,13 +152,13 @@ def growth(ticks: Ticks, most: int) -> Table:
 
 
 def shortest(*works: Callable[[], object]) -> list[float]:
-    """Shortest time of each [s], taken by turns: what the machine can do when left alone."""
+    """Shortest CPU time of each [s], taken by turns: what the machine can do when left alone."""
     best = [float("inf")] * len(works)
     for _ in range(ROUNDS):
         for at, work in enumerate(works):
-            begin = time.perf_counter()
+            begin = time.process_time()
             work()
-            best[at] = min(best[at], time.perf_counter() - begin)
+            best[at] = min(best[at], time.process_time() - begin)
     return best
 
 
@@ -152,11 +182,13 @@ def messages(ticks: Ticks, begin: int, end: int) -> Iterator[tuple[float, int, i
         yield from zip(*some, strict=True)
 
 
-def streamed(ticks: Ticks) -> None:
-    """The record through the odometer, message by message."""
+def streamed(ticks: Ticks, ask: bool = False) -> None:
+    """The record through the odometer; `ask`ed for all that the node publishes."""
     odometer = Odometer(ROBOT)
     for message in zip(*(part.tolist() for part in ticks), strict=True):
-        odometer.update(*message)
+        estimate = odometer.update(*message)
+        if ask and estimate is not None:
+            _ = estimate.covariance, estimate.twist, estimate.twist_covariance
 
 
 def titled(title: str) -> Table:

@@ -6,11 +6,11 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from werrimbi_odom.inference.fitting.matching import match
 
 from test.inference.test_fit import NOMINAL, TRUTH, runs_of
 from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.inference.legs.cutting import match
 
 NORMAL_95 = 1.959963984540054
 

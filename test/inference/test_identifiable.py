@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from werrimbi_odom.inference.fitting.matching import match_finely
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY
@@ -22,6 +21,7 @@ from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, judged_by, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.rules import STRANGE_NOISE
 from werrimbi_odom.model.robot import Robot
 

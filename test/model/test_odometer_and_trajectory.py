@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import sys
 from array import array
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
@@ -18,7 +17,7 @@ from hypothesis import strategies as st
 
 from test.model.drives import ROBOT, Ticks, random_drive, square, then
 from test.model.records import Record, records
-from werrimbi_odom.model import cutting, recorded_counts
+from werrimbi_odom.model import course, cutting, recorded_counts
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.odometer import Odometer
@@ -26,8 +25,6 @@ from werrimbi_odom.model.pieces import Piece, PieceTolerance
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
-
-trajectory_module = sys.modules[trajectory.__module__]
 
 TOLERANCE = 1e-9
 
@@ -135,7 +132,8 @@ def rows_together(count: int | None) -> Iterator[None]:
         (recorded_counts, "_BLOCK", 2 * count),
         (cutting, "_FEW", count),
         (cutting, "_MANY", 3 * count),
-        (trajectory_module, "_BLOCK", count),
+        (cutting, "_SHORT", count),
+        (course, "_BLOCK", count),
     ]
     with ExitStack() as stack:
         for size in sizes:

@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,6 @@ import numpy as np
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.files.start_pose import Start
 from werrimbi_odom.model.covariance import PoseCovariance
-from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pose import Floats, Pose, between, compose, wrap
 from werrimbi_odom.model.shown import Path as ShownPath
 from werrimbi_odom.model.trajectory import Trajectory
@@ -55,7 +55,7 @@ class Figures:
     @property
     def distance(self) -> float:
         """Travel of the axle's midpoint, both directions counted [m]."""
-        return math.fsum(abs(piece.length) for piece in self.driven.pieces)
+        return math.fsum(length for kind in self._pieces.values() for length, _ in kind)
 
     @property
     def duration(self) -> float:
@@ -82,9 +82,13 @@ class Figures:
         across = sin * sin * p.xx - 2.0 * cos * sin * p.xy + cos * cos * p.yy
         return _root(along), _root(across), _root(p.yawyaw)
 
-    def pieces(self, kind: str) -> list[Piece]:
-        """The pieces of a kind."""
-        return [piece for piece in self.driven.pieces if piece.kind == kind]
+    @cached_property
+    def _pieces(self) -> dict[str, list[tuple[float, float]]]:
+        """Length [m] and turn [rad] of every piece, without their signs, by kind."""
+        found: dict[str, list[tuple[float, float]]] = {kind: [] for kind in KINDS}
+        for piece in self.driven.pieces:
+            found[piece.kind].append((abs(piece.length), abs(piece.turn)))
+        return found
 
     def as_json(self) -> dict[str, Any]:
         """For --json."""
@@ -95,11 +99,11 @@ class Figures:
             "duration_s": self.duration,
             "pieces": {
                 kind: {
-                    "count": len(self.pieces(kind)),
-                    "length_m": math.fsum(abs(piece.length) for piece in self.pieces(kind)),
-                    "turn_rad": math.fsum(abs(piece.turn) for piece in self.pieces(kind)),
+                    "count": len(pieces),
+                    "length_m": math.fsum(length for length, _ in pieces),
+                    "turn_rad": math.fsum(turn for _, turn in pieces),
                 }
-                for kind in KINDS
+                for kind, pieces in self._pieces.items()
             },
             "start": {**_pose_json(self.start.pose), "says": self.start.told},
             "final": {
@@ -118,7 +122,8 @@ class Figures:
     def rows(self) -> Iterator[tuple[str, str]]:
         """For the table on the terminal."""
         yield "distance", f"{self.distance:.3f} m in {self.duration:.1f} s"
-        yield "pieces", ", ".join(_counted(len(self.pieces(kind)), kind) for kind in KINDS)
+        counts = (_counted(len(pieces), kind) for kind, pieces in self._pieces.items())
+        yield "pieces", ", ".join(counts)
         yield "start", f"{_told(self.start.pose)}: {self.start.told}"
         yield "final pose", _told(self.final)
         along, across, heading = self.sigmas

@@ -21,9 +21,9 @@ from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 
-from werrimbi_odom.model.motion import BodyMotion, Number
+from werrimbi_odom.model.motion import BodyMotion, Chord, Number, chord_of, cos_sin
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.robot import Robot, WheelNoise
 
 Entry = TypeVar("Entry")  # a Number: mypy takes no methods on a tuple of a restricted type
 
@@ -66,14 +66,20 @@ class PathNoise(NamedTuple, Generic[Number]):
 
 def path_noise(robot: Robot, left: Number, right: Number) -> PathNoise[Number]:
     """Noise of wheels that travelled `left` and `right` metres without reversing (equation 4)."""
-    left_variance = robot.left_wheel_noise**2 * abs(left)
-    right_variance = robot.right_wheel_noise**2 * abs(right)
-    return noise_of_wheel_variances(left_variance, right_variance, robot.track)
+    return path_noise_of(robot.wheel_noise, left, right)
+
+
+def path_noise_of(wheels: WheelNoise, left: Number, right: Number) -> PathNoise[Number]:
+    """The same, from what makes the noise."""
+    return noise_of_wheel_variances(
+        wheels.left * abs(left), wheels.right * abs(right), wheels.track
+    )
 
 
 def noise_of_wheel_variances(left: Number, right: Number, track: float) -> PathNoise[Number]:
     """Noise of the body from the variances of the two wheels' travel [m²]."""
-    return PathNoise(0.25 * (left + right), (left + right) / track**2, 0.5 * (right - left) / track)
+    both = left + right
+    return PathNoise(0.25 * both, both / (track * track), 0.5 * (right - left) / track)
 
 
 def piece_covariance(
@@ -96,10 +102,18 @@ def piece_covariance(
     PoseCovariance
         In the frame in which `yaw` is measured.
     """
+    return covariance_over(motion, noise, chord_of(motion.turn, yaw))
+
+
+def covariance_over(
+    motion: BodyMotion[Number], noise: PathNoise[Number], chord: Chord[Number]
+) -> PoseCovariance[Number]:
+    """`piece_covariance`, given the piece's chord."""
     along, sideways, turn = motion
     a, b, c = noise
+    S, cos, sin = chord
     h = 0.5 * turn
-    S, T, U, V = _entire(h)
+    T, U, V = entire(h, S)
     # The piece in its chord frame: x along the heading half way.
     m_x, m_y = -0.5 * h * V, 0.5 * S  # mean lever of the heading noise, per travel
     m_xx, m_yy, m_xy = 0.25 * h * h * U, 0.25 * (S * S + 0.5 * T), -0.25 * h * S * V
@@ -117,7 +131,7 @@ def piece_covariance(
     p_xy = 0.5 * c * along * S * S + b * (cross * (m_xx - m_yy) + (along2 - sideways2) * m_xy)
     p_xyaw = c * S + b * (along * m_x - sideways * m_y)
     p_yyaw = b * (along * m_y + sideways * m_x)
-    return _turned(PoseCovariance(p_xx, p_xy, p_xyaw, p_yy, p_yyaw, b), yaw + h)
+    return _turned(PoseCovariance(p_xx, p_xy, p_xyaw, p_yy, p_yyaw, b), cos, sin)
 
 
 def carried(covariance: PoseCovariance[Number], dx: Number, dy: Number) -> PoseCovariance[Number]:
@@ -139,23 +153,41 @@ def carried(covariance: PoseCovariance[Number], dx: Number, dy: Number) -> PoseC
 
 def plus(one: PoseCovariance[Number], other: PoseCovariance[Number]) -> PoseCovariance[Number]:
     """Covariance of the sum of two independent errors, both given in one frame."""
+    xx, xy, xyaw, yy, yyaw, yawyaw = one
+    more_xx, more_xy, more_xyaw, more_yy, more_yyaw, more_yawyaw = other
     return PoseCovariance(
-        one.xx + other.xx,
-        one.xy + other.xy,
-        one.xyaw + other.xyaw,
-        one.yy + other.yy,
-        one.yyaw + other.yyaw,
-        one.yawyaw + other.yawyaw,
+        xx + more_xx,
+        xy + more_xy,
+        xyaw + more_xyaw,
+        yy + more_yy,
+        yyaw + more_yyaw,
+        yawyaw + more_yawyaw,
     )
 
 
-def _turned(covariance: PoseCovariance[Number], angle: Number) -> PoseCovariance[Number]:
-    """A covariance from a frame that is turned by `angle`, in the frame it is turned against."""
+def after_stretch(
+    start: PoseCovariance[Number],
+    motion: BodyMotion[Number],
+    noise: PathNoise[Number],
+    chord: Chord[Number],
+    dx: Number,
+    dy: Number,
+) -> PoseCovariance[Number]:
+    """Covariance of a pose to which a piece has led, in the frame of the one at its start.
+
+    Parameters
+    ----------
+    motion, noise, chord
+        Of the piece.
+    dx, dy : float or ndarray
+        Displacement that was integrated message by message [m].
+    """
+    return plus(carried(start, dx, dy), covariance_over(motion, noise, chord))
+
+
+def _turned(covariance: PoseCovariance[Number], cos: Number, sin: Number) -> PoseCovariance[Number]:
+    """A covariance from a turned frame, in the frame it is turned against."""
     xx, xy, xyaw, yy, yyaw, yawyaw = covariance
-    if isinstance(angle, np.ndarray):
-        cos, sin = np.cos(angle), np.sin(angle)
-    else:
-        cos, sin = math.cos(angle), math.sin(angle)
     cos2, sin2, both = cos * cos, sin * sin, cos * sin
     across = 2.0 * both * xy
     return PoseCovariance(
@@ -172,47 +204,53 @@ def _turned(covariance: PoseCovariance[Number], angle: Number) -> PoseCovariance
 # place (test/model/test_covariance.py), so the seam is not visible in any entry.
 _SEAM = 1.0
 _TERMS = 14
-_T = tuple((-1) ** (n + 1) * 4.0**n / math.factorial(2 * n + 1) for n in range(1, _TERMS))
-_U = tuple((-1) ** n * 4.0**n * (n - 1) / math.factorial(2 * n + 1) for n in range(2, _TERMS))
-_V = tuple((-1) ** (n + 1) * 2.0 * n / math.factorial(2 * n + 1) for n in range(1, _TERMS - 2))
+_T = tuple((-1) ** (n + 1) * 4.0**n / math.factorial(2 * n + 1) for n in range(_TERMS - 1, 0, -1))
+_U = tuple(
+    (-1) ** n * 4.0**n * (n - 1) / math.factorial(2 * n + 1) for n in range(_TERMS - 1, 1, -1)
+)
+_V = tuple((-1) ** (n + 1) * 2.0 * n / math.factorial(2 * n + 1) for n in range(_TERMS - 3, 0, -1))
 
 
-def _entire(h: Number) -> tuple[Number, Number, Number, Number]:
-    """S, T, U, V of the module's docstring."""
+def entire(h: Number, S: Number) -> tuple[Number, Number, Number]:
+    """T, U, V of the module's docstring; S is its own."""
     if isinstance(h, np.ndarray):
-        return _entire_of_array(h)
-    sin, cos = math.sin(h), math.cos(h)
-    t = h * h
+        return _entire_of_array(h, S)
+    return entire_of_float(h, S)
+
+
+def entire_of_float(h: float, S: float) -> tuple[float, float, float]:
+    """`entire` of a single number."""
     if abs(h) > _SEAM:
-        return _closed(h, sin, cos)
-    return (sin / h if h else 1.0, _polynomial(_T, t), _polynomial(_U, t), _polynomial(_V, t))
+        return _closed(h, S)
+    t = h * h
+    return _polynomial(_T, t), _polynomial(_U, t), _polynomial(_V, t)
 
 
-def _entire_of_array(h: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+def _entire_of_array(h: Floats, S: Floats) -> tuple[Floats, Floats, Floats]:
     small = np.abs(h) <= _SEAM
     if small.all():
         t = h * h
-        S = np.divide(np.sin(h), h, out=np.ones_like(h), where=h != 0.0)
-        return S, _polynomial(_T, t), _polynomial(_U, t), _polynomial(_V, t)
+        return _polynomial(_T, t), _polynomial(_U, t), _polynomial(_V, t)
     if not small.any():
-        return _closed(h, np.sin(h), np.cos(h))
-    S, T, U, V = (np.empty_like(h) for _ in range(4))
+        return _closed(h, S)
+    T, U, V = (np.empty_like(h) for _ in range(3))
     for side in (np.nonzero(small), np.nonzero(~small)):
-        S[side], T[side], U[side], V[side] = _entire_of_array(h[side])
-    return S, T, U, V
+        T[side], U[side], V[side] = _entire_of_array(h[side], S[side])
+    return T, U, V
 
 
-def _closed(h: Number, sin: Number, cos: Number) -> tuple[Number, Number, Number, Number]:
+def _closed(h: Number, S: Number) -> tuple[Number, Number, Number]:
     t = h * h
-    S = sin / h
+    cos, sin = cos_sin(h)
     S2 = S * cos  # sinc 2h
     cos2 = 1.0 - 2.0 * sin * sin
-    return S, (1.0 - S2) / t, (1.0 + 0.5 * cos2 - 1.5 * S2) / (t * t), (S - cos) / t
+    return (1.0 - S2) / t, (1.0 + 0.5 * cos2 - 1.5 * S2) / (t * t), (S - cos) / t
 
 
 def _polynomial(coefficients: tuple[float, ...], t: Number) -> Number:
-    total = 0.0 * t + coefficients[-1]
-    for coefficient in coefficients[-2::-1]:
+    """Of coefficients that begin with that of the highest power."""
+    total = 0.0 * t
+    for coefficient in coefficients:
         total *= t  # in place for arrays
         total += coefficient
     return total

@@ -18,12 +18,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
-from werrimbi_odom.model.pieces import PieceRule
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.of_floats import of_floats
+from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.model.stretch import NOTHING, PieceRule, allowed_lead, extended, off_arc
 
 # Steps looked at together. How many is a matter of speed; no figure depends on it.
 _FEW, _MANY = 64, 4096
 _SOON = 32  # steps in which a wheel that turns has mostly gone back by more than a flicker
+_SHORT = 8  # steps of a usual piece, below which it is sooner followed one by one
+_extended = of_floats(extended)
 _WHEELS, _BODY = slice(0, 2), slice(2, 5)  # rows of the sums
 
 
@@ -103,6 +106,9 @@ class _Cutter:
         self._open(begin)
         ahead = _FEW
         while begin < end:
+            last = self.starts[-1]
+            if self._usual < _SHORT and begin < last + _FEW:
+                begin, ahead = self._follow_one_by_one(last, min(last + _MANY, end)), _FEW
             stop = begin
             while stop < min(begin + ahead, end):
                 stop = self._follow_wheels(stop, end)
@@ -132,6 +138,35 @@ class _Cutter:
             self.starts.pop()
             self._travelled.pop()
         self._open(start)
+
+    def _follow_one_by_one(self, begin: int, end: int) -> int:
+        """Follow the piece that begins with the step `begin`, and short ones after it, as if live.
+
+        Returns the first step of the last of them, which is to be followed again, being cut off.
+        """
+        sums = []
+        stretch, earlier, before = NOTHING, self._travelled[-1], len(self.starts)
+        poses = [part[begin : end + 1].tolist() for part in (self.x, self.y, self.yaw)]
+        start, *ends = map(Pose, *poses)
+        last = start
+        steps = zip(ends, *self.steps[:, begin:end].tolist(), strict=True)
+        for step, (pose, left, right, *body) in enumerate(steps, begin):
+            travel, motion = WheelTravel(left, right), BodyMotion(*body)
+            goes_on, longer = _extended(self.rule, start, earlier, stretch, travel, motion, pose)
+            if not goes_on:
+                earlier, start = earlier + stretch.travelled, last
+                self.starts.append(step)
+                self._travelled.append(earlier)
+                longer = _extended(self.rule, start, earlier, NOTHING, travel, motion, pose)[1]
+            stretch, last = longer, pose
+            sums.append((stretch.left, stretch.right, *stretch.motion))
+        self.sums[:, begin:end] = np.array(sums).T
+        usual = (end - begin) // (len(self.starts) - before + 1)
+        begin = self.starts.pop()
+        self._travelled.pop()
+        self._open(begin)
+        self._usual = usual
+        return begin
 
     def _follow_wheels(self, begin: int, limit: int) -> int:
         """Follow the open piece from the step `begin` on as far as its wheels keep to one line.
@@ -174,8 +209,8 @@ class _Cutter:
 
     def _allowed_lead(self, u: Floats) -> Floats | float:
         if self._travelled[-1] >= self.rule.settled:
-            return self.rule.allowed_lead(1.0)
-        return self.rule.allowed_lead(self._share(self._travelled[-1] + u))
+            return allowed_lead(self.rule, 1.0)
+        return allowed_lead(self.rule, self._share(self._travelled[-1] + u))
 
     def _share(self, travelled: Floats) -> Floats:
         """Of the full tolerance, that holds after so much travel u since the start of the run."""
@@ -193,7 +228,7 @@ class _Cutter:
         dx, dy = displacement(BodyMotion(*motion), self.yaw[start])
         miss_x = self.x[begin + 1 : end + 1] - self.x[start] - dx
         miss_y = self.y[begin + 1 : end + 1] - self.y[start] - dy
-        off = self.rule.off_arc(u, self._share(travelled + u), miss_x, miss_y) > 0.0
+        off = off_arc(self.rule, u, self._share(travelled + u), miss_x, miss_y) > 0.0
         off[starts[(starts >= begin) & (starts < end)] - begin] = False
         return begin + _until(off)
 

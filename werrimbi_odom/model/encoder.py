@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, field, fields
+from math import isfinite
 from typing import NamedTuple
 
 import numpy as np
@@ -133,7 +134,7 @@ class Encoder:
             None for the first message and for one that is refused; `tally` says why.
         """
         self.tally.messages += 1
-        if not (math.isfinite(time) and math.isfinite(left) and math.isfinite(right)):
+        if not (isfinite(time) and isfinite(left) and isfinite(right)):
             self.tally.not_finite += 1
             return None
         reading = Reading(time, left, right)
@@ -145,29 +146,30 @@ class Encoder:
             self.tally.accepted += 1
             self.pace.begin(time)
             return None
-        duration = self._duration(time - self._last.time)
-        if duration is None:
-            return None
+        duration = time - self._last.time
+        if duration <= RESOLUTION:
+            if not self._goes_on(duration):
+                return None
+            duration = self._period
         return self._advance(reading, duration)
 
-    def _duration(self, elapsed: float) -> float | None:
-        """Seconds to divide by, or None when the message does not follow the last one."""
-        if elapsed > RESOLUTION:
-            return elapsed
+    def _goes_on(self, elapsed: float) -> bool:
+        """Whether a message that is no later than the last one follows it all the same."""
         if elapsed >= -RESOLUTION:
             self.tally.duplicates += 1
-            return None
-        if elapsed >= -CLOCK_JUMP:
+        elif elapsed >= -CLOCK_JUMP:
             self.tally.out_of_order += 1
-            return None
-        self.tally.clock_jumps += 1
-        return self._period
+        else:
+            self.tally.clock_jumps += 1
+            return True
+        return False
 
     def _advance(self, reading: Reading, duration: float) -> WheelStep | None:
         assert self._last is not None
         last, robot = self._last, self.robot
-        left = wrapped(reading.left - last.left, robot.encoder_bits)
-        right = wrapped(reading.right - last.right, robot.encoder_bits)
+        left, right = reading.left - last.left, reading.right - last.right
+        if robot.encoder_bits:
+            left, right = self._unwrapped(left, right)
         lasted = self.pace.lasted(duration)
         if self._was_reset(reading, left, right, lasted):
             self.tally.resets += 1
@@ -182,19 +184,22 @@ class Encoder:
                 return None
             self.tally.jumps += 1
             return self._anchor_anew(reading, duration)
-        self.tally.wraps += int(left != reading.left - last.left)
-        self.tally.wraps += int(right != reading.right - last.right)
-        self.tally.gaps += int(duration > self.limits.gap_duration)
+        if robot.encoder_bits:
+            self.tally.wraps += int(left != reading.left - last.left)
+            self.tally.wraps += int(right != reading.right - last.right)
+        if duration > self.limits.gap_duration:
+            self.tally.gaps += 1
         self._accept(reading, duration)
-        turns = max(
-            abs(left) / robot.left_ticks_per_revolution,
-            abs(right) / robot.right_ticks_per_revolution,
-        )
-        self.pace.see(turns / lasted)
+        left_turns = abs(left) / robot.left_ticks_per_revolution
+        right_turns = abs(right) / robot.right_ticks_per_revolution
+        self.pace.see((left_turns if left_turns > right_turns else right_turns) / lasted)
         self._period = lasted
         left_travel, right_travel = left * robot.left_tick, right * robot.right_tick
         self._left_speed, self._right_speed = left_travel / lasted, right_travel / lasted
         return WheelStep(reading.time, duration, left_travel, right_travel)
+
+    def _unwrapped(self, left: float, right: float) -> tuple[float, float]:
+        return wrapped(left, self.robot.encoder_bits), wrapped(right, self.robot.encoder_bits)
 
     def _anchor_anew(self, reading: Reading, duration: float) -> WheelStep:
         lost_left, lost_right = self._left_speed * duration, self._right_speed * duration
@@ -241,15 +246,17 @@ class Encoder:
         last, robot = self._last, self.robot
         per_left, per_right = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
         rate = reach_rate(robot, self.limits, self.pace.fastest)
-        if reading.left == 0 and reading.right == 0:
-            far = max(abs(left) / per_left, abs(right) / per_right)
+        reach = lasted * rate
+        new_left, new_right = reading.left / per_left, reading.right / per_right
+        if abs(new_left) > reach < abs(new_right):
+            return False
+        step_left, step_right = left / per_left, right / per_right
+        if new_left == new_right == 0.0:
+            far = max(abs(step_left), abs(step_right))
             if far > self.pace.usual * rate:
                 return True
-        reach = lasted * rate
-        return fell_to_zero(
-            reading.left / per_left, last.left / per_left, left / per_left, reach
-        ) or fell_to_zero(
-            reading.right / per_right, last.right / per_right, right / per_right, reach
+        return fell_to_zero(new_left, last.left / per_left, step_left, reach) or fell_to_zero(
+            new_right, last.right / per_right, step_right, reach
         )
 
 

@@ -9,7 +9,7 @@ run all its steps at once, and both walk the same lines of code.
 from __future__ import annotations
 
 import math
-from typing import Generic, NamedTuple, TypeVar, overload
+from typing import Any, Generic, NamedTuple, TypeVar, overload
 
 import numpy as np
 
@@ -39,8 +39,9 @@ class BodyMotion(NamedTuple, Generic[Number]):
 
 def wheels_to_body(travel: WheelTravel[Number], track: float) -> BodyMotion[Number]:
     """Body motion of a wheel travel: D = (L + R) / 2 and Δ = (R - L) / B."""
-    along = 0.5 * (travel.left + travel.right)
-    return BodyMotion(along, 0.0 * along, (travel.right - travel.left) / track)
+    left, right = travel
+    along = 0.5 * (left + right)
+    return BodyMotion(along, 0.0 * along, (right - left) / track)
 
 
 @overload
@@ -51,7 +52,28 @@ def sinc(x: float | Floats) -> float | Floats:
     """sin(x) / x, and 1 at zero (not numpy's sinc, which takes turns of pi)."""
     if isinstance(x, np.ndarray):
         return np.divide(np.sin(x), x, out=np.ones_like(x), where=x != 0.0)
+    return sinc_of_float(x)
+
+
+def sinc_of_float(x: float) -> float:
+    """`sinc` of a single number."""
     return math.sin(x) / x if x != 0.0 else 1.0
+
+
+@overload
+def cos_sin(angle: float) -> tuple[float, float]: ...
+@overload
+def cos_sin(angle: Floats) -> tuple[Floats, Floats]: ...
+def cos_sin(angle: Any) -> Any:
+    """Cosine and sine of an angle [rad]."""
+    if isinstance(angle, np.ndarray):
+        return np.cos(angle), np.sin(angle)
+    return cos_sin_of_float(angle)
+
+
+def cos_sin_of_float(angle: float) -> tuple[float, float]:
+    """`cos_sin` of a single number."""
+    return math.cos(angle), math.sin(angle)
 
 
 def displacement(motion: BodyMotion[Number], yaw: Number) -> tuple[Number, Number]:
@@ -64,13 +86,33 @@ def displacement(motion: BodyMotion[Number], yaw: Number) -> tuple[Number, Numbe
     -------
     dx, dy : float or ndarray, [m]
     """
-    half = 0.5 * motion.turn
+    along, sideways, turn = motion
+    half = 0.5 * turn
     shrink = sinc(half)
-    middle = yaw + half
-    if isinstance(middle, np.ndarray):
-        cos, sin = np.cos(middle), np.sin(middle)
-    else:
-        cos, sin = math.cos(middle), math.sin(middle)
-    dx = shrink * (cos * motion.along - sin * motion.sideways)
-    dy = shrink * (sin * motion.along + cos * motion.sideways)
-    return dx, dy
+    cos, sin = cos_sin(yaw + half)
+    return shrink * (cos * along - sin * sideways), shrink * (sin * along + cos * sideways)
+
+
+class Chord(NamedTuple, Generic[Number]):
+    """Of the arc that a constant twist traces: how much shorter it is, and where it points."""
+
+    shrink: Number
+    """sinc(Δ/2): its length over that of the arc."""
+    cos: Number
+    """Cosine of the heading half way ..."""
+    sin: Number
+    """... and sine."""
+
+
+def chord_of(turn: Number, yaw: Number) -> Chord[Number]:
+    """The chord of a turn that begins at a heading [rad]."""
+    half = 0.5 * turn
+    cos, sin = cos_sin(yaw + half)
+    return Chord(sinc(half), cos, sin)
+
+
+def along_chord(motion: BodyMotion[Number], chord: Chord[Number]) -> tuple[Number, Number]:
+    """`displacement` [m] of a motion, given the chord of its turn."""
+    along, sideways, _ = motion
+    shrink, cos, sin = chord
+    return shrink * (cos * along - sin * sideways), shrink * (sin * along + cos * sideways)

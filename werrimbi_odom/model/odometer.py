@@ -4,23 +4,29 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import NamedTuple
 
 from werrimbi_odom.model.covariance import (
     CERTAIN,
     PoseCovariance,
+    after_stretch,
     noise_of_wheel_variances,
-    path_noise,
+    path_noise_of,
 )
 from werrimbi_odom.model.driving import Channels, DrivenStep, Driving
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder import Encoder, EncoderLimits, EncoderTally, WheelStep
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
-from werrimbi_odom.model.pieces import OpenPiece, Piece, PieceRule, PieceTolerance
+from werrimbi_odom.model.of_floats import of_floats
+from werrimbi_odom.model.pieces import OpenPiece, Piece
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.stretch import PieceRule, PieceTolerance, Stretch
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known
+
+_displacement = of_floats(displacement)
+_path_noise = of_floats(path_noise_of)
+_after_stretch = of_floats(after_stretch)
 
 
 class TwistCovariance(NamedTuple):
@@ -34,26 +40,62 @@ class TwistCovariance(NamedTuple):
     """(rad/s)²"""
 
 
-@dataclass(frozen=True, slots=True)
-class Estimate:
-    """Everything the odometer knows after one message."""
+class Estimate(NamedTuple):
+    """Everything the odometer knows after one message.
 
-    time: float
-    """Stamp of the message [s]."""
+    Of the pose's error it holds what it needs; `errors` and `covariance` are worked out when they
+    are asked for.
+    """
+
+    step: WheelStep
+    """Travel of the wheels since the last message, before any effect."""
     pose: Pose
     """In the odometry frame; yaw goes on counting past a whole turn."""
-    covariance: PoseCovariance[float]
-    """Of the pose, in the odometry frame."""
-    twist: BodyMotion[float]
-    """Speed forward and to the left [m/s] and yaw rate [rad/s], mean over the last interval."""
-    twist_covariance: TwistCovariance
-    """Of the twist: wheel noise over the last interval, quantisation of its two readings."""
+    motion: BodyMotion[float]
+    """Since the last message, after all effects."""
     distance: float
     """Travel of the axle's midpoint since the start, both directions counted [m]."""
     closed: Piece | None
     """The piece that this message brought to its end, if it did."""
-    mean_shift: tuple[float, float] | None = None
-    """Where exact moments are carried: mean of the true position less the pose (x, y) [m]."""
+    robot: Robot
+    start: Pose
+    """Of the open piece."""
+    errors_start: Uncertainty[float]
+    """Of the pose there."""
+    stretch: Stretch
+    """The open piece as far as it has been driven."""
+
+    @property
+    def time(self) -> float:
+        """Stamp of the message [s]."""
+        return self.step.time
+
+    @property
+    def errors(self) -> Uncertainty[float]:
+        """Of the pose, in the odometry frame."""
+        return errors_along(self.robot, self.start, self.errors_start, self.stretch, self.pose)
+
+    @property
+    def covariance(self) -> PoseCovariance[float]:
+        """Of the pose, in the odometry frame."""
+        return self.errors.covariance
+
+    @property
+    def mean_shift(self) -> tuple[float, float] | None:
+        """Where exact moments are carried: mean of the true position less the pose (x, y) [m]."""
+        return self.errors.mean_shift
+
+    @property
+    def twist(self) -> BodyMotion[float]:
+        """Speed forward and to the left [m/s] and yaw rate [rad/s], mean over the last interval."""
+        along, sideways, turn = self.motion
+        per_second = 1.0 / self.step.duration
+        return BodyMotion(along * per_second, sideways * per_second, turn * per_second)
+
+    @property
+    def twist_covariance(self) -> TwistCovariance:
+        """Of the twist: wheel noise over the last interval, quantisation of its two readings."""
+        return twist_covariance(self.robot, self.step)
 
 
 class Odometer:
@@ -139,7 +181,18 @@ class Odometer:
         closed = self._cut(step, travel, motion, pose)
         self._time, self._counts, self._pose = time, (left, right), pose
         self.distance += abs(motion.along)
-        return self._estimate(step, motion, closed)
+        piece = self._piece
+        return Estimate(
+            step,
+            pose,
+            motion,
+            self.distance,
+            closed,
+            self.robot,
+            piece.start,
+            piece.errors_start,
+            piece.stretch,
+        )
 
     def set_pose(self, pose: Pose, covariance: PoseCovariance[float] = CERTAIN) -> Piece:
         """Go on from another pose, known with a covariance; returns the piece that this ends."""
@@ -182,9 +235,7 @@ class Odometer:
     def errors(self) -> Uncertainty[float]:
         """Of the present pose, in the odometry frame."""
         piece = self._piece
-        noise = path_noise(self.robot, piece.left, piece.right)
-        dx, dy = self._pose.x - piece.start.x, self._pose.y - piece.start.y
-        return after_piece(piece.errors_start, piece.motion, noise, piece.start.yaw, dx, dy)
+        return errors_along(self.robot, piece.start, piece.errors_start, piece.stretch, self._pose)
 
     def covariance(self) -> PoseCovariance[float]:
         """Of the present pose, in the odometry frame."""
@@ -196,8 +247,9 @@ class Odometer:
         self._driving.begin(left, right, channels)
 
     def _moved(self, motion: BodyMotion[float]) -> Pose:
-        dx, dy = displacement(motion, self._pose.yaw)
-        return Pose(self._pose.x + dx, self._pose.y + dy, self._pose.yaw + motion.turn)
+        x, y, yaw = self._pose
+        dx, dy = _displacement(motion, yaw)
+        return Pose(x + dx, y + dy, yaw + motion.turn)
 
     def _cut(
         self, step: WheelStep, travel: WheelTravel[float], motion: BodyMotion[float], pose: Pose
@@ -215,24 +267,6 @@ class Odometer:
         self._piece.extend(self._rule, travel, motion, pose)
         return finished
 
-    def _estimate(
-        self, step: WheelStep, motion: BodyMotion[float], closed: Piece | None
-    ) -> Estimate:
-        per_second = 1.0 / step.duration
-        errors = self.errors()
-        return Estimate(
-            step.time,
-            self._pose,
-            errors.covariance,
-            BodyMotion(
-                motion.along * per_second, motion.sideways * per_second, motion.turn * per_second
-            ),
-            twist_covariance(self.robot, step),
-            self.distance,
-            closed,
-            errors.mean_shift,
-        )
-
 
 def _reading_of(robot: Robot) -> tuple[object, ...]:
     """What makes travel of counts, but for the size of wheels."""
@@ -244,6 +278,19 @@ def _noise_of(robot: Robot) -> tuple[object, ...]:
     """What makes covariance of travel."""
     noise = robot.left_wheel_noise, robot.right_wheel_noise
     return *noise, robot.track, robot.covariance_order
+
+
+def errors_along(
+    robot: Robot, start: Pose, errors: Uncertainty[float], stretch: Stretch, pose: Pose
+) -> Uncertainty[float]:
+    """Errors of a pose to which a stretch has led, from those of the pose at its start."""
+    noise = _path_noise(robot.wheel_noise, stretch.left, stretch.right)
+    dx, dy = pose.x - start.x, pose.y - start.y
+    if errors.moments is not None:
+        return after_piece(errors, stretch.motion, noise, start.yaw, dx, dy)
+    return Uncertainty(
+        _after_stretch(errors.covariance, stretch.motion, noise, stretch.chord, dx, dy)
+    )
 
 
 def with_lost_travel(
@@ -260,8 +307,10 @@ def twist_covariance(robot: Robot, step: WheelStep) -> TwistCovariance:
     A counter read at an instant is uniform over one count, so the difference of two readings has
     a variance of a sixth of a squared count beside the noise of the wheel (equation 4).
     """
-    left = robot.left_wheel_noise**2 * abs(step.left) + robot.left_tick**2 / 6.0
-    right = robot.right_wheel_noise**2 * abs(step.right) + robot.right_tick**2 / 6.0
-    noise = noise_of_wheel_variances(left + step.left_lost, right + step.right_lost, robot.track)
-    scale = 1.0 / step.duration**2
-    return TwistCovariance(noise.a * scale, noise.c * scale, noise.b * scale)
+    _, duration, left, right, left_lost, right_lost = step
+    k_left, k_right, track = robot.wheel_noise
+    left = k_left * abs(left) + robot.left_tick * robot.left_tick / 6.0
+    right = k_right * abs(right) + robot.right_tick * robot.right_tick / 6.0
+    a, b, c = noise_of_wheel_variances(left + left_lost, right + right_lost, track)
+    scale = 1.0 / (duration * duration)
+    return TwistCovariance(a * scale, c * scale, b * scale)

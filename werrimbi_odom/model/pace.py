@@ -34,15 +34,11 @@ class Pace:
     usual: float = USUAL_AT_FIRST
     """The usual interval [s]."""
     _stamps: deque[float] = field(default_factory=lambda: deque(maxlen=REMEMBERED + 1))
-    _fastest: float = 0.0
-    _fastest_before: float = 0.0
+    fastest: float = 0.0
+    """Fastest that a wheel has turned of late [turns/s]."""
+    _newer: float = 0.0
     _room: int = REMEMBERED
-    """Speeds to come before the older half of the memory is forgotten."""
-
-    @property
-    def fastest(self) -> float:
-        """Fastest that a wheel has turned of late [turns/s]."""
-        return max(self._fastest, self._fastest_before)
+    """Speeds to come before only the `_newer` ones are remembered."""
 
     def begin(self, time: float) -> None:
         """Learn intervals anew from a message on, with the usual one before it."""
@@ -65,11 +61,13 @@ class Pace:
 
     def see(self, rate: float) -> None:
         """Take the speed of the faster wheel [turns/s]."""
-        if rate > self._fastest:
-            self._fastest = rate
+        if rate > self._newer:
+            self._newer = rate
+            if rate > self.fastest:
+                self.fastest = rate
         self._room -= 1
         if not self._room:
-            self._fastest_before, self._fastest, self._room = self._fastest, 0.0, REMEMBERED
+            self.fastest, self._newer, self._room = self._newer, 0.0, REMEMBERED
 
     def usual_at(self, time: Floats) -> Floats:
         """The usual interval [s] now and after each of n messages without a pause; (n + 1,)."""
@@ -84,7 +82,8 @@ class Pace:
         self.usual = float(usual)
         while rates.size >= self._room:
             some, rates = rates[: self._room], rates[self._room :]
-            self._fastest_before = max(self._fastest, float(some.max()))
-            self._fastest, self._room = 0.0, REMEMBERED
-        self._fastest = max(self._fastest, float(rates.max(initial=0.0)))
+            self.fastest = max(self._newer, float(some.max()))
+            self._newer, self._room = 0.0, REMEMBERED
+        self._newer = max(self._newer, float(rates.max(initial=0.0)))
+        self.fastest = max(self.fastest, self._newer)
         self._room -= rates.size

@@ -21,6 +21,7 @@ from werrimbi_odom.model.encoder import (
     WheelStep,
     reach_rate,
 )
+from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pace import CLOSE, PAUSE
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -47,6 +48,13 @@ class WheelSteps:
     left_lost: Floats
     right_lost: Floats
     tally: EncoderTally
+
+
+def lost_travel(steps: WheelSteps) -> dict[int, WheelTravel[float]]:
+    """Variances of travel that no counter saw [m²], by the step that it was lost in."""
+    where = np.flatnonzero((steps.left_lost > 0.0) | (steps.right_lost > 0.0))
+    left, right = steps.left_lost[where].tolist(), steps.right_lost[where].tolist()
+    return dict(zip(where.tolist(), map(WheelTravel, left, right), strict=True))
 
 
 def wheel_steps(
@@ -116,9 +124,21 @@ class _Part(NamedTuple):
 
 def _joined(parts: list[_Part]) -> _Part:
     none = np.empty(0)
-    rows = [np.empty(0, dtype=np.intp), *(part.row for part in parts)]
-    columns = zip(*((none,) * 6, *(part[1:] for part in parts)), strict=True)
-    return _Part(np.concatenate(rows), *(np.concatenate(column) for column in columns))
+    rows = np.concatenate([np.empty(0, dtype=np.intp), *(part.row for part in parts)])
+    columns = zip(*((none,) * 4, *(part[1:5] for part in parts)), strict=True)
+    lost = _no_loss(rows.size)  # memory that nobody writes to is none, and few parts lose anything
+    begin = 0
+    for part in parts:
+        for whole, some in zip(lost, part[5:], strict=True):
+            if some.any():
+                whole[begin : begin + some.size] = some
+        begin += part.row.size
+    time, duration, left, right = (np.concatenate(column) for column in columns)
+    return _Part(rows, time, duration, left, right, *lost)
+
+
+def _no_loss(count: int) -> tuple[Floats, Floats]:
+    return np.zeros(count), np.zeros(count)
 
 
 def _judged_steps(encoder: Encoder, record: _Record, row: int) -> tuple[_Part, int]:
@@ -177,8 +197,7 @@ def _quiet_steps(encoder: Encoder, record: _Record, row: int) -> _Part:
         duration[:count],
         left_travel[:count],
         right_travel[:count],
-        np.zeros(count),
-        np.zeros(count),
+        *_no_loss(count),
     )
     if count:
         encoder.tally.wraps += int(np.count_nonzero(left_wraps[:count]))

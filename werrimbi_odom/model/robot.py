@@ -6,7 +6,8 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, fields
-from typing import Literal
+from functools import cached_property
+from typing import Literal, NamedTuple
 
 from werrimbi_odom.model.effect import AppliedEffect
 
@@ -23,7 +24,18 @@ MOST_NOISE = 1e3
 """Most noise of a wheel [m^0.5]: it errs by a kilometre in a metre."""
 
 
-@dataclass(frozen=True, slots=True)
+class WheelNoise(NamedTuple):
+    """What makes noise of travel."""
+
+    left: float
+    """k_L² [m]."""
+    right: float
+    """k_R² [m]."""
+    track: float
+    """[m]"""
+
+
+@dataclass(frozen=True)
 class Robot:
     """A differential-drive robot; names as in diff_drive_controller, units SI.
 
@@ -107,18 +119,24 @@ class Robot:
                     f"{side}_wheel_noise must be at most {MOST_NOISE:g} m^0.5, it is {noise}"
                 )
 
-    @property
+    @cached_property
     def track(self) -> float:
         """Effective wheel separation B [m]."""
         return self.wheel_separation * self.wheel_separation_multiplier
 
-    @property
+    @cached_property
+    def wheel_noise(self) -> WheelNoise:
+        """What makes noise of travel."""
+        left, right = self.left_wheel_noise, self.right_wheel_noise
+        return WheelNoise(left * left, right * right, self.track)
+
+    @cached_property
     def left_tick(self) -> float:
         """Travel of the left wheel for one count [m]."""
         radius = self.wheel_radius * self.left_wheel_radius_multiplier
         return 2.0 * math.pi * radius / self.left_ticks_per_revolution
 
-    @property
+    @cached_property
     def right_tick(self) -> float:
         """Travel of the right wheel for one count [m]."""
         radius = self.wheel_radius * self.right_wheel_radius_multiplier

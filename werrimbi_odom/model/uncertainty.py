@@ -14,12 +14,10 @@ from werrimbi_odom.model.covariance import (
     CERTAIN,
     PathNoise,
     PoseCovariance,
-    carried,
-    piece_covariance,
-    plus,
+    after_stretch,
 )
 from werrimbi_odom.model.moments import PathMoments, chained, from_covariance, piece_moments
-from werrimbi_odom.model.motion import BodyMotion, Number, displacement
+from werrimbi_odom.model.motion import BodyMotion, Number, chord_of, displacement
 from werrimbi_odom.model.robot import CovarianceOrder
 
 
@@ -77,5 +75,6 @@ def after_piece(
         piece = piece_moments(motion, noise)._replace(nominal=driven[0] + 1j * driven[1])
         moments = chained(start.moments, piece, yaw)
         return Uncertainty(moments.about_pose(), moments)
-    own = piece_covariance(motion, noise, yaw)
-    return Uncertainty(plus(carried(start.covariance, dx, dy), own))
+    return Uncertainty(
+        after_stretch(start.covariance, motion, noise, chord_of(motion.turn, yaw), dx, dy)
+    )
