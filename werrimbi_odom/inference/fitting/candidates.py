@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 from typing import NamedTuple
 
@@ -154,7 +155,13 @@ def signatures(
     columns, owners = [], []
     for number, candidate in enumerate(tried):
         for coordinate in candidate.coordinates:
-            columns.append(_slope(runs, point.model, candidate, coordinate, prediction))
+            columns.append(
+                runs.of_model(
+                    point.model,
+                    (candidate.effect.apply, *coordinate.items()),
+                    partial(_slope, runs, point.model, candidate, coordinate, prediction),
+                )
+            )
             owners.append(number)
     if not columns:
         return np.zeros(0), iter(())

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -78,18 +79,19 @@ def slopes_of(runs: Together, model: Model, knobs: Sequence[Knob]) -> Floats:
 
     A knob of the runs' own is moved in all of them at once: legs feel their own run's alone.
     """
-    columns = []
-    for knob in knobs:
-        if knob.name == YAW_DRIFT:
-            columns.append(np.outer(runs.duration, [0.0, 0.0, 1.0]))
-            continue
-        ahead, behind = model.moved_by(knob, knob.scale), model.moved_by(knob, -knob.scale)
-        # What effects look at hardly changes with a radius; it is worked out once, as it is now.
-        looked_at = model.robot if knob.name in MULTIPLIERS else None
-        width = ahead.value(knob) - behind.value(knob) if not knob.per_run else 2.0 * knob.scale
-        poses = [legs_shown(side, runs, looked_at) for side in (ahead, behind)]
-        columns.append((poses[0] - poses[1]) / width)
+    columns = [runs.of_model(model, knob, partial(_slope, runs, model, knob)) for knob in knobs]
     return np.stack(columns, axis=-1) if columns else np.zeros((runs.count, 3, 0))
+
+
+def _slope(runs: Together, model: Model, knob: Knob) -> Floats:
+    if knob.name == YAW_DRIFT:
+        return np.outer(runs.duration, [0.0, 0.0, 1.0])
+    ahead, behind = model.moved_by(knob, knob.scale), model.moved_by(knob, -knob.scale)
+    # What effects look at hardly changes with a radius; it is worked out once, as it is now.
+    looked_at = model.robot if knob.name in MULTIPLIERS else None
+    width = ahead.value(knob) - behind.value(knob) if not knob.per_run else 2.0 * knob.scale
+    poses = [legs_shown(side, runs, looked_at) for side in (ahead, behind)]
+    return np.asarray((poses[0] - poses[1]) / width)
 
 
 def stacked(

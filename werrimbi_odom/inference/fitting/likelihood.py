@@ -78,11 +78,8 @@ class Innovations:
 
     def whitened(self) -> tuple[Floats, Floats]:
         """Innovations of unit variance (m, 3) and their derivatives (m, 3, p), first set."""
-        factor = np.linalg.cholesky(self.covariance[0])
-        joined = np.concatenate([self.value[0][..., None], self.change], axis=-1)
-        white = np.linalg.solve(factor, joined)
-        white[~self.known] = 0.0
-        return white[..., 0], white[..., 1:]
+        root = np.linalg.inv(np.linalg.cholesky(self.covariance[0])) * self.known[..., None]
+        return (root @ self.value[0][..., None])[..., 0], root @ self.change
 
 
 def innovations(

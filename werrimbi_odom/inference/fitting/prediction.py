@@ -88,13 +88,16 @@ def legs_shown(model: Model, runs: Together, looked_at: Robot | None = None) -> 
 
 def predict_all(model: Model, runs: Together) -> Prediction:
     """The same, with the noise that it has for unit noise of each wheel."""
+    return runs.of_model(model, "prediction", lambda: _predicted(model, runs))
+
+
+def _predicted(model: Model, runs: Together) -> Prediction:
     view = view_of(model.robot.effects)
     runs = runs.delayed(view.delay)
-    robot = model.laid_out(runs.run_of_step)
-    path = _path(robot, runs, view, model.start_yaws)
+    path = path_of(model, runs)
     return Prediction(
         _shown(path, runs, view, model.drifts),
-        *_noise_of_legs(path, runs, robot.track, view),
+        *_noise_of_legs(path, runs, model.robot.track, view),
         runs.per_leg(np.abs(path.motion.along)),
         runs.per_leg(path.motion.along),
         path.yaw[runs.end] - path.yaw[runs.begin],
@@ -108,8 +111,12 @@ def right_handed(poses: Floats, view: View) -> Floats:
 
 def path_of(model: Model, runs: Together) -> DrivenPath:
     """What the model makes of the steps of all runs (the reference's delay being none)."""
-    robot = model.laid_out(runs.run_of_step)
-    return _path(robot, runs, view_of(robot.effects), model.start_yaws)
+
+    def path() -> DrivenPath:
+        robot = model.laid_out(runs.run_of_step)
+        return _path(robot, runs, view_of(robot.effects), model.start_yaws)
+
+    return runs.of_steps(model, path)
 
 
 def headings_of(

@@ -25,6 +25,10 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.wiring import Wiring
 
 SIDES = ("left", "right")
+MODELS = 8
+"""Of which it is remembered what was worked out: a fit comes back to a few only."""
+DRIVES = 2
+"""Of which it is remembered what effects may look at: twenty numbers for each step."""
 Found = TypeVar("Found")
 
 
@@ -57,6 +61,8 @@ class Together:
     _features: dict[tuple[float, ...], Drive[Floats]] = field(default_factory=dict)
     _delayed: dict[float, Together] = field(default_factory=dict)
     _known: dict[Hashable, Any] = field(default_factory=dict)
+    _of_models: list[tuple[object, dict[Hashable, Any]]] = field(default_factory=list)
+    _of_steps: list[tuple[object, Any]] = field(default_factory=list)
 
     @property
     def count(self) -> int:
@@ -71,13 +77,12 @@ class Together:
     @property
     def run_of_step(self) -> NDArray[np.intp]:
         """Index of the run of each step, shape (n,)."""
-        return np.repeat(np.arange(len(self.runs)), np.diff(self.steps))
+        return self.known("run_of_step", _runs_of_steps)
 
     @property
     def inside(self) -> NDArray[np.intp]:
         """Steps that belong to a leg."""
-        runs = zip(self.runs, self.steps, strict=False)
-        return np.concatenate([np.arange(run.ends[0], run.ends[-1]) + first for run, first in runs])
+        return self.known("inside", _steps_in_legs)
 
     def per_leg(self, values: Floats) -> Floats:
         """Sums over the steps of each leg of values for all steps."""
@@ -106,6 +111,25 @@ class Together:
             _remember(self._known, key, found)
         return found
 
+    def of_model(self, model: object, key: Hashable, work: Callable[[], Found]) -> Found:
+        """What `work` finds of a model by its legs, worked out once for the last few models."""
+        found = next((found for known, found in self._of_models if known == model), None)
+        if found is None:
+            found = {}
+            self._of_models.append((model, found))
+            del self._of_models[:-MODELS]
+        if key not in found:
+            found[key] = work()
+        value: Found = found[key]
+        return value
+
+    def of_steps(self, model: object, work: Callable[[], Found]) -> Found:
+        """The same of something as long as the steps, of the last model alone."""
+        if not self._of_steps or self._of_steps[0][0] != model:
+            self._of_steps[:] = [(model, work())]
+        value: Found = self._of_steps[0][1]
+        return value
+
     def parts(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """First leg of `finer` in each leg, and one past the last; shape (m,) each."""
         assert self.finer is not None
@@ -127,7 +151,7 @@ class Together:
         known = self._features.get(key)
         if known is None:
             known = _joined([_drive_of(run, robot, wiring) for run in self.runs])
-            _remember(self._features, key, known)
+            _remember(self._features, key, known, DRIVES)
         return known
 
 
@@ -171,13 +195,22 @@ def _drive_of(run: MatchedRun, robot: Robot, wiring: Wiring) -> Drive[Floats]:
     return features(robot, np.diff(run.time), raw, first_counts, run.channels)
 
 
+def _runs_of_steps(runs: Together) -> NDArray[np.intp]:
+    return np.repeat(np.arange(len(runs.runs)), np.diff(runs.steps))
+
+
+def _steps_in_legs(runs: Together) -> NDArray[np.intp]:
+    both = zip(runs.runs, runs.steps, strict=False)
+    return np.concatenate([np.arange(run.ends[0], run.ends[-1]) + first for run, first in both])
+
+
 def _starts(sizes: Sequence[int]) -> NDArray[np.intp]:
     return np.concatenate([[0], np.cumsum(sizes)]).astype(np.intp)
 
 
-def _remember(memory: dict[Any, Any], key: Any, value: Any) -> None:
-    """A fit comes back to a few settings only; older ones are forgotten."""
-    while len(memory) >= 8:
+def _remember(memory: dict[Any, Any], key: Any, value: Any, most: int = MODELS) -> None:
+    """Older ones are forgotten."""
+    while len(memory) >= most:
         del memory[next(iter(memory))]
     memory[key] = value
 
