@@ -166,8 +166,7 @@ def signatures(
     if not columns:
         return np.zeros(0), iter(())
     change = np.stack(columns, axis=-1)
-    found = unexpected(runs, point, kind, change, prediction)
-    marks = found.whitened()[1][..., :-1]
+    marks = unexpected(runs, point, kind, prediction).marks(change)[..., :-1]
     frame, rest = unexplained(runs, point, kind, knobs, prediction)
     owned = np.array(owners)
 

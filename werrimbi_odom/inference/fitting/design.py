@@ -58,19 +58,21 @@ def unexpected(
     runs: Together,
     point: Point,
     kind: ReferenceKind,
-    change: Floats | None = None,
     prediction: Prediction | None = None,
 ) -> Innovations:
-    """Innovations of all runs, and their derivatives for changes (m, 3, p) of the legs."""
-    return innovations(
-        point.model.robot,
-        runs,
-        prediction or predict_all(point.model, runs),
-        point.variances,
-        kind,
-        change=change,
-        excluded=point.skip,
-        start_yaws=point.model.start_yaws,
+    """Innovations of all runs; the latest are remembered with them."""
+    seen = prediction or predict_all(point.model, runs)
+    return runs.latest(
+        (point, kind, seen),
+        lambda: innovations(
+            point.model.robot,
+            runs,
+            seen,
+            point.variances,
+            kind,
+            excluded=point.skip,
+            start_yaws=point.model.start_yaws,
+        ),
     )
 
 
@@ -103,9 +105,9 @@ def stacked(
 ) -> Design:
     """The design for knobs at a point; start headings that were not measured are among them."""
     local = [knob for knob in knobs if knob.name != START_YAW]
-    found = unexpected(runs, point, kind, slopes_of(runs, point.model, local), prediction)
-    white, slopes = found.whitened()
-    return spread_out(runs, point.model, white, slopes, local)
+    found = unexpected(runs, point, kind, prediction)
+    marks = found.marks(slopes_of(runs, point.model, local))
+    return spread_out(runs, point.model, found.whitened(), marks, local)
 
 
 def spread_out(

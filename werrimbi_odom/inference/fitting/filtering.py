@@ -10,7 +10,6 @@ rounds of the loop as a minute.
 from __future__ import annotations
 
 import itertools
-from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -29,14 +28,12 @@ UNMEASURED = 1e6
 
 
 class Legs(NamedTuple):
-    """What the filter is to be told of m legs, for g sets of variances and w parameters."""
+    """What the filter is to be told of m legs, for g sets of variances."""
 
     relative: Floats
     """Predicted relative pose, (m, 3), each in the frame of its own start."""
     noise: Floats
     """Covariance of it, (g, m, 3, 3)."""
-    slopes: Floats
-    """Its derivatives in parameters, (m, 3, w)."""
     start: Floats
     """Measured pose at the legs' starts, (m, 3), NaN where not measured."""
     finish: Floats
@@ -53,6 +50,51 @@ class Legs(NamedTuple):
     """Heading at the start of a run where it was not measured, at the run's first leg, (m,)."""
 
 
+class Ways(NamedTuple):
+    """How a change of a leg's relative pose comes to the innovations, for the first set.
+
+    All in the order of the filter's loop: the first legs of all stretches, the second legs ...
+    """
+
+    leg: NDArray[np.intp]
+    """Which leg it is, (m,)."""
+    enter: Floats
+    """Turns its change into the filter's frame, (m, 3, 3)."""
+    carry: Floats
+    """Takes the change at the end of the leg before to the end of this one, (m, 3, 3)."""
+    leave: Floats
+    """Makes the change of the innovation of the change at the leg's end, (m, 3, 3)."""
+    free: NDArray[np.bool_]
+    """Stretches that begin with a heading that was not measured."""
+    rounds: list[slice]
+    """Of the loop."""
+
+    def innovations(self, slopes: Floats) -> Floats:
+        """Derivatives (m, 3, w + 1) for those of the legs' relative poses (m, 3, w).
+
+        The last one is in the run's start heading.
+        """
+        count, _, width = slopes.shape
+        found = np.empty((count, 3, width + 1))
+        for begin in range(0, width + 1, _COLUMNS):
+            columns = slice(begin, min(begin + _COLUMNS, width))
+            change = self.enter @ slopes[self.leg, :, columns]
+            if columns.stop < begin + _COLUMNS:
+                first = self.rounds[0]
+                heading = np.zeros((count, 3, 1))
+                heading[first, :, 0] = self.carry[first, :, 2] * self.free[:, None]
+                change = np.concatenate([change, heading], axis=-1)
+            for before, now in itertools.pairwise(self.rounds):
+                last = slice(before.start, before.start + now.stop - now.start)
+                change[now] += self.carry[now] @ change[last]
+            found[self.leg, :, begin : begin + _COLUMNS] = self.leave @ change
+        return found
+
+
+_COLUMNS = 32
+"""Of derivatives, at a time: what they take fits in the processor's cache."""
+
+
 class Unexpected(NamedTuple):
     """Innovations in the frame of the robot at each leg's start."""
 
@@ -60,8 +102,8 @@ class Unexpected(NamedTuple):
     """(g, m, 3), zero where nothing was measured."""
     covariance: Floats
     """(g, m, 3, 3)."""
-    change: Floats
-    """Derivatives for the first set, (m, 3, w + 1); the last one in the run's start heading."""
+    ways: Ways
+    """What changes of the legs do to them."""
 
 
 def stretches(legs: Legs) -> NDArray[np.intp]:
@@ -151,46 +193,13 @@ def filtered(legs: Legs) -> Unexpected:
     back = turns.swapaxes(-1, -2)
     seen_back = -back[0] * (known & ~jumped[:, None])[:, None]
     passed = levers[0].copy()
-    for before, now in itertools.pairwise(rounds):
-        passed[now] = levers[0, now] @ kept[before.start : before.start + now.stop - now.start]
+    for last, now in itertools.pairwise(rounds):
+        passed[now] = levers[0, now] @ kept[last.start : last.start + now.stop - now.start]
     return Unexpected(
         (back @ values[..., None])[..., 0][:, place],
         (back @ covariances @ turns)[:, place],
-        _changes(legs.slopes, leg, (turns[0], passed, seen_back), free, rounds),
+        Ways(leg, turns[0], passed, seen_back, free, rounds),
     )
-
-
-def _changes(
-    slopes: Floats,
-    leg: NDArray[np.intp],
-    ways: tuple[Floats, Floats, Floats],
-    free: NDArray[np.bool_],
-    rounds: Sequence[slice],
-) -> Floats:
-    """Derivatives of the innovations, (m, 3, w + 1); some columns at a time.
-
-    `ways` turn a leg's change into the filter's frame, carry that of the leg before on to the end
-    of this one, and turn what comes of it into an innovation; all in the order of the loop, as
-    `leg` is.
-    """
-    enter, carry, leave = ways
-    count, _, width = slopes.shape
-    found = np.empty((count, 3, width + 1))
-    for begin in range(0, width + 1, _COLUMNS):
-        columns = slice(begin, min(begin + _COLUMNS, width))
-        change = enter @ slopes[leg, :, columns]
-        if columns.stop < begin + _COLUMNS:
-            heading = np.zeros((count, 3, 1))
-            heading[rounds[0], :, 0] = carry[rounds[0], :, 2] * free[:, None]
-            change = np.concatenate([change, heading], axis=-1)
-        for before, now in itertools.pairwise(rounds):
-            change[now] += carry[now] @ change[before.start : before.start + now.stop - now.start]
-        found[leg, :, begin : begin + _COLUMNS] = leave @ change
-    return found
-
-
-_COLUMNS = 32
-"""Of derivatives, at a time: what they take fits in the processor's cache."""
 
 
 def _turn_into(turn: Floats, yaw: Floats) -> None:

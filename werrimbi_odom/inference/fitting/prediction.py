@@ -116,7 +116,7 @@ def path_of(model: Model, runs: Together) -> DrivenPath:
         robot = model.laid_out(runs.run_of_step)
         return _path(robot, runs, view_of(robot.effects), model.start_yaws)
 
-    return runs.of_steps(model, path)
+    return runs.of_steps(model, "path", path)
 
 
 def headings_of(

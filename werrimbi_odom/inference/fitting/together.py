@@ -62,7 +62,8 @@ class Together:
     _delayed: dict[float, Together] = field(default_factory=dict)
     _known: dict[Hashable, Any] = field(default_factory=dict)
     _of_models: list[tuple[object, dict[Hashable, Any]]] = field(default_factory=list)
-    _of_steps: list[tuple[object, Any]] = field(default_factory=list)
+    _of_steps: list[tuple[object, dict[Hashable, Any]]] = field(default_factory=list)
+    _latest: list[tuple[tuple[object, ...], Any]] = field(default_factory=list)
 
     @property
     def count(self) -> int:
@@ -113,21 +114,19 @@ class Together:
 
     def of_model(self, model: object, key: Hashable, work: Callable[[], Found]) -> Found:
         """What `work` finds of a model by its legs, worked out once for the last few models."""
-        found = next((found for known, found in self._of_models if known == model), None)
-        if found is None:
-            found = {}
-            self._of_models.append((model, found))
-            del self._of_models[:-MODELS]
-        if key not in found:
-            found[key] = work()
-        value: Found = found[key]
-        return value
+        return _recalled(self._of_models, model, key, work, MODELS)
 
-    def of_steps(self, model: object, work: Callable[[], Found]) -> Found:
-        """The same of something as long as the steps, of the last model alone."""
-        if not self._of_steps or self._of_steps[0][0] != model:
-            self._of_steps[:] = [(model, work())]
-        value: Found = self._of_steps[0][1]
+    def of_steps(self, model: object, key: Hashable, work: Callable[[], Found]) -> Found:
+        """The same of what is as long as the steps, for the last model alone."""
+        return _recalled(self._of_steps, model, key, work, 1)
+
+    def latest(self, of: tuple[object, ...], work: Callable[[], Found]) -> Found:
+        """What `work` finds, unless it was found the last time, of the very same objects."""
+        if not self._latest or any(
+            one is not other for one, other in zip(self._latest[0][0], of, strict=True)
+        ):
+            self._latest[:] = [(of, work())]
+        value: Found = self._latest[0][1]
         return value
 
     def parts(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
@@ -193,6 +192,24 @@ def _drive_of(run: MatchedRun, robot: Robot, wiring: Wiring) -> Drive[Floats]:
     first_counts = wiring.wheels(run.counters.first_left, run.counters.first_right)
     raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
     return features(robot, np.diff(run.time), raw, first_counts, run.channels)
+
+
+def _recalled(
+    memory: list[tuple[object, dict[Hashable, Any]]],
+    model: object,
+    key: Hashable,
+    work: Callable[[], Found],
+    most: int,
+) -> Found:
+    found = next((found for known, found in memory if known == model), None)
+    if found is None:
+        found = {}
+        memory.append((model, found))
+        del memory[:-most]
+    if key not in found:
+        found[key] = work()
+    value: Found = found[key]
+    return value
 
 
 def _runs_of_steps(runs: Together) -> NDArray[np.intp]:
