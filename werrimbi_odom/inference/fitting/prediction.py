@@ -239,8 +239,7 @@ def _noise_of_legs(
     marker = path.position[runs.end] + complex(view.ahead, view.left) * np.exp(
         1j * path.yaw[runs.end]
     )
-    moved = np.empty((6, 2, runs.inside.size + 1))
-    moved[..., 0] = 0.0
+    found = np.zeros((6, 2, runs.count))
     for begin in range(0, leg.size, _BLOCK):
         block = slice(begin, begin + _BLOCK)
         steps, own_leg = runs.inside[block], leg[block]
@@ -250,11 +249,11 @@ def _noise_of_legs(
         noise = noise_of_wheel_variances(np.stack([left, none]), np.stack([none, right]), track)
         own = piece_covariance(motion, noise, path.yaw[steps] - facing[own_leg])
         lever = np.exp(-1j * facing[own_leg]) * (marker[own_leg] - path.position[steps + 1])
-        moved[..., 1:][..., block] = carried(own, lever.real, lever.imag)
-    sums = np.cumsum(moved, axis=-1)
-    starts = np.concatenate([[0], np.cumsum(count)])
-    found = PoseCovariance(*np.diff(sums[..., starts], axis=-1)).matrix()
-    return found[0], found[1]
+        moved = np.stack(carried(own, lever.real, lever.imag))
+        first = np.concatenate([[0], np.flatnonzero(np.diff(own_leg)) + 1])
+        found[..., own_leg[first]] += np.add.reduceat(moved, first, axis=-1)
+    left_part, right_part = PoseCovariance(*found).matrix()
+    return left_part, right_part
 
 
 _BLOCK = 8192

@@ -27,6 +27,8 @@ from werrimbi_odom.model.wiring import Wiring
 SIDES = ("left", "right")
 MODELS = 8
 """Of which it is remembered what was worked out: a fit comes back to a few only."""
+DELAYS = 4
+"""The same of shifts of the reference's clock: a fit moves one either way, and then on."""
 DRIVES = 2
 """Of which it is remembered what effects may look at: twenty numbers for each step."""
 Found = TypeVar("Found")
@@ -101,7 +103,7 @@ class Together:
             known = together([joined(fine, run.rows) for fine, run in runs], finer)
         elif known is None:
             known = together([delayed(run, delay) for run in self.runs])
-        _remember(self._delayed, delay, known)
+        _remember(self._delayed, delay, known, DELAYS)
         return known
 
     def known(self, key: Hashable, work: Callable[[Together], Found]) -> Found:
@@ -226,7 +228,8 @@ def _starts(sizes: Sequence[int]) -> NDArray[np.intp]:
 
 
 def _remember(memory: dict[Any, Any], key: Any, value: Any, most: int = MODELS) -> None:
-    """Older ones are forgotten."""
+    """Put it in as the latest; what was not asked for the longest is forgotten."""
+    memory.pop(key, None)
     while len(memory) >= most:
         del memory[next(iter(memory))]
     memory[key] = value
