@@ -121,7 +121,7 @@ def test_a_gap_is_not_counted_and_what_follows_is_white(
         start_yaws=point.model.start_yaws,
     )
     assert not found.known[laid.gap].any()
-    white = found.whitened()[0]
+    white = found.whitened()
     after = np.flatnonzero(laid.gap) + 1
     squares = white[after][found.known[after]] ** 2
     assert squares.mean() < 4.0

@@ -13,7 +13,15 @@ from hypothesis import strategies as st
 
 from test.model.drives import ROBOT
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.legs.cutting import MatchedRun, every_pose, record_of
+from werrimbi_odom.inference.fitting.prediction import predict
+from werrimbi_odom.inference.legs.cutting import (
+    MatchedRun,
+    cut_finely,
+    divided,
+    every_pose,
+    record_of,
+)
+from werrimbi_odom.inference.rules import RATE_OF_FIT
 from werrimbi_odom.model.pose import Floats
 
 
@@ -62,3 +70,25 @@ def test_counts_between_two_readings_lie_between_theirs(steps: list[int], parts:
     assert (found <= np.maximum(before, after) + 1e-9).all()
     at_messages = np.isclose(seen, np.round(seen))
     np.testing.assert_allclose(found[at_messages], counts, atol=1e-9)
+
+
+@pytest.mark.parametrize(("hertz", "together"), [(30.0, 1), (50.0, 1), (99.0, 1), (200.0, 4)])
+def test_a_fit_takes_fast_messages_together_and_its_legs_stay(hertz: float, together: int) -> None:
+    """It brakes and turns at once, in the legs of a fit from pose to pose of a tracker."""
+    time = np.arange(0.0, 30.0, 1.0 / hertz)
+    speed, rate = 0.4 + 0.4 * np.sin(2.5 * time), 1.5 * np.cos(1.1 * time)
+    wheels = (np.cumsum(speed + sign * 0.5 * ROBOT.track * rate) / hertz for sign in (-1.0, 1.0))
+    counts = (np.concatenate([[0.0], wheel[:-1]]) / ROBOT.left_tick for wheel in wheels)
+    seen = np.arange(0.013, 29.0, 0.037)
+    reference = Reference(seen, *[np.zeros(seen.size)] * 3)
+    record = record_of(Run("run", Path("run"), Ticks(time, *counts, {}), reference), ROBOT)
+    found = cut_finely(record, ROBOT, 1.0)
+    every = divided(record, found.rows)
+    assert np.median(np.diff(found.time)) == pytest.approx(together / hertz)
+    assert together * RATE_OF_FIT <= max(hertz, RATE_OF_FIT)
+    assert found.time.size < every.time.size / together + found.ends.size + 2
+    assert np.array_equal(found.time[found.ends], every.time[every.ends])
+    assert travelled(found) == pytest.approx(travelled(every), abs=1e-6)
+    shown, plainly = (predict(ROBOT, run, None).relative for run in (found, every))
+    assert np.abs(shown - plainly)[:, :2].max() < 2e-5
+    assert np.abs(shown - plainly)[:, 2].max() < 1e-9

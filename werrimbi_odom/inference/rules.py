@@ -82,6 +82,14 @@ that are put aside: a quarter, from both halves of the drive."""
 SET_ASIDE_ROWS = 80
 """Poses that a drive must have for it, ten a stretch; else whole drives are put aside."""
 
+RATE_OF_FIT = 50.0
+"""Steps a second of recorded driving that a fit works with, at the least [Hz]; of faster messages
+some are taken together (two at 100 Hz, four at 200 Hz).
+
+A robot that brakes at 1 m/s^2 while it turns at 2 rad/s leaves the arc of a step of 20 ms by 1.3
+um, and laws are the same however a drive is split into steps; speeds, which come in counts a step,
+are told the better. The ends of legs are where they were, counted from all messages."""
+
 # ------------------------------------------------------------------------- gaps of a recording
 
 GAP_INTERVALS = 10.0

@@ -10,11 +10,13 @@ would leave in the innovations, less what the model can turn already, against wh
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+import itertools
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
@@ -27,7 +29,7 @@ from werrimbi_odom.inference.diagnosis.variables import (
     functions_of,
     variables_of,
 )
-from werrimbi_odom.inference.fitting.candidates import of_each_run, unexplained
+from werrimbi_odom.inference.fitting.candidates import unexplained
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import DrivenPath, path_of, predict_all
@@ -42,6 +44,7 @@ BATCH = 2_000_000
 """Numbers of legs times columns that go through the filter at once."""
 
 CHANNELS = ("left", "right", "along", "sideways", "heading")
+_OF_WHEELS = CHANNELS[:3]
 
 
 @dataclass(frozen=True, slots=True)
@@ -52,6 +55,11 @@ class Amount:
     """left, right, along (both wheels alike), sideways or heading."""
     per: str
     """travel (signed), path (unsigned), turn or duration."""
+
+    @property
+    def of_wheels(self) -> bool:
+        """Whether it is what each wheel has of its own."""
+        return self.channel in _OF_WHEELS and self.per != "turn"
 
 
 AMOUNTS = (
@@ -123,113 +131,107 @@ def dependences(
 
     `knobs` are what the model can turn: what they can explain is no evidence.
     """
-    prediction = predict_all(point.model, runs)
-    frame, rest = unexplained(runs, point, kind, knobs, prediction)
-    found: list[tuple[Amount, Variable, Form, Floats, float, int]] = []
-    path = path_of(point.model, runs)
-    levers = {amount: _levers(runs, pushes_of(runs, path, amount, point)) for amount in AMOUNTS}
-    for cells_of in _batches(runs, variables_of(runs, point.model), levers):
-        change = np.concatenate([block for *_, block in cells_of], axis=-1)
-        marks = unexpected(runs, point, kind, change, prediction).whitened()[1]
-        first = 0
-        for amount, variable, form, block in cells_of:
-            own = marks[..., first : first + block.shape[-1]]
-            first += block.shape[-1]
-            if variable.per_run:
-                own = of_each_run(runs, own)
-            tested = _tested(own.reshape(rest.size, -1), frame, rest)
+    frame, rest = unexplained(runs, point, kind, knobs, predict_all(point.model, runs))
+    told = unexpected(runs, point, kind)
+    found: list[tuple[Amount, Variable, Form, ScoreTest]] = []
+    for cell, change in _changes(runs, point):
+        own = told.marks(change)[..., :-1].reshape(rest.size, -1)
+        parts = runs.legs if cell.variable.per_run else runs.legs[[0, -1]]
+        for amount, columns in zip(cell.amounts, np.split(own, len(cell.amounts), -1), strict=True):
+            tested = _tested(columns, frame, rest, 3 * parts)
             if tested is not None:
-                solution, gain, degrees = tested.coefficients, tested.gain, tested.degrees
-                found.append((amount, variable, form, solution, gain, degrees))
+                found.append((amount, cell.variable, cell.form, tested))
     cells = [
         Dependence(
             amount,
             variable,
             form,
-            solution.reshape(len(runs.runs), -1) if variable.per_run else solution,
-            gain,
-            degrees,
-            min(1.0, chi2_above(gain, degrees) * len(found)),
+            test.coefficients.reshape(len(runs.runs), -1)
+            if variable.per_run
+            else test.coefficients,
+            test.gain,
+            test.degrees,
+            min(1.0, chi2_above(test.gain, test.degrees) * len(found)),
         )
-        for amount, variable, form, solution, gain, degrees in found
+        for amount, variable, form, test in found
     ]
     return tuple(sorted(cells, key=lambda cell: (cell.p_value, -cell.gain / cell.degrees)))
 
 
-def _tested(flat: Floats, frame: Nuisance, rest: Floats) -> ScoreTest | None:
-    """Score test of some columns; with no copy of them less the nuisances, for there are many."""
-    cross = frame.basis.T @ flat
-    size = np.sqrt(np.sum(flat**2, axis=0))
-    # The rest is clear of the nuisances already.
-    return score_test_of_products(flat.T @ flat - cross.T @ cross, flat.T @ rest, size)
+def _tested(
+    columns: Floats, frame: Nuisance, rest: Floats, parts: NDArray[np.intp]
+) -> ScoreTest | None:
+    """Score test of columns (n, k), given once for each of the parts of the rows and zero beside.
+
+    With no copy of them less the nuisances, for there are many.
+    """
+    width = columns.shape[1]
+    square = np.zeros((width * (parts.size - 1),) * 2)
+    crosses, products, sizes = [], [], []
+    for number, (begin, end) in enumerate(itertools.pairwise(parts.tolist())):
+        own, place = columns[begin:end], slice(number * width, (number + 1) * width)
+        square[place, place] = own.T @ own
+        crosses.append(frame.basis[begin:end].T @ own)
+        products.append(own.T @ rest[begin:end])  # the rest is clear of the nuisances already
+        sizes.append(np.sqrt(np.sum(own**2, axis=0)))
+    cross = np.concatenate(crosses, axis=-1)
+    return score_test_of_products(
+        square - cross.T @ cross, np.concatenate(products), np.concatenate(sizes)
+    )
 
 
-Cell = tuple[Amount, Variable, Form, Floats]
+class _Cells(NamedTuple):
+    """Cells of one form of a variable."""
+
+    variable: Variable
+    form: Form
+    amounts: Sequence[Amount]
 
 
-def _batches(
-    runs: Together, variables: Sequence[Variable], levers: Mapping[Amount, _Levers]
-) -> Iterator[list[Cell]]:
-    """Cells with their changes of the legs, as many as memory bears at once."""
-    batch: list[Cell] = []
-    width = 0
-    for variable in variables:
-        for amount, form, block in _blocks(runs, variable, levers):
-            batch.append((amount, variable, form, block))
-            width += block.shape[-1]
-        if width * runs.count > BATCH:
-            yield batch
-            batch, width = [], 0
-    if batch:
-        yield batch
-
-
-def _blocks(
-    runs: Together, variable: Variable, levers: Mapping[Amount, _Levers]
-) -> Iterator[tuple[Amount, Form, Floats]]:
-    """Changes of the legs (m, 3, k) for each amount and form."""
-    steps = runs.inside
-    for form, (left, right) in functions_of(variable).items():
-        alike = left is right
-        of_left = left[steps]
-        of_right = of_left if alike else right[steps]
-        for amount, lever in levers.items():
-            if alike:
-                yield amount, form, _summed(lever.both, of_left)
-            elif amount.channel in ("left", "right", "along"):
-                yield amount, form, _summed(lever.left, of_left) + _summed(lever.right, of_right)
-
-
-class _Levers(NamedTuple):
-    """Sums over each leg's steps as sparse matrices (m, steps in legs), for x, y and yaw."""
-
-    left: list[Any]
-    right: list[Any]
-    both: list[Any]
-
-
-def _levers(runs: Together, pushes: tuple[Floats, Floats]) -> _Levers:
-    steps = runs.inside
-    left, right = (_sums(runs, part[steps]) for part in pushes)
-    return _Levers(left, right, _sums(runs, pushes[0][steps] + pushes[1][steps]))
-
-
-def _sums(runs: Together, pushes: Floats) -> list[Any]:
-    from scipy.sparse import csr_array
-
-    ends = np.concatenate([[0], np.cumsum(runs.end - runs.begin)])
-    columns, shape = np.arange(pushes.shape[0]), (runs.count, pushes.shape[0])
-    return [csr_array((part, columns, ends), shape=shape) for part in pushes.T.copy()]
-
-
-def _summed(sums: list[Any], functions: Floats) -> Floats:
-    return np.stack([part @ functions for part in sums], axis=1)
+def _changes(runs: Together, point: Point) -> Iterator[tuple[_Cells, Floats]]:
+    """Cells with their changes of the legs (m, 3, amounts * k), as many as memory bears at once."""
+    path = path_of(point.model, runs)
+    sides = [pushes_of(runs, path, amount, point) for amount in AMOUNTS]
+    both = np.concatenate([left + right for left, right in sides], axis=-1)
+    apart = [index for index, amount in enumerate(AMOUNTS) if amount.channel in _OF_WHEELS]
+    left, right = (
+        np.concatenate([sides[index][side] for index in apart], axis=-1) for side in (0, 1)
+    )
+    of_wheels = [AMOUNTS[index] for index in apart]
+    del sides
+    for variable in variables_of(runs, point.model):
+        for form, (of_left, of_right) in functions_of(variable).items():
+            alike = of_left is of_right
+            amounts = AMOUNTS if alike else of_wheels
+            each = max(1, BATCH // (runs.count * of_left.shape[1]))
+            for begin in range(0, len(amounts), each):
+                some = slice(3 * begin, 3 * (begin + each))
+                chosen = amounts[begin : begin + each]
+                if alike:
+                    sums = legs_pushed(runs, of_left, both[:, some])
+                else:
+                    sums = legs_pushed(runs, of_left, left[:, some])
+                    sums += legs_pushed(runs, of_right, right[:, some])
+                shaped = sums.reshape(runs.count, len(chosen), 3, -1).swapaxes(1, 2)
+                yield _Cells(variable, form, chosen), shaped.reshape(runs.count, 3, -1)
 
 
 def legs_pushed(runs: Together, functions: Floats, pushes: Floats) -> Floats:
-    """Sums over each leg's steps of functions (n, k) times pushes (n, 3), as (m, 3, k)."""
-    steps = runs.inside
-    return _summed(_sums(runs, pushes[steps]), functions[steps])
+    """Sums over each leg's steps of functions (n, k) times pushes (n, p), as (m, p, k)."""
+    size = runs.end - runs.begin
+    found = np.zeros((runs.count, pushes.shape[1], functions.shape[1]))
+    order = np.argsort(size, kind="stable")
+    for alike in np.split(order, np.flatnonzero(np.diff(size[order])) + 1):
+        within = np.arange(size[alike[0]])
+        for begin in range(0, alike.size, max(1, _BLOCK // max(within.size, 1))):
+            legs = alike[begin : begin + max(1, _BLOCK // max(within.size, 1))]
+            steps = runs.begin[legs, None] + within
+            found[legs] = pushes[steps].swapaxes(1, 2) @ functions[steps]
+    return found
+
+
+_BLOCK = 4096
+"""Steps at a time: what they take fits in the processor's cache."""
 
 
 def pushes_of(
@@ -241,18 +243,17 @@ def pushes_of(
     """
     robot = point.model.robot
     travel, motion = path.travel, path.motion
-    none = np.zeros(motion.turn.size)
-    view = view_of(robot.effects)
-    if amount.channel in ("left", "right", "along") and amount.per != "turn":
+    levers = runs.of_steps(
+        point.model, "levers", lambda: _levers(runs, path, view_of(robot.effects))
+    )
+    nothing = np.zeros((motion.turn.size, 3))
+    if amount.of_wheels:
         left = travel.left if amount.per == "travel" else np.abs(travel.left)
         right = travel.right if amount.per == "travel" else np.abs(travel.right)
-        of_left = _seen(runs, path, view, 0.5 * left, none, -left / robot.track)
-        of_right = _seen(runs, path, view, 0.5 * right, none, right / robot.track)
-        if amount.channel == "left":
-            return of_left, 0.0 * of_right
-        if amount.channel == "right":
-            return 0.0 * of_left, of_right
-        return of_left, of_right
+        return (
+            nothing if amount.channel == "right" else levers.seen(0.5 * left, -left / robot.track),
+            nothing if amount.channel == "left" else levers.seen(0.5 * right, right / robot.track),
+        )
     base = {
         "travel": motion.along,
         "path": np.abs(motion.along),
@@ -260,26 +261,38 @@ def pushes_of(
         "duration": runs.drive(robot).duration,
     }[amount.per]
     if amount.channel == "along":
-        moved = _seen(runs, path, view, base, none, none)
-    elif amount.channel == "sideways":
-        moved = _seen(runs, path, view, none, base, none)
-    else:
-        moved = _seen(runs, path, view, none, none, base)
-    return moved, 0.0 * moved
+        return levers.seen(base, None), nothing
+    if amount.channel == "sideways":
+        return levers.seen(1j * base, None), nothing
+    return levers.seen(None, base), nothing
 
 
-def _seen(
-    runs: Together, path: DrivenPath, view: View, along: Floats, sideways: Floats, turn: Floats
-) -> Floats:
-    """Errors of steps (n,) as they move the end of their leg, in its start's frame, (n, 3)."""
-    count = along.size
-    leg = np.clip(np.searchsorted(runs.begin, np.arange(count), side="right") - 1, 0, None)
-    facing = np.exp(-1j * (path.yaw[runs.begin[leg]] + view.yaw))
+class _Levers(NamedTuple):
+    """How errors of steps move the end of their leg, in its start's frame; (n,) each."""
+
+    along: NDArray[np.complex128]
+    """For a metre along."""
+    turn: NDArray[np.complex128]
+    """For a radian [m]."""
+
+    def seen(self, moved: Floats | NDArray[np.complex128] | None, turn: Floats | None) -> Floats:
+        """Relative pose for errors along (sideways imaginary) and in heading, (n, 3)."""
+        found = np.zeros((self.along.size, 3))
+        for part, lever in ((moved, self.along), (turn, self.turn)):
+            if part is not None:
+                place = lever * part
+                found[:, 0] += place.real
+                found[:, 1] += place.imag
+        if turn is not None:
+            found[:, 2] = turn
+        return found
+
+
+def _levers(runs: Together, path: DrivenPath, view: View) -> _Levers:
+    leg = np.searchsorted(runs.begin, np.arange(path.motion.turn.size), side="right") - 1
+    leg = np.clip(leg, 0, None)
+    facing = np.exp(-1j * (path.yaw[runs.begin] + view.yaw))[leg]
     middle = np.exp(1j * (path.yaw[:-1] + 0.5 * path.motion.turn))
-    end = runs.end[leg]
-    marker = path.position[end] + complex(view.ahead, view.left) * np.exp(1j * path.yaw[end])
-    moved = facing * (
-        middle * (along + 1j * sideways)
-        + 1j * turn * (marker - 0.5 * (path.position[:-1] + path.position[1:]))
-    )
-    return np.stack([moved.real, moved.imag, turn], axis=-1)
+    marker = path.position + complex(view.ahead, view.left) * np.exp(1j * path.yaw)
+    arm = marker[runs.end][leg] - 0.5 * (path.position[:-1] + path.position[1:])
+    return _Levers(facing * middle, 1j * facing * arm)

@@ -158,7 +158,7 @@ def _pattern(runs: Together, point: Point, kind: ReferenceKind, cell: Dependence
         strict=True,
     )
     change = np.asarray(sum(legs_pushed(runs, *side) for side in sides))
-    own = unexpected(runs, point, kind, change, prediction).whitened()[1][..., :-1]
+    own = unexpected(runs, point, kind, prediction).marks(change)[..., :-1]
     if cell.variable.per_run:
         own = of_each_run(runs, own)
     return np.asarray(own.reshape(3 * runs.count, -1))

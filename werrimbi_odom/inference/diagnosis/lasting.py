@@ -78,6 +78,7 @@ def lasting(
     frame, rest = unexplained(runs, point, kind, knobs, prediction)
     path = path_of(point.model, runs)
     parts = _parts(runs)
+    found = unexpected(runs, point, kind, prediction)
     for cell in cells:
         sides = zip(
             functions_of(cell.variable)[cell.form],
@@ -85,8 +86,7 @@ def lasting(
             strict=True,
         )
         change = sum(legs_pushed(runs, *side) for side in sides)
-        marks = unexpected(runs, point, kind, np.asarray(change), prediction).whitened()[1]
-        own = marks[..., :-1]
+        own = found.marks(np.asarray(change))[..., :-1]
         if cell.variable.per_run:
             own = of_each_run(runs, own)
         flat = own.reshape(rest.size, -1)

@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import product
 from typing import NamedTuple
 
@@ -154,13 +155,18 @@ def signatures(
     columns, owners = [], []
     for number, candidate in enumerate(tried):
         for coordinate in candidate.coordinates:
-            columns.append(_slope(runs, point.model, candidate, coordinate, prediction))
+            columns.append(
+                runs.of_model(
+                    point.model,
+                    (candidate.effect.apply, *coordinate.items()),
+                    partial(_slope, runs, point.model, candidate, coordinate, prediction),
+                )
+            )
             owners.append(number)
     if not columns:
         return np.zeros(0), iter(())
     change = np.stack(columns, axis=-1)
-    found = unexpected(runs, point, kind, change, prediction)
-    marks = found.whitened()[1][..., :-1]
+    marks = unexpected(runs, point, kind, prediction).marks(change)[..., :-1]
     frame, rest = unexplained(runs, point, kind, knobs, prediction)
     owned = np.array(owners)
 

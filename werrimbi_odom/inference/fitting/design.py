@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,19 +58,21 @@ def unexpected(
     runs: Together,
     point: Point,
     kind: ReferenceKind,
-    change: Floats | None = None,
     prediction: Prediction | None = None,
 ) -> Innovations:
-    """Innovations of all runs, and their derivatives for changes (m, 3, p) of the legs."""
-    return innovations(
-        point.model.robot,
-        runs,
-        prediction or predict_all(point.model, runs),
-        point.variances,
-        kind,
-        change=change,
-        excluded=point.skip,
-        start_yaws=point.model.start_yaws,
+    """Innovations of all runs; the latest are remembered with them."""
+    seen = prediction or predict_all(point.model, runs)
+    return runs.latest(
+        (point, kind, seen),
+        lambda: innovations(
+            point.model.robot,
+            runs,
+            seen,
+            point.variances,
+            kind,
+            excluded=point.skip,
+            start_yaws=point.model.start_yaws,
+        ),
     )
 
 
@@ -78,18 +81,19 @@ def slopes_of(runs: Together, model: Model, knobs: Sequence[Knob]) -> Floats:
 
     A knob of the runs' own is moved in all of them at once: legs feel their own run's alone.
     """
-    columns = []
-    for knob in knobs:
-        if knob.name == YAW_DRIFT:
-            columns.append(np.outer(runs.duration, [0.0, 0.0, 1.0]))
-            continue
-        ahead, behind = model.moved_by(knob, knob.scale), model.moved_by(knob, -knob.scale)
-        # What effects look at hardly changes with a radius; it is worked out once, as it is now.
-        looked_at = model.robot if knob.name in MULTIPLIERS else None
-        width = ahead.value(knob) - behind.value(knob) if not knob.per_run else 2.0 * knob.scale
-        poses = [legs_shown(side, runs, looked_at) for side in (ahead, behind)]
-        columns.append((poses[0] - poses[1]) / width)
+    columns = [runs.of_model(model, knob, partial(_slope, runs, model, knob)) for knob in knobs]
     return np.stack(columns, axis=-1) if columns else np.zeros((runs.count, 3, 0))
+
+
+def _slope(runs: Together, model: Model, knob: Knob) -> Floats:
+    if knob.name == YAW_DRIFT:
+        return np.outer(runs.duration, [0.0, 0.0, 1.0])
+    ahead, behind = model.moved_by(knob, knob.scale), model.moved_by(knob, -knob.scale)
+    # What effects look at hardly changes with a radius; it is worked out once, as it is now.
+    looked_at = model.robot if knob.name in MULTIPLIERS else None
+    width = ahead.value(knob) - behind.value(knob) if not knob.per_run else 2.0 * knob.scale
+    poses = [legs_shown(side, runs, looked_at) for side in (ahead, behind)]
+    return np.asarray((poses[0] - poses[1]) / width)
 
 
 def stacked(
@@ -101,9 +105,9 @@ def stacked(
 ) -> Design:
     """The design for knobs at a point; start headings that were not measured are among them."""
     local = [knob for knob in knobs if knob.name != START_YAW]
-    found = unexpected(runs, point, kind, slopes_of(runs, point.model, local), prediction)
-    white, slopes = found.whitened()
-    return spread_out(runs, point.model, white, slopes, local)
+    found = unexpected(runs, point, kind, prediction)
+    marks = found.marks(slopes_of(runs, point.model, local))
+    return spread_out(runs, point.model, found.whitened(), marks, local)
 
 
 def spread_out(

@@ -9,6 +9,7 @@ rounds of the loop as a minute.
 
 from __future__ import annotations
 
+import itertools
 from typing import NamedTuple
 
 import numpy as np
@@ -27,14 +28,12 @@ UNMEASURED = 1e6
 
 
 class Legs(NamedTuple):
-    """What the filter is to be told of m legs, for g sets of variances and w parameters."""
+    """What the filter is to be told of m legs, for g sets of variances."""
 
     relative: Floats
     """Predicted relative pose, (m, 3), each in the frame of its own start."""
     noise: Floats
     """Covariance of it, (g, m, 3, 3)."""
-    slopes: Floats
-    """Its derivatives in parameters, (m, 3, w)."""
     start: Floats
     """Measured pose at the legs' starts, (m, 3), NaN where not measured."""
     finish: Floats
@@ -51,6 +50,51 @@ class Legs(NamedTuple):
     """Heading at the start of a run where it was not measured, at the run's first leg, (m,)."""
 
 
+class Ways(NamedTuple):
+    """How a change of a leg's relative pose comes to the innovations, for the first set.
+
+    All in the order of the filter's loop: the first legs of all stretches, the second legs ...
+    """
+
+    leg: NDArray[np.intp]
+    """Which leg it is, (m,)."""
+    enter: Floats
+    """Turns its change into the filter's frame, (m, 3, 3)."""
+    carry: Floats
+    """Takes the change at the end of the leg before to the end of this one, (m, 3, 3)."""
+    leave: Floats
+    """Makes the change of the innovation of the change at the leg's end, (m, 3, 3)."""
+    free: NDArray[np.bool_]
+    """Stretches that begin with a heading that was not measured."""
+    rounds: list[slice]
+    """Of the loop."""
+
+    def innovations(self, slopes: Floats) -> Floats:
+        """Derivatives (m, 3, w + 1) for those of the legs' relative poses (m, 3, w).
+
+        The last one is in the run's start heading.
+        """
+        count, _, width = slopes.shape
+        found = np.empty((count, 3, width + 1))
+        for begin in range(0, width + 1, _COLUMNS):
+            columns = slice(begin, min(begin + _COLUMNS, width))
+            change = self.enter @ slopes[self.leg, :, columns]
+            if columns.stop < begin + _COLUMNS:
+                first = self.rounds[0]
+                heading = np.zeros((count, 3, 1))
+                heading[first, :, 0] = self.carry[first, :, 2] * self.free[:, None]
+                change = np.concatenate([change, heading], axis=-1)
+            for before, now in itertools.pairwise(self.rounds):
+                last = slice(before.start, before.start + now.stop - now.start)
+                change[now] += self.carry[now] @ change[last]
+            found[self.leg, :, begin : begin + _COLUMNS] = self.leave @ change
+        return found
+
+
+_COLUMNS = 32
+"""Of derivatives, at a time: what they take fits in the processor's cache."""
+
+
 class Unexpected(NamedTuple):
     """Innovations in the frame of the robot at each leg's start."""
 
@@ -58,8 +102,8 @@ class Unexpected(NamedTuple):
     """(g, m, 3), zero where nothing was measured."""
     covariance: Floats
     """(g, m, 3, 3)."""
-    change: Floats
-    """Derivatives for the first set, (m, 3, w + 1); the last one in the run's start heading."""
+    ways: Ways
+    """What changes of the legs do to them."""
 
 
 def stretches(legs: Legs) -> NDArray[np.intp]:
@@ -77,80 +121,94 @@ def stretches(legs: Legs) -> NDArray[np.intp]:
 
 
 def filtered(legs: Legs) -> Unexpected:
-    """Filter all stretches at once."""
-    sets, count, width = legs.noise.shape[0], legs.relative.shape[0], legs.slopes.shape[-1] + 1
+    """Filter all stretches at once.
+
+    States and covariances go through the loop for all sets. What they do to the derivatives is a
+    matrix for each leg, so these follow by a loop of one product.
+    """
+    sets, count = legs.noise.shape[0], legs.relative.shape[0]
     first = stretches(legs)
     length = np.diff(np.append(first, count))
     order = np.argsort(-length, kind="stable")
     first, length = first[order], length[order]
-    finite_start, finite_end = np.isfinite(legs.start), np.isfinite(legs.finish)
-    start, finish = np.nan_to_num(legs.start), np.nan_to_num(legs.finish)
-    free = ~finite_start[first, 2]
-    state = np.where(finite_start[first], start[first], 0.0)
+    # Legs in the order of the loop: the first of all stretches, the second of all that have one ...
+    active = [int(np.searchsorted(-length, -step)) for step in range(int(length[0]))]
+    bounds = np.concatenate([[0], np.cumsum(active)]).tolist()
+    leg = np.concatenate([first[:still] + step for step, still in enumerate(active)])
+    rounds = [slice(begin, end) for begin, end in itertools.pairwise(bounds)]
+
+    finite = np.isfinite(legs.start[first])
+    free = ~finite[:, 2]
+    state = np.where(finite, legs.start[first], 0.0)
     state[:, 2] = np.where(free, np.nan_to_num(legs.heading[first]), state[:, 2])
     state = np.repeat(state[None], sets, axis=0)
     alike = legs.reading.shape[1] == 1
-    spread = (legs.reading if alike else legs.reading[:, first]) * _both(finite_start[first])
-    slope = np.zeros((first.size, 3, width))
-    slope[free, 2, -1] = 1.0
+    spread = (legs.reading if alike else legs.reading[:, first]) * _both(finite)
+
+    relative, noise, finish = legs.relative[leg], legs.noise[:, leg], legs.finish[leg]
+    known, jumped = np.isfinite(finish), legs.skip[leg]
+    finish = np.where(known, finish, 0.0)
+    reading = np.broadcast_to(legs.reading, noise.shape) if alike else legs.reading[:, leg]
+    doubted = reading + UNMEASURED * _diagonal(~known)
+    plain = [bool(known[now].all()) and not jumped[now].any() for now in rounds]
+
     values = np.zeros((sets, count, 3))
-    covariances = np.empty((sets, count, 3, 3))
-    turns = np.empty((sets, count, 3, 3))
-    changes = np.zeros((count, 3, width))
+    covariances, turns, levers = (np.empty((sets, count, 3, 3)) for _ in range(3))
+    kept = np.empty((count, 3, 3))
     identity = np.eye(3)
-    for step in range(int(length[0])):
-        active = int(np.searchsorted(-length, -step))
-        leg = first[:active] + step
-        state, spread, slope = state[:, :active], spread[:, :active], slope[:active]
-        turn = _turns(state[..., 2])
-        turns[:, leg] = turn
-        move = (turn @ legs.relative[leg][..., None])[..., 0]
-        lever = np.zeros_like(turn) + identity
+    levers[:] = identity
+    for now, still, simple in zip(rounds, active, plain, strict=True):
+        state, spread = state[:, :still], spread[:, :still]
+        turn, lever = turns[:, now], levers[:, now]
+        _turn_into(turn, state[..., 2])
+        move = (turn @ relative[now, :, None])[..., 0]
         lever[..., 0, 2], lever[..., 1, 2] = -move[..., 1], move[..., 0]
         state = state + move
         spread = lever @ spread @ lever.swapaxes(-1, -2)
-        spread = spread + turn @ legs.noise[:, leg] @ turn.swapaxes(-1, -2)
-        slope = lever[0] @ slope
-        slope[..., :-1] += turn[0] @ legs.slopes[leg]
-        known = finite_end[leg]
-        reading = legs.reading if alike else legs.reading[:, leg]
-        total = spread + reading + UNMEASURED * _diagonal(~known)
-        covariances[:, leg] = total
-        new = np.where(known, finish[leg] - state, 0.0)
+        spread += turn @ noise[:, now] @ turn.swapaxes(-1, -2)
+        total = np.add(spread, doubted[:, now], out=covariances[:, now])
+        new = np.subtract(finish[now], state, out=values[:, now])
+        if not simple:
+            new[:, ~known[now]] = 0.0
         new[..., 2] = wrap_all(new[..., 2])
-        change = np.where(known[..., None], -slope, 0.0)
         gain = spread @ np.linalg.inv(total)
-        values[:, leg], changes[leg] = new, change
-        jumped = legs.skip[leg]
-        anew_slope = np.where(known[..., None], 0.0, slope)
-        # What was measured at the leg's end is all that is known of it; the rest (the heading,
-        # where positions alone are measured) is as well known as the wheels carried it there.
-        anew_state = np.where(known, finish[leg], state)
-        anew_spread = np.where(_both(known), reading, 0.0)
-        anew_spread = np.where(_both(~known), spread, anew_spread)
+        before = state, spread
         state = state + (gain @ new[..., None])[..., 0]
         spread = spread - gain @ spread
         spread = 0.5 * (spread + spread.swapaxes(-1, -2))
-        slope = slope + gain[0] @ change
-        if jumped.any():
-            values[:, leg[jumped]], changes[leg[jumped]] = 0.0, 0.0
-            state = np.where(jumped[:, None], anew_state, state)
-            spread = np.where(jumped[:, None, None], anew_spread, spread)
-            slope = np.where(jumped[:, None, None], anew_slope, slope)
+        kept[now] = identity - gain[0] * known[now, None, :]
+        if not simple:
+            # What was measured at the end of a leg with a jump is all that is known of it; the rest
+            # (the heading, where positions alone are measured) is as well known as the wheels
+            # carried it there.
+            seen, leapt = known[now], jumped[now]
+            both, apart = _both(seen), _both(~seen)
+            anew = np.where(apart, before[1], np.where(both, reading[:, now], 0.0))
+            values[:, now][:, leapt] = 0.0
+            state = np.where(leapt[:, None], np.where(seen, finish[now], before[0]), state)
+            spread = np.where(leapt[:, None, None], anew, spread)
+            kept[now][leapt] = _diagonal(~seen[leapt])
+    place = np.empty(count, dtype=np.intp)
+    place[leg] = np.arange(count)
     back = turns.swapaxes(-1, -2)
+    seen_back = -back[0] * (known & ~jumped[:, None])[:, None]
+    passed = levers[0].copy()
+    for last, now in itertools.pairwise(rounds):
+        passed[now] = levers[0, now] @ kept[last.start : last.start + now.stop - now.start]
     return Unexpected(
-        (back @ values[..., None])[..., 0], back @ covariances @ turns, back[0] @ changes
+        (back @ values[..., None])[..., 0][:, place],
+        (back @ covariances @ turns)[:, place],
+        Ways(leg, turns[0], passed, seen_back, free, rounds),
     )
 
 
-def _turns(yaw: Floats) -> Floats:
-    """Rotations of (x, y, yaw) by angles of shape (g, s)."""
-    turn = np.zeros((*yaw.shape, 3, 3))
+def _turn_into(turn: Floats, yaw: Floats) -> None:
+    """Write rotations of (x, y, yaw) by angles of shape (g, s)."""
     cos, sin = np.cos(yaw), np.sin(yaw)
+    turn[:] = 0.0
     turn[..., 0, 0] = turn[..., 1, 1] = cos
     turn[..., 0, 1], turn[..., 1, 0] = -sin, sin
     turn[..., 2, 2] = 1.0
-    return turn
 
 
 def _diagonal(rows: NDArray[np.bool_]) -> Floats:

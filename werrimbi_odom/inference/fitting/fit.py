@@ -203,7 +203,7 @@ def _jumps(runs: Together, point: Point, kind: ReferenceKind) -> tuple[NDArray[n
     nothing = tuple(np.zeros(size, dtype=np.bool_) for size in np.diff(runs.legs))
     if headings_alone(runs):
         return nothing  # a gyro does not jump; legs that deviate are those that turn
-    white, _ = unexpected(runs, replace(point, excluded=nothing), kind).whitened()
+    white = unexpected(runs, replace(point, excluded=nothing), kind).whitened()
     deviation = np.sum(white**2, axis=-1)
     found = []
     for first, last in zip(runs.legs[:-1], runs.legs[1:], strict=True):
@@ -228,7 +228,7 @@ def _gauss_newton(
         for _ in range(5):
             tried = replace(point, model=moved(point.model, design, step))
             ahead = replace(prediction, relative=legs_shown(tried.model, runs))
-            cost = float(np.sum(unexpected(runs, tried, kind, None, ahead).whitened()[0] ** 2))
+            cost = float(np.sum(unexpected(runs, tried, kind, ahead).whitened() ** 2))
             if cost < best:
                 break
             step = 0.3 * step
@@ -295,9 +295,7 @@ def _turned_to_the_first_legs(runs: Together, point: Point, kind: ReferenceKind)
         heading = _first_heading(model.of_run(index), run)
         own.append(dict(mine) if heading is None else {**mine, START_YAW: heading})
     squares = [
-        np.add.reduceat(
-            np.sum(unexpected(runs, tried, kind).whitened()[0] ** 2, -1), runs.legs[:-1]
-        )
+        np.add.reduceat(np.sum(unexpected(runs, tried, kind).whitened() ** 2, -1), runs.legs[:-1])
         for tried in (point, replace(point, model=Model(model.robot, tuple(own))))
     ]
     better = squares[1] < squares[0]

@@ -10,8 +10,8 @@ alone, two poses in a drive. So likelihood, fits and tests for all of them rest 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,10 +60,13 @@ class Innovations:
     """Shape (g, m, 3); zero where nothing was measured."""
     covariance: Floats
     """Shape (g, m, 3, 3)."""
-    change: Floats
-    """Derivative in p parameters for the first set of variances, shape (m, 3, p)."""
+    change: Callable[[Floats], Floats]
+    """From derivatives of the legs' relative poses (m, 3, p) to its own for the first set of
+    variances, (m, 3, p + 1): the last one is in the run's heading at its first reference pose, zero
+    where that was measured."""
     known: NDArray[np.bool_]
     """Which coordinates were measured and are to be counted, shape (m, 3)."""
+    _roots: list[Floats] = field(default_factory=list)
 
     def cost_of_legs(self) -> Floats:
         """Minus two log-likelihood of each leg, constants left out; (g, m), zero where unseen."""
@@ -76,13 +79,19 @@ class Innovations:
         """Of each set of variances, constants left out; shape (g,)."""
         return np.asarray(np.sum(self.cost_of_legs(), axis=-1))
 
-    def whitened(self) -> tuple[Floats, Floats]:
-        """Innovations of unit variance (m, 3) and their derivatives (m, 3, p), first set."""
-        factor = np.linalg.cholesky(self.covariance[0])
-        joined = np.concatenate([self.value[0][..., None], self.change], axis=-1)
-        white = np.linalg.solve(factor, joined)
-        white[~self.known] = 0.0
-        return white[..., 0], white[..., 1:]
+    def whitened(self) -> Floats:
+        """Innovations of unit variance, (m, 3); first set."""
+        return np.asarray((self._root() @ self.value[0][..., None])[..., 0])
+
+    def marks(self, slopes: Floats) -> Floats:
+        """Their derivatives for those of the legs' relative poses, as `change` has them."""
+        return np.asarray(self._root() @ self.change(slopes))
+
+    def _root(self) -> Floats:
+        if not self._roots:
+            root = np.linalg.inv(np.linalg.cholesky(self.covariance[0]))
+            self._roots.append(root * self.known[..., None])
+        return self._roots[0]
 
 
 def innovations(
@@ -92,7 +101,6 @@ def innovations(
     variances: Variances,
     kind: ReferenceKind,
     *,
-    change: Floats | None = None,
     excluded: NDArray[np.bool_] | None = None,
     start_yaws: Sequence[float | None] | None = None,
 ) -> Innovations:
@@ -100,9 +108,6 @@ def innovations(
 
     Parameters
     ----------
-    change : ndarray, shape (m, 3, p), optional
-        Derivatives of the legs' relative poses. In the result one more column follows: the
-        derivative in the run's heading at its first reference pose, zero where that was measured.
     excluded : ndarray of bool, shape (m,), optional
         Legs on which the reference jumped: like gaps they are not counted, and the pose starts anew
         after them.
@@ -110,13 +115,12 @@ def innovations(
         For each run the heading at the first reference pose, where that was not measured [rad].
     """
     count = runs.count
-    slopes = np.zeros((count, 3, 0)) if change is None else change
     skip = runs.gap if excluded is None else runs.gap | excluded
     view = view_of(robot.effects)
     start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
     gyro = headings_alone(runs)
     if kind == "incremental" and not gyro:
-        return _of_increments(robot, runs, (start, finish), prediction, variances, slopes, skip)
+        return _of_increments(robot, runs, (start, finish), prediction, variances, skip)
     begins = np.zeros(count, dtype=np.bool_)
     begins[runs.legs[:-1]] = True
     heading = np.full(count, np.nan)
@@ -132,7 +136,6 @@ def innovations(
         Legs(
             prediction.relative,
             noise,
-            slopes,
             start,
             finish,
             reading,
@@ -142,7 +145,7 @@ def innovations(
         )
     )
     known = np.isfinite(finish) & ~skip[:, None]
-    return Innovations(found.value, found.covariance, found.change, known)
+    return Innovations(found.value, found.covariance, found.ways.innovations, known)
 
 
 def _of_increments(
@@ -151,7 +154,6 @@ def _of_increments(
     measured: tuple[Floats, Floats],
     prediction: Prediction,
     variances: Variances,
-    slopes: Floats,
     skip: NDArray[np.bool_],
 ) -> Innovations:
     """Legs are independent: the noise of each interval of the reference is its own."""
@@ -170,9 +172,13 @@ def _of_increments(
     )
     covariance = covariance + UNMEASURED * _diagonal(~np.isfinite(value))
     value = np.where(known, value, 0.0)
-    change = np.concatenate([-slopes, np.zeros((runs.count, 3, 1))], axis=-1)
     sets = variances.left.size
-    return Innovations(np.broadcast_to(value, (sets, *value.shape)), covariance, change, known)
+    return Innovations(np.broadcast_to(value, (sets, *value.shape)), covariance, _alone, known)
+
+
+def _alone(slopes: Floats) -> Floats:
+    """Changes of innovations where each leg stands for itself, and no start heading is fitted."""
+    return np.concatenate([-slopes, np.zeros((*slopes.shape[:2], 1))], axis=-1)
 
 
 def relative_errors(run: MatchedRun, prediction: Prediction) -> Floats:

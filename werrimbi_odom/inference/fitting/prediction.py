@@ -88,13 +88,16 @@ def legs_shown(model: Model, runs: Together, looked_at: Robot | None = None) -> 
 
 def predict_all(model: Model, runs: Together) -> Prediction:
     """The same, with the noise that it has for unit noise of each wheel."""
+    return runs.of_model(model, "prediction", lambda: _predicted(model, runs))
+
+
+def _predicted(model: Model, runs: Together) -> Prediction:
     view = view_of(model.robot.effects)
     runs = runs.delayed(view.delay)
-    robot = model.laid_out(runs.run_of_step)
-    path = _path(robot, runs, view, model.start_yaws)
+    path = path_of(model, runs)
     return Prediction(
         _shown(path, runs, view, model.drifts),
-        *_noise_of_legs(path, runs, robot.track, view),
+        *_noise_of_legs(path, runs, model.robot.track, view),
         runs.per_leg(np.abs(path.motion.along)),
         runs.per_leg(path.motion.along),
         path.yaw[runs.end] - path.yaw[runs.begin],
@@ -108,8 +111,12 @@ def right_handed(poses: Floats, view: View) -> Floats:
 
 def path_of(model: Model, runs: Together) -> DrivenPath:
     """What the model makes of the steps of all runs (the reference's delay being none)."""
-    robot = model.laid_out(runs.run_of_step)
-    return _path(robot, runs, view_of(robot.effects), model.start_yaws)
+
+    def path() -> DrivenPath:
+        robot = model.laid_out(runs.run_of_step)
+        return _path(robot, runs, view_of(robot.effects), model.start_yaws)
+
+    return runs.of_steps(model, "path", path)
 
 
 def headings_of(
@@ -232,8 +239,7 @@ def _noise_of_legs(
     marker = path.position[runs.end] + complex(view.ahead, view.left) * np.exp(
         1j * path.yaw[runs.end]
     )
-    moved = np.empty((6, 2, runs.inside.size + 1))
-    moved[..., 0] = 0.0
+    found = np.zeros((6, 2, runs.count))
     for begin in range(0, leg.size, _BLOCK):
         block = slice(begin, begin + _BLOCK)
         steps, own_leg = runs.inside[block], leg[block]
@@ -243,11 +249,11 @@ def _noise_of_legs(
         noise = noise_of_wheel_variances(np.stack([left, none]), np.stack([none, right]), track)
         own = piece_covariance(motion, noise, path.yaw[steps] - facing[own_leg])
         lever = np.exp(-1j * facing[own_leg]) * (marker[own_leg] - path.position[steps + 1])
-        moved[..., 1:][..., block] = carried(own, lever.real, lever.imag)
-    sums = np.cumsum(moved, axis=-1)
-    starts = np.concatenate([[0], np.cumsum(count)])
-    found = PoseCovariance(*np.diff(sums[..., starts], axis=-1)).matrix()
-    return found[0], found[1]
+        moved = np.stack(carried(own, lever.real, lever.imag))
+        first = np.concatenate([[0], np.flatnonzero(np.diff(own_leg)) + 1])
+        found[..., own_leg[first]] += np.add.reduceat(moved, first, axis=-1)
+    left_part, right_part = PoseCovariance(*found).matrix()
+    return left_part, right_part
 
 
 _BLOCK = 8192

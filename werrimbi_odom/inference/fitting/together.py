@@ -25,6 +25,12 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.wiring import Wiring
 
 SIDES = ("left", "right")
+MODELS = 8
+"""Of which it is remembered what was worked out: a fit comes back to a few only."""
+DELAYS = 4
+"""The same of shifts of the reference's clock: a fit moves one either way, and then on."""
+DRIVES = 2
+"""Of which it is remembered what effects may look at: twenty numbers for each step."""
 Found = TypeVar("Found")
 
 
@@ -57,6 +63,9 @@ class Together:
     _features: dict[tuple[float, ...], Drive[Floats]] = field(default_factory=dict)
     _delayed: dict[float, Together] = field(default_factory=dict)
     _known: dict[Hashable, Any] = field(default_factory=dict)
+    _of_models: list[tuple[object, dict[Hashable, Any]]] = field(default_factory=list)
+    _of_steps: list[tuple[object, dict[Hashable, Any]]] = field(default_factory=list)
+    _latest: list[tuple[tuple[object, ...], Any]] = field(default_factory=list)
 
     @property
     def count(self) -> int:
@@ -71,13 +80,12 @@ class Together:
     @property
     def run_of_step(self) -> NDArray[np.intp]:
         """Index of the run of each step, shape (n,)."""
-        return np.repeat(np.arange(len(self.runs)), np.diff(self.steps))
+        return self.known("run_of_step", _runs_of_steps)
 
     @property
     def inside(self) -> NDArray[np.intp]:
         """Steps that belong to a leg."""
-        runs = zip(self.runs, self.steps, strict=False)
-        return np.concatenate([np.arange(run.ends[0], run.ends[-1]) + first for run, first in runs])
+        return self.known("inside", _steps_in_legs)
 
     def per_leg(self, values: Floats) -> Floats:
         """Sums over the steps of each leg of values for all steps."""
@@ -95,7 +103,7 @@ class Together:
             known = together([joined(fine, run.rows) for fine, run in runs], finer)
         elif known is None:
             known = together([delayed(run, delay) for run in self.runs])
-        _remember(self._delayed, delay, known)
+        _remember(self._delayed, delay, known, DELAYS)
         return known
 
     def known(self, key: Hashable, work: Callable[[Together], Found]) -> Found:
@@ -105,6 +113,23 @@ class Together:
             found = work(self)
             _remember(self._known, key, found)
         return found
+
+    def of_model(self, model: object, key: Hashable, work: Callable[[], Found]) -> Found:
+        """What `work` finds of a model by its legs, worked out once for the last few models."""
+        return _recalled(self._of_models, model, key, work, MODELS)
+
+    def of_steps(self, model: object, key: Hashable, work: Callable[[], Found]) -> Found:
+        """The same of what is as long as the steps, for the last model alone."""
+        return _recalled(self._of_steps, model, key, work, 1)
+
+    def latest(self, of: tuple[object, ...], work: Callable[[], Found]) -> Found:
+        """What `work` finds, unless it was found the last time, of the very same objects."""
+        if not self._latest or any(
+            one is not other for one, other in zip(self._latest[0][0], of, strict=True)
+        ):
+            self._latest[:] = [(of, work())]
+        value: Found = self._latest[0][1]
+        return value
 
     def parts(self) -> tuple[NDArray[np.intp], NDArray[np.intp]]:
         """First leg of `finer` in each leg, and one past the last; shape (m,) each."""
@@ -127,7 +152,7 @@ class Together:
         known = self._features.get(key)
         if known is None:
             known = _joined([_drive_of(run, robot, wiring) for run in self.runs])
-            _remember(self._features, key, known)
+            _remember(self._features, key, known, DRIVES)
         return known
 
 
@@ -171,13 +196,41 @@ def _drive_of(run: MatchedRun, robot: Robot, wiring: Wiring) -> Drive[Floats]:
     return features(robot, np.diff(run.time), raw, first_counts, run.channels)
 
 
+def _recalled(
+    memory: list[tuple[object, dict[Hashable, Any]]],
+    model: object,
+    key: Hashable,
+    work: Callable[[], Found],
+    most: int,
+) -> Found:
+    found = next((found for known, found in memory if known == model), None)
+    if found is None:
+        found = {}
+        memory.append((model, found))
+        del memory[:-most]
+    if key not in found:
+        found[key] = work()
+    value: Found = found[key]
+    return value
+
+
+def _runs_of_steps(runs: Together) -> NDArray[np.intp]:
+    return np.repeat(np.arange(len(runs.runs)), np.diff(runs.steps))
+
+
+def _steps_in_legs(runs: Together) -> NDArray[np.intp]:
+    both = zip(runs.runs, runs.steps, strict=False)
+    return np.concatenate([np.arange(run.ends[0], run.ends[-1]) + first for run, first in both])
+
+
 def _starts(sizes: Sequence[int]) -> NDArray[np.intp]:
     return np.concatenate([[0], np.cumsum(sizes)]).astype(np.intp)
 
 
-def _remember(memory: dict[Any, Any], key: Any, value: Any) -> None:
-    """A fit comes back to a few settings only; older ones are forgotten."""
-    while len(memory) >= 8:
+def _remember(memory: dict[Any, Any], key: Any, value: Any, most: int = MODELS) -> None:
+    """Put it in as the latest; what was not asked for the longest is forgotten."""
+    memory.pop(key, None)
+    while len(memory) >= most:
         del memory[next(iter(memory))]
     memory[key] = value
 

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,6 +17,9 @@ from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
+
+ROUNDING = 1e-3
+"""Share of a message by which a usual interval may be off in stamps of whole microseconds."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -33,6 +36,16 @@ class Counters:
     first_right: float
     channels: Mapping[str, Floats] = field(default_factory=dict)
     """Extra measured channels at each message."""
+    every: int = 1
+    """Messages from one node to the next."""
+
+    def at_most(self, rate: float) -> Counters:
+        """The same with nodes at every so many messages, as many as come to `rate` [Hz] or more.
+
+        What was counted, and when, stays known at each message.
+        """
+        usual = float(np.median(np.diff(self.time)))
+        return replace(self, every=max(1, int(1.0 / (rate * usual) + ROUNDING)))
 
     def at(self, time: Floats) -> Floats:
         """Counts at any times, (n, 2): left and right; see `between_messages`."""
@@ -77,7 +90,7 @@ def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counter
 def nodes_at(
     counters: Counters, at: Floats
 ) -> tuple[Floats, Floats, Floats, NDArray[np.intp], Mapping[str, Span[Floats]]]:
-    """Nodes at every message and at the times `at` (n, ascending).
+    """Nodes at the counters' messages and at the times `at` (n, ascending).
 
     Returns
     -------
@@ -85,22 +98,24 @@ def nodes_at(
         Of the nodes (k + 1,), the counts between them (k,) and (k,), the nodes of `at` (n,), and
         what other channels measured at the start and end of each step.
     """
-    known = counters.time
+    last = counters.time.size - 1
+    kept = np.append(np.arange(0, last, counters.every), last)
+    known, left, right = (part[kept] for part in (counters.time, counters.left, counters.right))
     place = np.searchsorted(known, at)
     new = np.unique(at[known[np.minimum(place, known.size - 1)] != at])
     if new.size == 0:
-        time, left, right = known, np.diff(counters.left), np.diff(counters.right)
+        time, left, right = known, np.diff(left), np.diff(right)
     else:
         here = np.searchsorted(known, new) + np.arange(new.size)
         between = counters.at(new)
         time = _with(known, new, here)
-        left = np.diff(_with(counters.left, between[:, 0], here))
-        right = np.diff(_with(counters.right, between[:, 1], here))
+        left = np.diff(_with(left, between[:, 0], here))
+        right = np.diff(_with(right, between[:, 1], here))
     channels = {}
     for name, values in counters.channels.items():
         measured = np.isfinite(values)
         if measured.any():
-            there = np.interp(time, known[measured], values[measured])
+            there = np.interp(time, counters.time[measured], values[measured])
             channels[name] = Span(there[:-1], there[1:])
     return time, left, right, np.searchsorted(time, at), channels
 

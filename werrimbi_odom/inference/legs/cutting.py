@@ -26,6 +26,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference.legs.counters import Counters, counters_of, nodes_at
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
+from werrimbi_odom.inference.rules import RATE_OF_FIT
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
@@ -157,6 +158,7 @@ def match_finely(
 def cut_finely(record: Record, robot: Robot, leg: float) -> MatchedRun:
     """One of them."""
     parts = 1.0 / PARTS_OF_A_LEG
+    record = replace(record, counters=record.counters.at_most(RATE_OF_FIT))
     return divided(record, rows_of_legs(record, robot, parts * leg, parts * QUARTER_TURN))
 
 

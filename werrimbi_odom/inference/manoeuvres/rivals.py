@@ -37,8 +37,8 @@ class Experiment:
     def whitened(self, changes: Floats) -> Floats:
         """Changes of the legs (m, 3, p) as they appear in the innovations, (3 m, p)."""
         prediction = predict_all(self.point.model, self.runs)
-        found = unexpected(self.runs, self.point, self.kind, changes, prediction)
-        marks = found.whitened()[1][..., : changes.shape[-1]]
+        found = unexpected(self.runs, self.point, self.kind, prediction)
+        marks = found.marks(changes)[..., : changes.shape[-1]]
         return np.asarray(marks.reshape(-1, changes.shape[-1]))
 
     def nuisances(self, knobs: Sequence[Knob]) -> Floats:

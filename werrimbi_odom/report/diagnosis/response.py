@@ -92,7 +92,7 @@ def response(
     change = legs_pushed(runs, left, of_left)
     if values[0] is not values[1] or amount.channel in ("left", "right", "along"):
         change = change + legs_pushed(runs, right, of_right)
-    marks = unexpected(runs, point, kind, change, prediction).whitened()[1]
+    marks = unexpected(runs, point, kind, prediction).marks(change)
     flat = marks[..., : change.shape[-1]].reshape(rest.size, -1)
     length = np.sqrt(np.sum(flat**2, axis=0))
     heard = length > SILENT
