@@ -20,15 +20,9 @@ from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates
 from werrimbi_odom.inference.fitting.prediction import predict
 from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.inference.rules import STRANGE_NOISE, SURE
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-
-MISFIT_P = 1e-3
-"""Below this (corrected for the number of dependences tried) something other than calibration is
-missing."""
-
-STRANGE_NOISE = 0.01
-"""A wheel noise [m^0.5] above this (1 cm after 1 m) is no rolling wheel's."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,7 +81,7 @@ def calibrate(
     noises = noise_estimates(Costs(runs, fit.point, kind), fit.point.variances, held)
     turned = [knob for knob in CALIBRATION if knob in fit.free]
     found = dependences(together(runs), fit.point, kind, turned)
-    misfit = tuple(item for item in found if item.p_value < MISFIT_P)
+    misfit = tuple(item for item in found if item.p_value < SURE)
     strange = _strange(fit, noises)
     spread = np.sqrt(np.diag(fit.covariance))
     names = [knob.name for knob in fit.free]
