@@ -37,6 +37,9 @@ SCATTERED = tuple(
 )
 """Where they stand in code without that module."""
 
+JUDGING = tuple(f"werrimbi_odom.inference.{name}." for name in ("diagnosis", "fitting", "legs"))
+"""Where a diagnosis of drives that are set up rightly reads them; others change none of it."""
+
 FACTORS = (0.7, 1.4)
 
 GROUPS = ("effect", "clean", "pair", "outsider", "rivals", "other", "poorer")
@@ -51,6 +54,18 @@ def constants() -> dict[str, float]:
         for name, value in vars(import_module(place)).items()
         if name.isupper() and isinstance(value, (int, float)) and not isinstance(value, bool)
     }
+
+
+def judging() -> dict[str, float]:
+    """Those that a diagnosis reads, and not the words, a comparison or a square of UMBmark."""
+    _load()
+    held = {
+        name
+        for key, module in sys.modules.items()
+        if key.startswith(JUDGING)
+        for name in vars(module)
+    }
+    return {name: value for name, value in constants().items() if name in held}
 
 
 def times(value: float, factor: float) -> float:
@@ -98,7 +113,7 @@ def tasks(
     some = evenly([each for each in sets if each.group in GROUPS], wanted, start)
     return {
         f"{name} x{factor:g} {each.name}": (each, name, factor)
-        for name, value in constants().items()
+        for name, value in judging().items()
         for factor in FACTORS
         if times(value, factor) != value
         for each in some

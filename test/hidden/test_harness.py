@@ -276,6 +276,13 @@ def test_every_deciding_number_can_be_perturbed_and_comes_back() -> None:
     assert margins.constants() == before
 
 
+def test_only_what_a_diagnosis_reads_is_made_larger_and_smaller() -> None:
+    read = margins.judging()
+    assert {"SURE", "RIVAL", "LAW_SHARE", "LASTING_PARTS", "JUMP_OF_A_LEG"} <= read.keys()
+    assert not {"HONEST_WITHIN", "LEAST_SQUARES", "MOST_DRAFTED", "LONGEST_DRIVE"} & read.keys()
+    assert read.keys() < margins.constants().keys()
+
+
 def test_a_whole_number_moves_by_one_at_least_and_stays_above_none() -> None:
     assert margins.times(3, 1.4) == 4
     assert margins.times(2, 0.7) == 1

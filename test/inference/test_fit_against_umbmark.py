@@ -11,7 +11,8 @@ from test.white_noise_robot import WhiteNoiseRobot, drive, square
 from werrimbi_odom.inference.calibration.recorded_square import Record, recorded_square, squares_of
 from werrimbi_odom.inference.calibration.umbmark import corrected, umbmark
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
-from werrimbi_odom.inference.legs.cutting import QUARTER_TURN, match
+from werrimbi_odom.inference.legs.cutting import match
+from werrimbi_odom.inference.rules import QUARTER_TURN
 from werrimbi_odom.model.robot import Robot
 
 NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0)

@@ -15,8 +15,8 @@ pytest.importorskip("rclpy")
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.inference.comparison.consistency import chi_squared_quantile
-from werrimbi_odom.inference.comparison.reference_noise import USUAL_SIGMA_XY, USUAL_SIGMA_YAW
 from werrimbi_odom.inference.rules import HONEST_CHANCE as ALARM
+from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Pose
@@ -161,7 +161,7 @@ def test_a_dishonest_covariance_is_said_and_which_way(noise: float, said: str) -
 
 
 def test_a_perfect_reference_with_the_usual_sigmas_is_said_to_be_a_reason() -> None:
-    xy, yaw = USUAL_SIGMA_XY**2, USUAL_SIGMA_YAW**2
+    xy, yaw = TAPE_XY**2, TAPE_YAW**2
     window = Window(60)
     for leg in legs_of(1, sigmas=(1e-9, 1e-9), stated=PoseCovariance(xy, 0.0, 0.0, xy, 0.0, yaw)):
         window.take(leg.deviation, leg.grows)

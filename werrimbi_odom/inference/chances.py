@@ -8,6 +8,12 @@ is a tenth of the time in which an hour of driving is to be seen.
 
 from __future__ import annotations
 
+MEDIAN_TO_SIGMA = 1.4826
+"""Standard deviation of a normal scatter over the median of its sizes."""
+
+NORMAL_95 = 1.959963984540054
+"""Standard deviations to either side that hold 95 % of a normal scatter."""
+
 
 def chi2_above(value: float, degrees: float) -> float:
     """Chance that a chi-squared variable is above a value."""

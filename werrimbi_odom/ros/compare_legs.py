@@ -17,9 +17,9 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.inference.comparison.legs import squared_deviation
-from werrimbi_odom.inference.legs.cutting import QUARTER_TURN, legs_worth
+from werrimbi_odom.inference.legs.cutting import legs_worth
 from werrimbi_odom.inference.legs.gaps import are_gaps
-from werrimbi_odom.inference.rules import GAP_FEWEST, GAP_LEG
+from werrimbi_odom.inference.rules import GAP_FEWEST, GAP_LEG, QUARTER_TURN
 from werrimbi_odom.model.covariance import PoseCovariance, carried
 from werrimbi_odom.model.pose import Floats, between, wrap
 from werrimbi_odom.ros.compare_track import Reading

@@ -15,7 +15,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import parameters as robot_file
 from werrimbi_odom.files.effect_parameters import EFFECTS
 from werrimbi_odom.files.parameters import Parameter, Value
-from werrimbi_odom.inference.comparison.reference_noise import USUAL_SIGMA_XY, USUAL_SIGMA_YAW
+from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW
 from werrimbi_odom.ros.compare_inputs import REFERENCE_TYPES
 
 LEAST, MOST = 1e-9, 1e6
@@ -51,7 +51,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         "reference_sigma_xy",
         "float",
-        USUAL_SIGMA_XY,
+        TAPE_XY,
         "m",
         "Standard deviation of the reference's x and y, where its messages state none.",
         minimum=LEAST,
@@ -60,7 +60,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         "reference_sigma_yaw",
         "float",
-        USUAL_SIGMA_YAW,
+        TAPE_YAW,
         "rad",
         "The same of its heading.",
         minimum=LEAST,

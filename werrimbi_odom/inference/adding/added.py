@@ -20,12 +20,10 @@ from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
 from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.inference.rules import UNUSUAL_PROMISE
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
-
-UNUSUAL = 25.0
-"""Times the median variance, beyond which a leg's promise says nothing about noise."""
 
 
 @dataclass(frozen=True)
@@ -60,7 +58,7 @@ class Side:
         promised = errors.covariance[measured, 0, 0] + errors.covariance[measured, 1, 1]
         if promised.size == 0:
             return float("nan")
-        usual = promised <= UNUSUAL * np.median(promised)
+        usual = promised <= UNUSUAL_PROMISE * np.median(promised)
         return float(np.sqrt(np.mean(promised[usual])))
 
 

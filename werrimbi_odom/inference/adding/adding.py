@@ -29,7 +29,6 @@ from werrimbi_odom.inference.adding.values import (
     std_of,
     to_write,
 )
-from werrimbi_odom.inference.calibration.any_driving import MISFIT_P, STRANGE_NOISE
 from werrimbi_odom.inference.comparison.judged_legs import (
     Legs,
     Prepared,
@@ -54,6 +53,7 @@ from werrimbi_odom.inference.fitting.knobs import (
 )
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
 from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.rules import STRANGE_NOISE, SURE
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -271,7 +271,7 @@ def _noise(
     costs = Costs(drives.laid, fit.point, drives.kind)
     noises = noise_estimates(costs, fit.point.variances, held)
     found = dependences(drives.laid, fit.point, drives.kind, (*CALIBRATION, *fit.knobs))
-    remaining = tuple(cell for cell in found if cell.p_value < MISFIT_P)
+    remaining = tuple(cell for cell in found if cell.p_value < SURE)
     wheels = [noises[name] for name in ("left_wheel_noise", "right_wheel_noise")]
     sane = all(not item.determined or item.value < STRANGE_NOISE for item in wheels)
     return noises, remaining, not remaining and sane

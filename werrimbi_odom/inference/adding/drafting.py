@@ -30,17 +30,19 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.variables import Variable, variables_of
 from werrimbi_odom.inference.fitting.candidates import Score
 from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.rules import MOST_FITTED, RIVAL, WORTH_FITTING
+from werrimbi_odom.inference.rules import (
+    DRAFTED_TOO,
+    MOST_DRAFTED,
+    MOST_FITTED,
+    RIVAL,
+    SPOT_OFF,
+    SPOT_RADII,
+    SURE,
+    USELESS_NUMBER,
+    WIDER_THAN_FITTED,
+    WORTH_FITTING,
+)
 from werrimbi_odom.model.effect import Effect
-
-BELIEVED = 1e-3
-"""p-value of a dependence that is worth a draft."""
-
-NEAR_BEST = 0.8
-"""Share of the best gain above which another dependence is drafted too, to be compared."""
-
-MOST = 3
-"""Dependences that are drafted."""
 
 STEADY = {
     "speed": ("abs(drive.speed.end)",) * 2,
@@ -151,13 +153,13 @@ def draft_effect(
 
 def _worth_drafting(diagnosis: Diagnosis) -> list[Dependence]:
     """The strongest dependences, one for each channel and variable."""
-    believed = [cell for cell in diagnosis.remaining if cell.p_value < BELIEVED]
-    believed.sort(key=lambda cell: -(cell.gain - 2.0 * cell.degrees))
+    believed = [cell for cell in diagnosis.remaining if cell.p_value < SURE]
+    believed.sort(key=lambda cell: -(cell.gain - USELESS_NUMBER * cell.degrees))
     chosen: dict[tuple[str, str, str], Dependence] = {}
     for cell in believed:
         chosen.setdefault((cell.channel, cell.amount.per, cell.variable.name), cell)
     cells = list(chosen.values())
-    return [cell for cell in cells if cell.gain > NEAR_BEST * cells[0].gain][:MOST]
+    return [cell for cell in cells if cell.gain > DRAFTED_TOO * cells[0].gain][:MOST_DRAFTED]
 
 
 def _forms(
@@ -221,11 +223,11 @@ def _angle_of(side: str) -> Callable[[str], str]:
 def _spot(diagnosis: Diagnosis, cell: Dependence) -> Form:
     """A circle around the place on the floor that the errors point at."""
     x, y = place_of(cell)
-    offsets = (-0.2, 0.0, 0.2)
+    offsets = (-SPOT_OFF, 0.0, SPOT_OFF)
     places = [(x + dx, y + dy) for dx, dy in zip(offsets, offsets, strict=True)]
     size = _round(float(cell.coefficients[np.argmax(np.abs(cell.coefficients))]))
     half = 0.5 * diagnosis.given.track
-    return spot_form(places, (0.2, 0.35, 0.6), size, half)
+    return spot_form(places, SPOT_RADII, size, half)
 
 
 @dataclass(frozen=True)
@@ -297,7 +299,7 @@ def _with_values(diagnosis: Diagnosis, option: _Option) -> _Option:
         else:
             typical = abs(_round(value)) if item.bounds[0] == 0.0 else _round(value)
             low, high = item.bounds
-            wider = max(high, 20.0 * abs(typical))
+            wider = max(high, WIDER_THAN_FITTED * abs(typical))
             if item.name == "share":
                 wider = high
             parameters.append(replace(item, typical=typical, bounds=(low and -wider, wider)))

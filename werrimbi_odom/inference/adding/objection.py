@@ -13,14 +13,9 @@ from werrimbi_odom.inference.adding.start import is_of_set_up
 from werrimbi_odom.inference.adding.values import FittedParameter
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.rules import HELD_OUT_FALL, SURE_WHEN_ASKED
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
-
-BY_CHANCE = 0.01
-"""In as many cases an effect that does nothing would pass, but for the held-out drives."""
-
-ROUNDING = 1e-4
-"""Share by which the held-out error must fall to have fallen."""
 
 
 class Worth(NamedTuple):
@@ -56,7 +51,7 @@ def objection(
             )
     if not np.isfinite(after):
         return f"{name} cannot be judged: the held-out drives have no leg with measured positions"
-    if not after < before * (1.0 - ROUNDING):
+    if not after < before * (1.0 - HELD_OUT_FALL):
         return f"{name} does not lower the error of the held-out drives ({figures}){hint}"
     if name in CALIBRATED or not parameters:
         shown = [item for item in parameters.values() if item.std is not None]
@@ -68,7 +63,7 @@ def objection(
                 f"held-out drives ({figures}) is {rest}{hint}"
             )
         return _by_chance(name, worth)
-    if not worth.held and not worth.alone * (1.0 - ROUNDING) > after:
+    if not worth.held and not worth.alone * (1.0 - HELD_OUT_FALL) > after:
         rest = " and ".join(["calibration", *worth.others]) if worth.others else "calibration alone"
         verb = "leave" if worth.others else "leaves"
         return (
@@ -79,7 +74,7 @@ def objection(
 
 
 def _by_chance(name: str, worth: Worth) -> str | None:
-    if worth.held or worth.chance is None or worth.chance <= BY_CHANCE:
+    if worth.held or worth.chance is None or worth.chance <= SURE_WHEN_ASKED:
         return None
     return (
         f"the drives do not show {name}: chance alone would make the fit as much better "

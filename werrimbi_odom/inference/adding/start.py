@@ -31,13 +31,11 @@ from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, knobs_of
 from werrimbi_odom.inference.fitting.own_values import with_own_values
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.rules import SHAPES_FITTED
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUp
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
-
-SHAPES = 3
-"""Shapes of an effect that are fitted in full."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -162,7 +160,7 @@ def _best_shapes(found: Sequence[Score]) -> list[Score]:
     ordered = sorted(found, key=lambda score: -score.gain)
     chosen: list[Score] = []
     for per_run in (True, False):
-        chosen += [score for score in ordered if score.candidate.per_run == per_run][:SHAPES]
+        chosen += [score for score in ordered if score.candidate.per_run == per_run][:SHAPES_FITTED]
     return chosen
 
 

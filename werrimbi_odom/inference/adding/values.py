@@ -15,11 +15,9 @@ from werrimbi_odom.inference.calibration_sizes import sizes_of, std_as_effect
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob, Model
+from werrimbi_odom.inference.rules import CALIBRATION_KNOWN, SIGNIFICANT
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter
 from werrimbi_odom.model.robot import Robot
-
-SIGNIFICANT = 2.0
-"""Standard deviations by which a parameter must differ from its null value."""
 
 Remark = Literal["fitted", "null", "undetermined", "bound", "per run"]
 
@@ -100,7 +98,9 @@ def _calibrated(effect: Effect, fit: Fitted, given: Robot) -> FittedParameter:
     where = [names.index(name) for name in MULTIPLIERS]
     std = value * std_as_effect(effect.name, robot, fit.covariance[np.ix_(where, where)])
     declared = next(iter(effect.parameters.values()))
-    return FittedParameter(declared, value, std, "fitted" if std < 0.05 * value else "undetermined")
+    return FittedParameter(
+        declared, value, std, "fitted" if std < CALIBRATION_KNOWN * value else "undetermined"
+    )
 
 
 def to_write(model: Model, given: Robot) -> Robot:

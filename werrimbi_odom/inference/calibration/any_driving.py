@@ -29,18 +29,9 @@ from werrimbi_odom.inference.fitting.noise import (
 from werrimbi_odom.inference.fitting.prediction import predict
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
-from werrimbi_odom.inference.rules import STRANGE_NOISE as STRANGE_NOISE
+from werrimbi_odom.inference.rules import LEAST_KNOWN, STRANGE_NOISE, SURE
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-
-MISFIT_P = 1e-3
-"""Below this (corrected for the number of dependences tried) something other than calibration is
-missing."""
-
-
-LEAST_KNOWN = 0.5
-"""Share of a noise that its standard deviation counts for at the most: beyond it the noise is not
-determined, and its law no longer told by its curvature."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,7 +107,7 @@ def calibrate(
     )
     turned = [knob for knob in knobs if knob.per_run or knob in fit.free]
     found = dependences(together(runs), fit.point, kind, turned)
-    misfit = tuple(item for item in found if item.p_value < MISFIT_P)
+    misfit = tuple(item for item in found if item.p_value < SURE)
     strange = _strange(fit, noises)
     covariance = precision.averaged(noises)
     spread = np.sqrt(np.diag(covariance))
@@ -165,8 +156,9 @@ class _Precision:
     def _marks(self, variances: Variances) -> tuple[Floats, list[int]]:
         """Whitened derivatives in all that was fitted, and which columns are shared knobs."""
         point = replace(self.fit.point, variances=variances)
-        found = unexpected(self.runs, point, self.kind, self.slopes).whitened()
-        design = spread_out(self.runs, point.model, *found, self.local)
+        found = unexpected(self.runs, point, self.kind)
+        marks = found.marks(self.slopes)
+        design = spread_out(self.runs, point.model, found.whitened(), marks, self.local)
         names = [knob.name for knob in self.fit.free]
         where = [
             number

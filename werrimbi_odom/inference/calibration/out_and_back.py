@@ -27,19 +27,10 @@ from scipy import optimize, stats
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.calibration.noise_likelihood import Design, Likelihood
+from werrimbi_odom.inference.chances import NORMAL_95
+from werrimbi_odom.inference.rules import ADVISED_RUNS, LEAST_RUNS, SURE_WHEN_ASKED, UNKNOWN_SPLIT
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats
-
-LEAST_RUNS, ADVISED_RUNS = 5, 30
-"""Runs: with fewer than five there is no telling whether the model fits; thirty give k to 15 %."""
-
-UNKNOWN_SPLIT = 0.5
-"""The split (k_R² - k_L²) / (k_R² + k_L²) lies within ±1: with a std of this it is unknown."""
-
-MISFIT_P = 0.01
-"""Scatter that the model explains no better than this has something else in it."""
-
-NORMAL_95 = 1.959963984540054
 
 
 def out_and_back(
@@ -152,7 +143,9 @@ def fit_noise(errors: Floats, design: Design) -> NoiseFit:
         data=data,
         model=design.covariance(*written),
         misfit_p=misfit_p,
-        missing_reference=_missing_reference(likelihood, same) if misfit_p < MISFIT_P else None,
+        missing_reference=_missing_reference(likelihood, same)
+        if misfit_p < SURE_WHEN_ASKED
+        else None,
     )
 
 
@@ -177,7 +170,7 @@ def _missing_reference(likelihood: Likelihood, same: float) -> tuple[float, floa
         cost, start, method="Nelder-Mead", bounds=bounds, options={"maxfev": 4000}
     ).x
     assumed, left, right = with_noise(found)
-    if assumed.misfit_p(left, right, 4) < MISFIT_P:
+    if assumed.misfit_p(left, right, 4) < SURE_WHEN_ASKED:
         return None
     return float(unit[0] * math.exp(found[2])), float(unit[2] * math.exp(found[3]))
 

@@ -13,20 +13,12 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.calibration.squares import Driven, Squares
+from werrimbi_odom.inference.rules import LAP_TOLERANCE, LEG_TOLERANCE, TURN_TOLERANCE
 from werrimbi_odom.model.encoder import Counts, EncoderLimits
 from werrimbi_odom.model.motion import WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
-
-TURN_TOLERANCE = 0.6
-"""A lap turns by a whole turn to within this [rad], by odometry that may be off by 10 %."""
-
-LEG_TOLERANCE = 0.1
-"""Legs are as long as the side to within this share of it."""
-
-GAP_TOLERANCE = 0.25
-"""A lap ends where it began, by odometry or by the reference, to within this share of the side."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +118,7 @@ def recorded_square(
     measured = _turned(x[-1] - x[0], y[-1] - y[0], -facing)
     reckoned = _turned(path.x[-1], path.y[-1], -first_leg)
     gap = min(float(np.hypot(*measured)), float(np.hypot(*reckoned)))
-    if gap > GAP_TOLERANCE * side:
+    if gap > LAP_TOLERANCE * side:
         raise InputError(
             f"{record.name}: the square is not closed: it ends {gap:.2f} m from its start, by "
             "odometry and by the reference. Drive all four legs, back to the mark"

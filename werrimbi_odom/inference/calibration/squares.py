@@ -10,14 +10,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference.rules import ADVISED_SQUARES, LARGEST_OFFSET, LEAST_SQUARES
 from werrimbi_odom.model.motion import WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats
-
-LEAST_RUNS, ADVISED_RUNS = 2, 5
-"""Squares a sense: one alone has no scatter; the paper drives five."""
-
-LARGEST_OFFSET = 2.0
-"""Offsets larger than this, in sides, are not those of a square that was meant to close."""
 
 OTHER_VEHICLES = (
     ("TRC LabMate, average", 0.027),
@@ -82,13 +77,13 @@ class Squares:
             raise InputError(f"the side must be a length in metres above zero, not {self.side:g}")
         missing = []
         for sense, runs in (("cw", len(self.cw)), ("ccw", len(self.ccw))):
-            if runs < LEAST_RUNS:
-                missing.append(f"{LEAST_RUNS - runs} more {sense} ({runs} given)")
+            if runs < LEAST_SQUARES:
+                missing.append(f"{LEAST_SQUARES - runs} more {sense} ({runs} given)")
         if missing:
             raise InputError(
                 f"too few squares: missing at least {' and '.join(missing)}. One sense alone "
                 "cannot tell the base from the wheels, and one run alone has no scatter; "
-                f"{ADVISED_RUNS} of each are usual"
+                f"{ADVISED_SQUARES} of each are usual"
             )
         for sense, offsets in (("cw", self.cw), ("ccw", self.ccw)):
             length = np.hypot(*offsets.T)

@@ -36,13 +36,10 @@ from werrimbi_odom.inference.calibration.umbmark_equations import (
     first_order_angles,
     paper_factors,
 )
+from werrimbi_odom.inference.chances import NORMAL_95
+from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-
-WRONG_AXES_P = 1e-3
-"""Offsets off the diagonals that scatter explains no better than this are no chance."""
-
-NORMAL_95 = 1.959963984540054
 
 
 @dataclass(frozen=True, slots=True)
@@ -237,7 +234,7 @@ class _Across:
     def check(self, measured: Floats) -> None:
         """Refuse offsets that lie across the diagonals rather than along them."""
         most = np.linalg.norm(self.left_over) > np.linalg.norm(measured - self.left_over)
-        if most and not self.probability > WRONG_AXES_P:
+        if most and not self.probability > SURE:
             raise InputError(
                 "the offsets cannot come from base and radii: these put clockwise offsets near "
                 "x = y and anticlockwise ones near x = -y. Is x along the first leg, y positive to "

@@ -11,12 +11,10 @@ import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.calibration.squares import Squares
+from werrimbi_odom.inference.rules import LARGEST_MISTAKE
 from werrimbi_odom.model.pose import Floats
 
 QUARTER = 0.5 * math.pi
-
-LARGEST_MISTAKE = 0.25
-"""A base or a ratio of radii off by more is a slip of the pen, not a matter of calibration."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -15,16 +15,13 @@ from itertools import pairwise
 from statistics import NormalDist
 from typing import Literal
 
-from werrimbi_odom.inference.rules import HONEST_CHANCE, HONEST_WITHIN
+from werrimbi_odom.inference.rules import FEWEST_LEGS, HONEST_CHANCE, HONEST_WITHIN
 
 Consistency = Literal["honest", "too small", "too large", "unknown"]
 """What is to be said of a covariance."""
 
 Trend = Literal["longer", "shorter", "between"]
 """With which legs NEES grows: strictly with the longer, with the shorter, or neither."""
-
-FEWEST = 10
-"""Legs, below which nothing is judged."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,7 +38,7 @@ class AtLength:
     @property
     def says(self) -> Consistency:
         """Whether the covariance is honest at this length."""
-        return consistency(self.nees, self.freedom) if self.count >= FEWEST else "unknown"
+        return consistency(self.nees, self.freedom) if self.count >= FEWEST_LEGS else "unknown"
 
 
 def consistency(nees: float, freedom: int) -> Consistency:

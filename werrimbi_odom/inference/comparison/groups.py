@@ -14,16 +14,15 @@ from numpy.typing import NDArray
 from werrimbi_odom.inference.chances import fisher_above, student_above
 from werrimbi_odom.inference.comparison.legs import LegErrors, LegStatistics, statistics
 from werrimbi_odom.inference.comparison.systematic import CHANNELS
+from werrimbi_odom.inference.rules import (
+    BINS,
+    CELLS_ACROSS,
+    LEGS_IN_A_BIN,
+    LEGS_IN_A_CELL,
+    SECTORS,
+    SURE_OF_LEGS,
+)
 from werrimbi_odom.model.pose import Floats
-
-DEPENDS_P = 1e-4
-"""Below this (corrected for the number looked at) errors go with a variable."""
-
-_BINS = 5
-_SECTORS = 8
-_FEWEST = 8  # legs in a bin
-_CELLS = 8  # across the floor
-_FEWEST_IN_CELL = 4
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +63,7 @@ class Cell:
     @property
     def stands_out(self) -> bool:
         """Whether they are."""
-        return self.p_value < DEPENDS_P
+        return self.p_value < SURE_OF_LEGS
 
 
 def by_variables(
@@ -108,27 +107,29 @@ def _signals(legs: LegErrors, left: Floats) -> dict[str, Floats]:
 
 def _bins(name: str, values: Floats) -> list[tuple[float, float, NDArray[np.bool_]]]:
     known = np.isfinite(values)
-    if known.sum() < 2 * _FEWEST:
+    if known.sum() < 2 * LEGS_IN_A_BIN:
         return []
     if name.startswith("heading"):
-        edges = np.linspace(-np.pi, np.pi, _SECTORS + 1)
+        edges = np.linspace(-np.pi, np.pi, SECTORS + 1)
         values = np.mod(values + np.pi, 2.0 * np.pi) - np.pi
     else:
-        count = min(_BINS, int(known.sum()) // _FEWEST)
+        count = min(BINS, int(known.sum()) // LEGS_IN_A_BIN)
         edges = np.unique(np.quantile(values[known], np.linspace(0.0, 1.0, count + 1)))
         scale = float(np.abs(edges).max())
         edges = edges[np.concatenate([[True], np.diff(edges) > 1e-3 * scale])]
     found = []
     for low, high in pairwise(edges.tolist()):
         rows = known & (values >= low) & ((values < high) | (high == edges[-1]))
-        if rows.sum() >= _FEWEST:
+        if rows.sum() >= LEGS_IN_A_BIN:
             found.append((float(low), float(high), rows))
     return found
 
 
 def _differ(groups: list[Floats]) -> float:
     """Chance that groups of equal mean differ so much: Welch's analysis of variance."""
-    groups = [known for group in groups if (known := group[np.isfinite(group)]).size >= _FEWEST]
+    groups = [
+        known for group in groups if (known := group[np.isfinite(group)]).size >= LEGS_IN_A_BIN
+    ]
     if len(groups) < 2:
         return 1.0
     count = np.array([group.size for group in groups], dtype=np.float64)
@@ -162,10 +163,10 @@ def cells_of(legs: LegErrors, left: Floats, x: Floats, y: Floats, leg: float) ->
         Length of a leg, which no square is smaller than [m].
     """
     known = np.isfinite(x) & np.isfinite(y)
-    if known.sum() < 2 * _FEWEST:
+    if known.sum() < 2 * LEGS_IN_A_BIN:
         return ()
     extent = max(float(np.ptp(x[known])), float(np.ptp(y[known])))
-    side = max(leg, extent / _CELLS)
+    side = max(leg, extent / CELLS_ACROSS)
     column = np.where(known, np.floor(np.nan_to_num(x) / side), np.inf)
     row = np.where(known, np.floor(np.nan_to_num(y) / side), np.inf)
     size = _signals(legs, left)["size"]
@@ -174,7 +175,7 @@ def cells_of(legs: LegErrors, left: Floats, x: Floats, y: Floats, leg: float) ->
     for at in places:
         here = known & (column == at[0]) & (row == at[1])
         others = known & ~here
-        if here.sum() < _FEWEST_IN_CELL or others.sum() < _FEWEST:
+        if here.sum() < LEGS_IN_A_CELL or others.sum() < LEGS_IN_A_BIN:
             continue
         spread = np.sqrt(
             size[here].var(ddof=1) / here.sum() + size[others].var(ddof=1) / others.sum()

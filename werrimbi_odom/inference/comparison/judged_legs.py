@@ -26,8 +26,6 @@ from werrimbi_odom.inference.comparison.legs import (
     statistics,
 )
 from werrimbi_odom.inference.comparison.reference_noise import (
-    USUAL_SIGMA_XY,
-    USUAL_SIGMA_YAW,
     Measure,
     Residual,
     measured_alike,
@@ -39,7 +37,6 @@ from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.own_values import known_at_home
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import (
-    QUARTER_TURN,
     Record,
     cut_finely,
     divided,
@@ -52,13 +49,19 @@ from werrimbi_odom.inference.legs.cutting import (
     joined as joined_legs,
 )
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.rules import FAR_ABOVE_NOISE, MOST_WHEEL_NOISE
+from werrimbi_odom.inference.rules import (
+    FAR_ABOVE_NOISE,
+    LEG_LENGTHS,
+    LEGS_OF_A_LENGTH,
+    LEGS_OF_A_RUN,
+    MOST_WHEEL_NOISE,
+    QUARTER_TURN,
+    TAPE_XY,
+    TAPE_YAW,
+)
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-
-TIMES = (0.25, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0)
-"""Lengths of legs, in units of the one asked for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -220,7 +223,7 @@ def _cut_to_lengths(
     ways = [[_way(record, robot, leg) for record in own] for own in records]
     rows: dict[float, list[list[NDArray[np.intp]]]] = {}
     counts: set[int] = set()
-    for times in sorted(TIMES, key=lambda times: (times != 1.0, times)):
+    for times in sorted(LEG_LENGTHS, key=lambda times: (times != 1.0, times)):
         found = [
             [leg_ends(way, record.gap, times) for way, record in zip(*own, strict=True)]
             for own in zip(ways, records, strict=True)
@@ -230,7 +233,9 @@ def _cut_to_lengths(
             for own in zip(found, records, strict=True)
             for ends, record in zip(*own, strict=True)
         )
-        if times == 1.0 or (count not in counts and count >= max(8, 2 * runs)):
+        if times == 1.0 or (
+            count not in counts and count >= max(LEGS_OF_A_LENGTH, LEGS_OF_A_RUN * runs)
+        ):
             rows[times * leg] = found
             counts.add(count)
     parts = []
@@ -282,10 +287,10 @@ def _group(
     residuals, _ = residuals_of(plain, every, measure)
     estimated = reference_noise(robot, residuals, kind)
     position, of_position, told = _known(
-        sigma_xy, [run.sigma_xy for run in every.runs], estimated[0], USUAL_SIGMA_XY
+        sigma_xy, [run.sigma_xy for run in every.runs], estimated[0], TAPE_XY
     )
     heading, of_heading, yaw_told = _known(
-        sigma_yaw, [run.sigma_yaw for run in every.runs], estimated[1], USUAL_SIGMA_YAW
+        sigma_yaw, [run.sigma_yaw for run in every.runs], estimated[1], TAPE_YAW
     )
     jumps = tuple(
         jumps_of(residual, run.gap) for residual, run in zip(residuals, every.runs, strict=True)

@@ -8,13 +8,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.comparison.reference_noise import Residual
+from werrimbi_odom.inference.rules import (
+    JUMP_FEWEST,
+    JUMP_LASTS,
+    JUMP_LATE,
+    JUMP_NEIGHBOURS,
+    JUMP_SCATTER,
+    JUMP_SHARE,
+    JUMP_SHARE_OF_A_GYRO,
+)
 from werrimbi_odom.model.pose import Floats
-
-_JUMP = 12.0  # times the usual scatter of an interval
-_BEYOND = 0.5  # share of the motion about it that no model's error reaches at one blow
-_LATE = 0.5  # [s] within which motion may be that of the interval, the reference's clock being off
-_NORMAL = 1.4826  # from median deviation to standard deviation
 
 
 def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
@@ -25,25 +30,27 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
     is none: nobody was looking.
     """
     errors = np.where(np.isfinite(item.intervals) & ~gap[:, None], item.intervals, 0.0)
-    if errors.shape[0] < 8:
+    if errors.shape[0] < JUMP_FEWEST:
         return np.zeros_like(errors)
-    usual = _running_median(errors)
+    usual = _running_median(errors, JUMP_NEIGHBOURS)
     left = errors - usual
-    scatter = _NORMAL * np.median(np.abs(left), axis=0)
-    driven = _running_max(np.abs(item.relative), max(3, _intervals_within(item.time, _LATE)))
+    scatter = MEDIAN_TO_SIGMA * np.median(np.abs(left), axis=0)
+    driven = _running_max(
+        np.abs(item.relative), max(JUMP_NEIGHBOURS, _intervals_within(item.time, JUMP_LATE))
+    )
     driven[:, :2] = driven[:, :2].max(axis=1, keepdims=True)
-    share = np.full(3, _BEYOND)
+    share = np.full(3, JUMP_SHARE)
     if not np.isfinite(item.measured).any():
         # A gyro does not lose its place. What is late by more than an interval errs by all that the
         # robot turns in it, and a start looks like a leap until base and clock are right.
-        share[2] = 1.5
-    limit = np.maximum(_JUMP * scatter, share * (driven + np.abs(usual)))
+        share[2] = JUMP_SHARE_OF_A_GYRO
+    limit = np.maximum(JUMP_SCATTER * scatter, share * (driven + np.abs(usual)))
     limit[:, :2] = np.hypot(limit[:, :2], 1e-9)
     wrong = (np.abs(left) > limit) & (np.abs(left) > 1e-9)
     return np.where(wrong, left, 0.0)
 
 
-def _running_median(values: Floats, reach: int = 3) -> Floats:
+def _running_median(values: Floats, reach: int) -> Floats:
     """Median of each row's neighbours, itself among them."""
     padded = np.pad(values, ((reach, reach), (0, 0)), mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
@@ -78,4 +85,6 @@ def jumped_legs(jumps: Floats, chosen: NDArray[np.intp], kind: ReferenceKind) ->
     if kind == "incremental":
         return np.asarray(count > 0.0)
     largest = np.abs(jumps).max(axis=0, initial=0.0)
-    return np.asarray((count > 0.0) & np.any(lasting > 0.2 * np.maximum(largest, 1e-12), axis=1))
+    return np.asarray(
+        (count > 0.0) & np.any(lasting > JUMP_LASTS * np.maximum(largest, 1e-12), axis=1)
+    )

@@ -20,10 +20,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run
+from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.fitting.knobs import START_YAW, Model
 from werrimbi_odom.inference.fitting.likelihood import reading_noise
 from werrimbi_odom.inference.fitting.prediction import legs_shown, right_handed
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import (
+    DIFFERENCE_REACH,
+    DIFFERENCES,
+    FACING_POSES,
+    NOISE_LEFT,
+    POSE_ROWS,
+    TURNS_ENOUGH,
+    VARIANCE_GROWS,
+)
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
@@ -31,16 +41,7 @@ from werrimbi_odom.model.robot import Robot
 Measure = Literal["pose", "position", "heading"]
 """What the reference gives at both ends of a leg."""
 
-USUAL_SIGMA_XY, USUAL_SIGMA_YAW = 2e-3, 5e-3
-"""Noise by tape and straightedge [m, rad]: assumed where poses are too few to tell."""
-
-_ENOUGH = 30  # differences, below which a scatter is not told from them
-_REACH = 0.3  # [m] path (or [rad]) that a difference may span; the model's error bends beyond it
-_GROWS = 1.25  # times, from the shortest span to the longest, that the variance grows by chance
-_TURNS = 0.1  # [rad/s] above which a reference's headings show how its stamps scatter
-_LEAST = 0.25  # share of the shortest differences' variance that is taken for noise at least
 _THIRD = np.array([-1.0, 3.0, -3.0, 1.0])
-_NORMAL = 1.4826  # from median deviation to standard deviation
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,7 +74,7 @@ def measured_alike(run: Run) -> tuple[Run, Measure]:
         return run, "pose"  # matching says what is missing
     position, yaw = reference.has_position, reference.has_yaw
     both = position & yaw
-    if both.sum() >= max(2, 0.5 * max(position.sum(), yaw.sum())):
+    if both.sum() >= max(2, POSE_ROWS * max(position.sum(), yaw.sum())):
         whole = bool(both.all())
         return run if whole else replace(run, reference=_rows(reference, both)), "pose"
     if position.sum() >= max(2, yaw.sum()):
@@ -180,10 +181,9 @@ def _facing(
     heading: float,
 ) -> Floats:
     """Headings from the positions about each pose: predicted path laid onto the measured."""
-    reach = 10
     count = measured.size
     index = np.arange(count)
-    low, high = np.maximum(index - reach, 0), np.minimum(index + reach, count - 1)
+    low, high = np.maximum(index - FACING_POSES, 0), np.minimum(index + FACING_POSES, count - 1)
     chord, seen_chord = predicted[high] - predicted[low], measured[high] - measured[low]
     off = np.angle(seen_chord * np.conj(chord))
     usable = (np.abs(chord) > 0.0) & (np.abs(seen_chord) > 0.0)
@@ -228,11 +228,12 @@ def stamp_noise(every: Together, residuals: Sequence[Residual], measure: Measure
     pairs = zip(every.runs, residuals, strict=True)
     found = [_scatter_and_rate(item, run.counters.time) for run, item in pairs]
     scatter, rate = (np.concatenate(part) for part in zip(*found, strict=True))
-    turning = rate > _TURNS
-    if min(turning.sum(), (~turning).sum()) < _ENOUGH:
+    turning = rate > TURNS_ENOUGH
+    if min(turning.sum(), (~turning).sum()) < DIFFERENCES:
         return 0.0
     fast, slow = (
-        (_NORMAL * float(np.median(scatter[rows]))) ** 2 / 20.0 for rows in (turning, ~turning)
+        (MEDIAN_TO_SIGMA * float(np.median(scatter[rows]))) ** 2 / 20.0
+        for rows in (turning, ~turning)
     )
     more = float(np.median(rate[turning] ** 2) - np.median(rate[~turning] ** 2))
     return float(np.sqrt(max(fast - slow, 0.0) / more))
@@ -304,7 +305,7 @@ def _moving(driven: Floats, span: int) -> NDArray[np.bool_]:
     """Which differences over a span were taken in motion; all, where next to none were."""
     sums = np.concatenate([[0.0], np.cumsum(driven)])
     moved = sums[3 * span :] - sums[: -3 * span] > 0.0
-    return moved if moved.sum() >= _ENOUGH else np.ones(moved.size, dtype=np.bool_)
+    return moved if moved.sum() >= DIFFERENCES else np.ones(moved.size, dtype=np.bool_)
 
 
 def _level(runs: list[Differences]) -> float | None:
@@ -314,10 +315,10 @@ def _level(runs: list[Differences]) -> float | None:
         here = [run[span] for run in runs if span in run]
         left = np.concatenate([item[0] for item in here]) if here else np.zeros(0)
         reach = max((item[1] for item in here), default=0.0)
-        if left.size < _ENOUGH or (span > 1 and reach > _REACH):
+        if left.size < DIFFERENCES or (span > 1 and reach > DIFFERENCE_REACH):
             break
         spans.append(float(span))
-        variances.append((_NORMAL * float(np.median(np.abs(left)))) ** 2 / 20.0)
+        variances.append((MEDIAN_TO_SIGMA * float(np.median(np.abs(left)))) ** 2 / 20.0)
         counts.append(float(left.size))
     return _intercept(np.array(spans), np.array(variances), np.array(counts)) if spans else None
 
@@ -327,12 +328,12 @@ def _intercept(at: Floats, variances: Floats, counts: Floats) -> float:
     weight = counts / np.maximum(variances, 1e-300) ** 2
     weight = weight / weight.sum()
     middle, mean = float(weight @ at), float(weight @ variances)
-    if variances.max() < _GROWS * variances[0]:
+    if variances.max() < VARIANCE_GROWS * variances[0]:
         return mean  # no more than chance; a line would carry that chance on to zero
     spread = float(weight @ (at - middle) ** 2)
     slope = float(weight @ ((at - middle) * variances)) / spread if spread > 0.0 else 0.0
     # Where the growth outruns the noise the line is not to be trusted down to nothing.
-    return max(mean - max(slope, 0.0) * middle, _LEAST * float(variances[0]))
+    return max(mean - max(slope, 0.0) * middle, NOISE_LEFT * float(variances[0]))
 
 
 def _steps(item: Residual) -> Floats:
@@ -347,9 +348,9 @@ def _steps(item: Residual) -> Floats:
 
 def _growing(columns: Floats) -> float | None:
     known = columns[np.isfinite(columns).all(axis=1)]
-    if known.shape[0] < _ENOUGH:
+    if known.shape[0] < DIFFERENCES:
         return None
-    return (_NORMAL * float(np.median(np.abs(known)))) ** 2
+    return (MEDIAN_TO_SIGMA * float(np.median(np.abs(known)))) ** 2
 
 
 def _less(variance: float | None, reading: float, rounding: float) -> float | None:

@@ -16,8 +16,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import student_above
+from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA, student_above
 from werrimbi_odom.inference.comparison.legs import LegErrors, root_mean_square
+from werrimbi_odom.inference.rules import (
+    LEGS_OF_A_PART,
+    NOISE_FACTOR_TOLD,
+    OF_MOST,
+    SURE_OF_LEGS,
+    WORTH_SAYING,
+)
 from werrimbi_odom.model.pose import Floats
 
 CHANNELS = ("along", "sideways", "heading")
@@ -28,14 +35,6 @@ TERMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]] = {
     "spin": (("turn",), ("turn",), ("turn", "size of turn")),
 }
 """What the error of each channel may be in proportion to, by motion type."""
-
-CERTAIN_P = 1e-4
-"""A systematic part is a finding below this: about twenty are looked at."""
-
-WORTH_SAYING = 0.2
-"""Nor is it one unless it is this share of what the covariance promises for such a leg."""
-
-_FEWEST = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -62,7 +61,7 @@ class Systematic:
     def finding(self) -> bool:
         """Certain, common, and large enough to matter."""
         worth = self.size >= WORTH_SAYING * self.promised
-        return self.common and worth and self.p_value < CERTAIN_P
+        return self.common and worth and self.p_value < SURE_OF_LEGS
 
 
 class NoiseFactor(NamedTuple):
@@ -76,7 +75,9 @@ class NoiseFactor(NamedTuple):
     @property
     def told(self) -> bool:
         """Whether the legs tell it to better than a factor of ten either way."""
-        return bool(np.isfinite(self.value) and self.high < 100.0 * max(self.low, 1e-12))
+        return bool(
+            np.isfinite(self.value) and self.high < NOISE_FACTOR_TOLD * max(self.low, 1e-12)
+        )
 
 
 UNTOLD = NoiseFactor(np.nan, 0.0, np.inf)
@@ -92,7 +93,7 @@ def systematic_parts(legs: LegErrors) -> tuple[tuple[Systematic, ...], Floats]:
     for kind, channels in TERMS.items():
         for channel, names in enumerate(channels):
             rows = np.flatnonzero((legs.kind == kind) & np.isfinite(legs.error[:, channel]))
-            if rows.size < _FEWEST + len(names):
+            if rows.size < LEGS_OF_A_PART + len(names):
                 continue
             parts, predicted = _laid_on(legs, rows, channel, kind, names)
             found += parts
@@ -138,17 +139,20 @@ def _laid_on(
                 2.0 * student_above(abs(ratio), rows.size - len(names)),
                 root_mean_square(design[:, column] * slopes[column]),
                 promised,
-                bool(of_most[column] * np.sign(slopes[column]) >= 0.5 * abs(slopes[column])),
+                bool(of_most[column] * np.sign(slopes[column]) >= OF_MOST * abs(slopes[column])),
             )
         )
     return parts, predicted
+
+
+_HUBER = 1.5  # standard deviations from which on a leg counts for less
 
 
 def _of_most(design: Floats, error: Floats, slopes: Floats) -> Floats:
     """Slopes that a few bad legs cannot carry: Huber's estimate, by reweighting."""
     for _ in range(20):
         left = np.abs(error - design @ slopes)
-        scale = 1.5 * 1.4826 * float(np.median(left))
+        scale = _HUBER * MEDIAN_TO_SIGMA * float(np.median(left))
         weight = scale / np.maximum(left, max(scale, 1e-300))
         root = np.sqrt(weight)
         slopes = np.asarray(
@@ -180,7 +184,7 @@ def noise_factors(
     told = known.any(axis=1) & groups.any(axis=0)
     groups = groups[:, told]
     noisy = np.any(wheels[told] > 0.0, axis=(1, 2))
-    if noisy.size < _FEWEST or not noisy.any():
+    if noisy.size < LEGS_OF_A_PART or not noisy.any():
         return [UNTOLD] * groups.shape[0]
     sizes, squares = _by_wheels(known[told], errors[told], covariance[told], wheels[told])
     cost = np.zeros((_FACTORS.size, groups.shape[0]))
@@ -192,7 +196,7 @@ def noise_factors(
             of_leg += square / variance
         cost += of_leg @ groups[:, block].T.astype(np.float64)
     return [
-        _likeliest(own) if which.sum() >= _FEWEST and noisy[which].any() else UNTOLD
+        _likeliest(own) if which.sum() >= LEGS_OF_A_PART and noisy[which].any() else UNTOLD
         for own, which in zip(cost.T, groups, strict=True)
     ]
 

@@ -12,7 +12,6 @@ import numpy as np
 from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.comparison.consistency import (
-    FEWEST,
     AtLength,
     Consistency,
     consistency,
@@ -20,24 +19,21 @@ from werrimbi_odom.inference.comparison.consistency import (
     told,
     trend_of,
 )
-from werrimbi_odom.inference.comparison.groups import DEPENDS_P, Cell
+from werrimbi_odom.inference.comparison.groups import Cell
 from werrimbi_odom.inference.comparison.legs import LegStatistics
-from werrimbi_odom.inference.comparison.systematic import (
-    CERTAIN_P,
-    CHANNELS,
-    NoiseFactor,
-    Systematic,
+from werrimbi_odom.inference.comparison.systematic import CHANNELS, NoiseFactor, Systematic
+from werrimbi_odom.inference.rules import (
+    ALIKE,
+    BENT_BY_HEADING,
+    FEWEST_LEGS,
+    HONEST_WITHIN,
+    MANY_LEGS,
+    QUARTER_TURN,
+    SURE_OF_LEGS,
+    WORST_OF,
+    WRONG_OF_A_LEG,
+    WRONG_SHARE,
 )
-from werrimbi_odom.inference.legs.cutting import QUARTER_TURN
-from werrimbi_odom.inference.rules import ALIKE, HONEST_WITHIN
-
-GROSS = 0.15
-"""A share of travel or turn beyond which no calibration, but the set-up, is wrong."""
-
-GROSS_LEG = 0.1
-"""A share of the leg that position errors have in the median, for the same."""
-
-_MANY = 30
 
 Noise = Literal["honest", "too small", "too large", "grows", "comes and goes", "unknown"]
 """The covariance. `too small`: by a factor of the wheels' noise; `grows`: the errors grow faster
@@ -111,7 +107,7 @@ def verdict_of(comparison: Comparison) -> Verdict:
     systematic = _primary(main)
     noise, factor, leg = _noise(comparison)
     depends = _depends(comparison, noise)
-    enough = main.all.figures.count >= FEWEST
+    enough = main.all.figures.count >= FEWEST_LEGS
     off = tuple(kind for kind in KINDS if _scatters(main.by_motion[kind]))
     cells = tuple(cell for cell in comparison.cells if cell.stands_out and _too_small(cell.figures))
     if not enough:
@@ -123,7 +119,7 @@ def verdict_of(comparison: Comparison) -> Verdict:
     runs = tuple(
         index
         for index, item in enumerate(comparison.runs)
-        if item.legs.figures.count >= FEWEST and _too_small(item.legs.figures)
+        if item.legs.figures.count >= FEWEST_LEGS and _too_small(item.legs.figures)
     )
     return Verdict(
         True,
@@ -150,16 +146,22 @@ def _gross(main: OfLength, systematic: tuple[Systematic, ...]) -> bool:
     shares = {("along", "travel"), ("sideways", "travel"), ("heading", "turn")}
     figures = main.all.figures
     return (
-        any((part.channel, part.per) in shares and abs(part.value) > GROSS for part in systematic)
-        or figures.median_position_m > GROSS_LEG * main.leg
-        or any(item.figures.rmse_yaw_rad > GROSS * QUARTER_TURN for item in main.by_motion.values())
+        any(
+            (part.channel, part.per) in shares and abs(part.value) > WRONG_SHARE
+            for part in systematic
+        )
+        or figures.median_position_m > WRONG_OF_A_LEG * main.leg
+        or any(
+            item.figures.rmse_yaw_rad > WRONG_SHARE * QUARTER_TURN
+            for item in main.by_motion.values()
+        )
     )
 
 
 def _held_by_few(comparison: Comparison) -> float:
     legs = comparison.legs.errors.chosen(~comparison.legs.outlier)
     deviation = np.sort(legs.deviation)
-    count = max(deviation.size // 20, 1)
+    count = max(deviation.size // WORST_OF, 1)
     return float(deviation[-count:].sum() / max(float(deviation.sum()), 1e-300))
 
 
@@ -174,7 +176,7 @@ def _primary(main: OfLength) -> tuple[Systematic, ...]:
     for (kind, channel), part in largest.items():
         heading = largest.get((kind, "heading"))
         length = main.leg
-        bent = 0.75 * heading.size * length if heading and kind != "spin" else 0.0
+        bent = BENT_BY_HEADING * heading.size * length if heading and kind != "spin" else 0.0
         if channel != "heading" and part.size <= bent:
             continue
         kept.append(part)
@@ -187,7 +189,7 @@ def _depends(comparison: Comparison, noise: Noise) -> tuple[Depends, ...]:
         Depends(channel, item.name, p_value)
         for item in comparison.variables
         for channel, p_value in item.p_values.items()
-        if p_value < DEPENDS_P
+        if p_value < SURE_OF_LEGS
     ]
     found.sort(key=lambda item: item.p_value)
     mean = [item for item in found if item.channel in CHANNELS]
@@ -197,7 +199,7 @@ def _depends(comparison: Comparison, noise: Noise) -> tuple[Depends, ...]:
 def _scatters(figures: LegFigures) -> bool:
     known = figures.figures
     return (
-        known.count >= FEWEST
+        known.count >= FEWEST_LEGS
         and consistency(figures.scatter_nees, known.freedom) == "too small"
         and figures.noise.low > HONEST_WITHIN
     )
@@ -206,9 +208,9 @@ def _scatters(figures: LegFigures) -> bool:
 def _bad(figures: LegFigures) -> bool:
     """Whether a few legs err beyond any chance, be it in one direction alone."""
     count, nees = figures.figures.count, figures.figures.nees
-    if not 0 < count < FEWEST or not nees > HONEST_WITHIN:
+    if not 0 < count < FEWEST_LEGS or not nees > HONEST_WITHIN:
         return False
-    return chi2_above(count * nees, count) < CERTAIN_P
+    return chi2_above(count * nees, count) < SURE_OF_LEGS
 
 
 def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
@@ -217,7 +219,7 @@ def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
     The factor is told at the longest legs that are many, and held against that at the legs asked
     for. Nothing is called too small or too large where the NEES of no length of leg is.
     """
-    many = [item for item in comparison.lengths if item.all.figures.count >= _MANY]
+    many = [item for item in comparison.lengths if item.all.figures.count >= MANY_LEGS]
     main = comparison.main
     longest = many[-1] if many else main
     longest = longest if longest.leg >= main.leg else main
@@ -230,7 +232,7 @@ def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
         return "honest", factor, longest.leg
     if said == "too large":
         return "too large", factor, longest.leg
-    known = np.isfinite(factor.value) and longest.all.figures.count >= FEWEST
+    known = np.isfinite(factor.value) and longest.all.figures.count >= FEWEST_LEGS
     if known and factor.low > HONEST_WITHIN and longest.of_scatter.says == "too small":
         if factor.low > ALIKE * short.high:
             return "grows", factor, longest.leg

@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.together import Together
-from werrimbi_odom.inference.rules import FOLD_PARTS, FOLDS
+from werrimbi_odom.inference.rules import FOLD_PARTS, FOLDS, USELESS_NUMBER
 
 _RANK = 1e-6
 
@@ -47,7 +47,7 @@ def cross_validated_cost(runs: Together, fit: Fitted) -> float:
         if own.shape[1]:
             taken = np.linalg.lstsq(own, -left, rcond=_RANK)
             left = left + own @ taken[0]
-            change += 2.0 * float(taken[2])
+            change += USELESS_NUMBER * float(taken[2])
         change += float(left @ left - white[here] @ white[here])
     return fit.cost + change
 

@@ -21,7 +21,6 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.diagnosis.variables import (
-    CELL,
     CONSTANT,
     Form,
     Variable,
@@ -35,7 +34,7 @@ from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import DrivenPath, path_of, predict_all
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import Nuisance, ScoreTest, score_test_of_products
-from werrimbi_odom.inference.rules import NEIGHBOUR
+from werrimbi_odom.inference.rules import FLOOR_CELL, NEIGHBOUR
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.view import View
@@ -117,7 +116,7 @@ def place_of(cell: Dependence) -> tuple[float, float]:
     certain = cell.coefficients**2 * steps
     first = int(np.argmax(certain))
     area = np.ptp(x) * np.ptp(y) / steps.size
-    near = np.hypot(*(middle - middle[first]).T) < NEIGHBOUR * max(np.sqrt(area), CELL)
+    near = np.hypot(*(middle - middle[first]).T) < NEIGHBOUR * max(np.sqrt(area), FLOOR_CELL)
     same = np.sign(cell.coefficients) == np.sign(cell.coefficients[first])
     weight = certain * (near & same)
     px, py = weight @ middle / weight.sum()

@@ -36,7 +36,7 @@ from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance, score_test
-from werrimbi_odom.inference.rules import LASTS, LEFT_ASKED, LITTLE_OF_A_LAW, REST_EXPLAINED
+from werrimbi_odom.inference.rules import LEFT_ASKED, LITTLE_OF_A_LAW, REST_EXPLAINED, SURE
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 
@@ -101,7 +101,7 @@ def misfit_of_found(
     knobs = (*CALIBRATION, *fit.knobs)
     asked = [cell for cell in worth if cell.gain > cell.degrees * fit.price_of_one][:LEFT_ASKED]
     for cell, p_value in lasting(runs, fit.point, kind, knobs, asked):
-        if p_value < LASTS:
+        if p_value < SURE:
             for law, support, explained in _laws(fit, runs):
                 if _shares(support, cell):
                     return Misfit(law.name, cell, cell.gain / explained)

@@ -31,19 +31,14 @@ from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import (
+    LASTING_FEWEST,
+    LASTING_HEARD,
+    LASTING_LEGS,
+    LASTING_MOST,
+    LASTING_PARTS,
+)
 from werrimbi_odom.model.pose import Floats
-
-PARTS = 28
-"""Into which all runs are cut, about: so many that their disagreement is known."""
-
-FEWEST, MOST = 4, 12
-"""Of one run."""
-
-LEGS = 5
-"""Of a part, at the least; with fewer (two poses a drive) errors have no time to be alike in."""
-
-HEARD = 0.1
-"""Share of a pattern's size that a part must hold, to say anything of it."""
 
 
 def lasting_effect(
@@ -96,12 +91,12 @@ def lasting(
 
 def _too_few(runs: Together) -> bool:
     """Whether legs are so long, or so few, that each stands for itself."""
-    return runs.count < LEGS * FEWEST * len(runs.runs)
+    return runs.count < LASTING_LEGS * LASTING_FEWEST * len(runs.runs)
 
 
 def _parts(runs: Together) -> NDArray[np.intp]:
     """The part to which each innovation belongs, counted through, (3 m,)."""
-    each = min(max(math.ceil(PARTS / len(runs.runs)), FEWEST), MOST)
+    each = min(max(math.ceil(LASTING_PARTS / len(runs.runs)), LASTING_FEWEST), LASTING_MOST)
     first = np.searchsorted(runs.run_of_leg, runs.run_of_leg, side="left")
     count = np.bincount(runs.run_of_leg)[runs.run_of_leg]
     part = (np.arange(runs.count) - first) * each // count
@@ -118,7 +113,7 @@ def _chance(
     for part in range(parts.max() + 1):
         here = parts == part
         basis, values, _ = np.linalg.svd(scaled[here], full_matrices=False)
-        own = basis[:, values > HEARD]
+        own = basis[:, values > LASTING_HEARD]
         apart += float(np.sum((own.T @ rest[here]) ** 2))
         freedom += own.shape[1]
     freedom = max(freedom - degrees, 1)

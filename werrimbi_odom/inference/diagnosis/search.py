@@ -29,17 +29,18 @@ from werrimbi_odom.inference.fitting.knobs import (
 )
 from werrimbi_odom.inference.fitting.own_values import with_own_values
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import (
+    EDGE,
+    EDGE_LEGS,
+    INSTEAD_FITTED,
+    REFITTED,
+    SAME_BY_RUN,
+    SCORE_FLOOR,
+    SHORTLISTED,
+    WORTH_A_FIT,
+)
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
-
-REFITTED = 5
-"""Candidates that are fitted in full in each round."""
-
-EDGE = 0.3
-"""Time at both ends of a run whose legs are not counted [s]: delays are mostly shorter."""
-
-HALF_AS_GOOD = 0.25
-"""Share of the best score below which a candidate is not worth a fit."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,7 +104,7 @@ def _edges(runs: Together) -> tuple[NDArray[np.bool_], ...]:
         first, last = run.counters.time[0], run.counters.time[-1]
         begin, end = run.measured.time[:-1], run.measured.time[1:]
         outside = (begin < first + EDGE) | (end > last - EDGE)
-        found.append(outside if run.legs > 20 else np.zeros(run.legs, dtype=np.bool_))
+        found.append(outside if run.legs > EDGE_LEGS else np.zeros(run.legs, dtype=np.bool_))
     return tuple(found)
 
 
@@ -137,7 +138,7 @@ def instead_of_calibration(
     looked_at = candidates(effects, held, channels, len(runs.runs))
     found = scores(runs, point, kind, (*calibrated.knobs, *nuisances), looked_at)
     results = []
-    for score in worth_fitting(best_of_each(found))[:3]:
+    for score in worth_fitting(best_of_each(found))[:INSTEAD_FITTED]:
         start = replace(point, model=put_in(point.model, score))
         knobs = (*calibrated.knobs, *knobs_of_candidate(score.candidate), *nuisances)
         fit = fit_model(
@@ -179,7 +180,7 @@ def search_round(
             for other in found
             if other.candidate.name == score.candidate.name
             and other.candidate.per_run != score.candidate.per_run
-            and other.gain > 0.5 * score.gain
+            and other.gain > SAME_BY_RUN * score.gain
         ]
         options = [score] + ([max(variants, key=lambda other: other.gain)] if variants else [])
         fits = []
@@ -215,6 +216,6 @@ def worth_fitting(ordered: Sequence[Score]) -> list[Score]:
     top = ordered[0].gain
     return [
         score
-        for score in ordered[: 2 * REFITTED]
-        if score.gain > HALF_AS_GOOD * top and score.gain > score.degrees + 8.0
+        for score in ordered[:SHORTLISTED]
+        if score.gain > WORTH_A_FIT * top and score.gain > score.degrees + SCORE_FLOOR
     ][:REFITTED]

@@ -22,7 +22,7 @@ from werrimbi_odom.inference.calibration_sizes import calibration_deviation
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
 from werrimbi_odom.inference.fitting.directions import Directions, determined, every_direction
-from werrimbi_odom.inference.fitting.fit import FEW, fit_model
+from werrimbi_odom.inference.fitting.fit import fit_model
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     MULTIPLIERS,
@@ -33,7 +33,7 @@ from werrimbi_odom.inference.fitting.knobs import (
 )
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance, score_test
-from werrimbi_odom.inference.rules import PENALTY_FLOOR, RIVAL
+from werrimbi_odom.inference.rules import NOISE_NUMBERS, PENALTY_FLOOR, RIVAL
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -94,7 +94,7 @@ def price_of_one(runs: Together) -> float:
 
 def scatter_of(runs: Together, design: Design) -> float:
     """By how much costs are too large where few data could not tell the noise; else 1."""
-    if runs.data >= FEW:
+    if runs.data >= NOISE_NUMBERS:
         return 1.0
     free = max(runs.data - len(design.columns), 1)
     return max(1.0, float(np.sum(design.white**2)) / free)

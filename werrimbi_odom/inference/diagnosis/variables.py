@@ -13,18 +13,10 @@ from numpy.typing import NDArray
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.prediction import anchors, headings_of, path_of, right_handed
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import CURVE_KNOTS, FLOOR_CELL, FLOOR_CELLS
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
-
-KNOTS = 6
-"""Knots of a smooth curve."""
-
-CELL = 0.5
-"""Width of the floor's cells [m]; wider on large floors."""
-
-CELLS = 40
-"""Cells of the floor, at the most."""
 
 CONSTANT = "constant"
 """Name of the variable that is 1 everywhere: an error in proportion to its amount alone."""
@@ -185,7 +177,7 @@ def functions_of(variable: Variable) -> dict[Form, tuple[Floats, Floats]]:
 
 def curve_knots(values: Floats) -> Floats:
     """Knots of a curve: at quantiles, so that each piece rests on as many data."""
-    return np.unique(np.quantile(values, np.linspace(0.0, 1.0, KNOTS)))
+    return np.unique(np.quantile(values, np.linspace(0.0, 1.0, CURVE_KNOTS)))
 
 
 def hats(values: Floats, knots: Floats) -> Floats:
@@ -196,11 +188,11 @@ def hats(values: Floats, knots: Floats) -> Floats:
 
 def floor_cells(x: Floats, y: Floats) -> Floats:
     """Marks of the floor's cells in which the steps are, (n, cells)."""
-    width = CELL
+    width = FLOOR_CELL
     while True:
         column = np.floor((x - x.min()) / width).astype(int)
         row = np.floor((y - y.min()) / width).astype(int)
         cell, counts = np.unique(column * (row.max() + 1) + row, return_inverse=True)
-        if cell.size <= CELLS:
+        if cell.size <= FLOOR_CELLS:
             return np.asarray(counts[:, None] == np.arange(cell.size), dtype=np.float64)
         width *= 1.25

@@ -33,18 +33,17 @@ from werrimbi_odom.inference.fitting.prediction import legs_shown, predict, pred
 from werrimbi_odom.inference.fitting.together import Together, laid_out
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.linear import solved
-from werrimbi_odom.inference.rules import TYPICAL_GYRO_WALK, TYPICAL_STAMP_NOISE
+from werrimbi_odom.inference.rules import (
+    JUMP_OF_A_LEG,
+    LEAST_WHEEL_NOISE,
+    MOTION_CAPTURE_XY,
+    MOTION_CAPTURE_YAW,
+    NOISE_NUMBERS,
+    TYPICAL_GYRO_WALK,
+    TYPICAL_STAMP_NOISE,
+)
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-
-JUMP = 40.0
-"""Squared deviation, in units of what is usual for the run, above which the reference jumped."""
-
-FEW = 30
-"""Fewer measured coordinates than this cannot tell the noise; it is then taken as it was given.
-
-Thirty tell the logarithm of one standard deviation to 13 %, and of four to a quarter each: as much
-as a verdict needs. What two of them share is told apart by what is known of wheels."""
 
 _MEDIAN_CHI2_3 = 2.366
 _TAIL = 4.0  # degrees of freedom of the Student-t that weighs legs until the jumps are known
@@ -93,10 +92,10 @@ def start_point(
     """Where a fit begins: the robot as given, no leg excluded, headings from the first legs."""
     laid = laid_out(runs)
     guess = (
-        max(robot.left_wheel_noise, 1e-5),
-        max(robot.right_wheel_noise, 1e-5),
-        sigma_xy or 1e-3,
-        sigma_yaw or 2e-3,
+        max(robot.left_wheel_noise, LEAST_WHEEL_NOISE),
+        max(robot.right_wheel_noise, LEAST_WHEEL_NOISE),
+        sigma_xy or MOTION_CAPTURE_XY,
+        sigma_yaw or MOTION_CAPTURE_YAW,
         TYPICAL_STAMP_NOISE,
     )
     if headings_alone(laid) and sigma_yaw is None:
@@ -137,14 +136,14 @@ def fit_model(
     if find_jumps:
         noise = point.variances
         point = _robustly(laid, point, kind, knobs)
-        if laid.data < FEW:
+        if laid.data < NOISE_NUMBERS:
             point = replace(point, variances=noise)
     point = replace(point, variances=held_variances(point.variances, sigma_xy, sigma_yaw))
     if rounds > 0:
         point = _turned_to_the_first_legs(laid, point, kind)
     known = (sigma_xy is not None, sigma_yaw is not None)
     for _ in range(rounds):
-        if laid.data >= FEW:
+        if laid.data >= NOISE_NUMBERS:
             variances = likeliest(Costs(laid, point, kind), point.variances, known)
             point = replace(point, variances=variances)
         design = stacked(laid, point, kind, knobs)
@@ -209,7 +208,7 @@ def _jumps(runs: Together, point: Point, kind: ReferenceKind) -> tuple[NDArray[n
     for first, last in zip(runs.legs[:-1], runs.legs[1:], strict=True):
         own = deviation[first:last]
         usual = max(float(np.median(own)) / _MEDIAN_CHI2_3, 1.0)
-        found.append(own > JUMP * usual)
+        found.append(own > JUMP_OF_A_LEG * usual)
     return tuple(found)
 
 

@@ -11,7 +11,7 @@ from typing import cast
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.rules import CALIBRATION_BOUNDS
+from werrimbi_odom.inference.rules import CALIBRATION_BOUNDS, CALIBRATION_KNOWN
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -61,7 +61,9 @@ class Knob:
     per_run: bool = False
 
 
-CALIBRATION = tuple(Knob(name, "", 1e-4, CALIBRATION_BOUNDS, 0.05) for name in MULTIPLIERS)
+CALIBRATION = tuple(
+    Knob(name, "", 1e-4, CALIBRATION_BOUNDS, CALIBRATION_KNOWN) for name in MULTIPLIERS
+)
 
 HEADING_AT_START = Knob(START_YAW, "rad", 1e-4, (-1e9, 1e9), float("inf"), per_run=True)
 

@@ -20,6 +20,7 @@ from werrimbi_odom.inference.fitting.prediction import Prediction
 from werrimbi_odom.inference.fitting.together import laid_out
 from werrimbi_odom.inference.rules import (
     GYRO_WALK_SPREAD,
+    NOISE_TOLD,
     STAMP_NOISE_SPREAD,
     TYPICAL_GYRO_WALK,
     TYPICAL_STAMP_NOISE,
@@ -192,7 +193,7 @@ def noise_estimates(
     share[moving] = 0.5 * np.sqrt(np.maximum(np.diag(covariance), 0.0))
     told = moving | np.array([False, False, *held, False])
     return {
-        name: NoiseEstimate(float(sigma), float(sigma * part), bool(part < 0.5))
+        name: NoiseEstimate(float(sigma), float(sigma * part), bool(part < NOISE_TOLD))
         for name, sigma, part, tell in zip(_ALL, sigmas, share, told, strict=True)
         if tell
     }

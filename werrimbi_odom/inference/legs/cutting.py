@@ -26,23 +26,19 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference.legs.counters import Counters, counters_of, nodes_at
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
-from werrimbi_odom.inference.rules import RATE_OF_FIT
+from werrimbi_odom.inference.rules import (
+    FEW_POSES,
+    MOMENT,
+    PARTS_OF_A_LEG,
+    QUARTER_TURN,
+    RATE_OF_FIT,
+    TURN_WORTH_SAYING,
+    WAY_WORTH_SAYING,
+)
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-
-FEW = 10
-"""Reference poses: of fewer, those count too that lie just outside the ticks' time."""
-
-MOMENT = 1.0
-"""How far outside [s]."""
-
-PARTS_OF_A_LEG = 4
-"""Fits use legs this much shorter than those that are judged: they tell noise from drift."""
-
-QUARTER_TURN = 0.5 * math.pi
-"""Turning [rad] that is worth a leg of path, whatever the leg's length."""
 
 ROUNDING = 1e-12
 """Share of a drive, by which sums of its steps may be off."""
@@ -275,8 +271,8 @@ def _driven(robot: Robot, counters: Counters, begin: float, end: float) -> str:
     left, right = (np.diff(counters.at(time), axis=0) * [robot.left_tick, robot.right_tick]).T
     path = float(np.abs(0.5 * (left + right)).sum())
     turned = math.degrees(float(np.abs(right - left).sum()) / robot.track)
-    words = [f"drove {path:.1f} m"] if path >= 0.05 else []
-    words += [f"turned {turned:.0f}°"] if turned >= 20.0 or not words else []
+    words = [f"drove {path:.1f} m"] if path >= WAY_WORTH_SAYING else []
+    words += [f"turned {turned:.0f}°"] if turned >= TURN_WORTH_SAYING or not words else []
     return f"the robot {' and '.join(words)}"
 
 
@@ -293,7 +289,7 @@ def usable_rows(
         Time of the first tick and of the last [s].
     """
     within = known & (time >= first) & (time <= last)
-    if within.sum() < FEW:
+    if within.sum() < FEW_POSES:
         # Where a robot was put down and where it was found, by tape: it stood a moment before the
         # first tick and after the last.
         within = known & (time >= first - MOMENT) & (time <= last + MOMENT)

@@ -34,15 +34,9 @@ from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.inference.manoeuvres.imagined import imagined
 from werrimbi_odom.inference.manoeuvres.rivals import Experiment, Sensitivities, sensitivities_of
-from werrimbi_odom.inference.rules import SURE
+from werrimbi_odom.inference.rules import HIDDEN_FROM, POWER, SURE
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
-
-POWER = 0.95
-"""Share of cases in which an effect of the limit's size is found."""
-
-HIDDEN = 3.0
-"""An effect that would be seen only from so many times its typical size on counts as hidden."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +60,7 @@ class DetectionLimit:
     @property
     def hidden(self) -> bool:
         """Whether an effect of usual size would have stayed hidden."""
-        return not self.minimum_detectable < HIDDEN * self.typical
+        return not self.minimum_detectable < HIDDEN_FROM * self.typical
 
 
 def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[DetectionLimit, ...]:

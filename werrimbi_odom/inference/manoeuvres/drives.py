@@ -17,6 +17,13 @@ import numpy as np
 
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import (
+    FASTEST_PACE,
+    HARD_START,
+    PACE_UNKNOWN,
+    SLOWEST_PACE,
+    TAPED_INTERVALS,
+)
 from werrimbi_odom.model.effect import view_of, wiring_of
 from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Floats
@@ -133,9 +140,9 @@ def pace_of(runs: Together, robot: Robot) -> Pace:
     travel, drive = runs.raw(robot), runs.drive(robot)
     duration = np.maximum(drive.duration, 1e-6)
     rims = np.concatenate([np.abs(travel.left), np.abs(travel.right)]) / np.tile(duration, 2)
-    speed = float(np.quantile(rims[rims > 0.0], 0.95)) if (rims > 0.0).any() else 0.3
-    speed = min(max(speed, 0.02), 20.0)
-    return Pace(speed, 2.5 * speed, robot.track)
+    speed = float(np.quantile(rims[rims > 0.0], 0.95)) if (rims > 0.0).any() else PACE_UNKNOWN
+    speed = min(max(speed, SLOWEST_PACE), FASTEST_PACE)
+    return Pace(speed, HARD_START * speed, robot.track)
 
 
 def rates_of(runs: Together) -> tuple[float, float]:
@@ -147,7 +154,7 @@ def rates_of(runs: Together) -> tuple[float, float]:
     poses = [
         np.diff(run.measured.time) / np.maximum(run.intervals, 1.0)
         for run in runs.runs
-        if run.intervals.sum() > 3
+        if run.intervals.sum() > TAPED_INTERVALS
     ]
     every = float(np.median(np.concatenate(poses))) if poses else math.inf
     return float(np.median(ticks)), every
@@ -190,7 +197,7 @@ def ideal_run(
     )
     seen = (
         np.arange(0.5 * poses, at[-1], poses)
-        if poses < 0.25 * at[-1]
+        if poses < at[-1] / (TAPED_INTERVALS + 1)
         else np.array([0.5 * REST, at[-1] - 0.2 * REST])
     )
     position, heading = measures

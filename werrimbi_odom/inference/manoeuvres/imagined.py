@@ -16,9 +16,13 @@ from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.manoeuvres.drives import Ideal, Pace, ideal_run, rates_of
 from werrimbi_odom.inference.manoeuvres.rivals import Experiment
-
-USUAL_REFERENCE = (0.05, 1e-3, 2e-3)
-"""Motion capture: time between two poses [s], noise of a position [m] and of a heading [rad]."""
+from werrimbi_odom.inference.rules import (
+    MOTION_CAPTURE_INTERVAL,
+    MOTION_CAPTURE_XY,
+    MOTION_CAPTURE_YAW,
+    PARTS_OF_A_LEG,
+    QUARTER_TURN,
+)
 
 
 def measured_in(runs: Together) -> tuple[bool, bool]:
@@ -59,15 +63,17 @@ def imagined(
     measures = measured_in(runs)
     variances = point.variances
     if better:
-        poses, sigma_xy, sigma_yaw = USUAL_REFERENCE
+        poses = MOTION_CAPTURE_INTERVAL
         measures = True, True
-        variances = replace(variances, xy=np.array([sigma_xy**2]), yaw=np.array([sigma_yaw**2]))
+        variances = replace(
+            variances, xy=np.array([MOTION_CAPTURE_XY**2]), yaw=np.array([MOTION_CAPTURE_YAW**2])
+        )
         kind = "absolute"
     run = ideal_run(
         ideal, robot, pace, ticks=ticks, poses=poses, measures=measures, channels=ranges
     )
-    leg = 0.25 * pace.size
-    laid = together([match(run, robot, leg, None, 0.5 * np.pi * 0.25)])
+    leg = pace.size / PARTS_OF_A_LEG
+    laid = together([match(run, robot, leg, None, QUARTER_TURN / PARTS_OF_A_LEG)])
     start = start_point(laid, robot)
     first = point.model.own[0]
     own = {name: value for name, value in first.items() if name not in NUISANCES}

@@ -36,17 +36,11 @@ from werrimbi_odom.inference.manoeuvres.rivals import (
     trace_at,
 )
 from werrimbi_odom.inference.manoeuvres.unknown import Manoeuvre, for_the_unknown, strongest
-from werrimbi_odom.inference.rules import RIVAL
+from werrimbi_odom.inference.rules import APART_HEADING, APART_POSITION, ENOUGH, LONGEST_DRIVE
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 
 __all__ = ["Discrimination", "Manoeuvre", "discriminations", "next_manoeuvre", "strongest"]
-
-LONGEST = 30.0
-"""Minutes of driving that one may ask for."""
-
-ENOUGH = 3.0 * RIVAL
-"""Rise of the cost that settles it, chance allowed for."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -139,10 +133,10 @@ def _best(rivals: Sequence[str], weighed: Sequence[Discrimination]) -> Manoeuvre
     """The quickest to leave one rival alone; else to tell the first from all others."""
     best = min(weighed, key=lambda item: item.minutes_for(item.every))
     minutes = best.minutes_for(best.every)
-    if minutes > LONGEST:
+    if minutes > LONGEST_DRIVE:
         best = weighed[0]
         minutes = best.minutes_for(best.rise)
-    if minutes > LONGEST:
+    if minutes > LONGEST_DRIVE:
         return None
     why = (
         f"{rivals[0]} and {best.against} look alike on these drives, but {best.ideal.where} "
@@ -156,9 +150,9 @@ def _size(apart: Floats) -> str:
     position = float(np.quantile(np.hypot(apart[:, 0], apart[:, 1]), 0.9))
     heading = float(np.degrees(np.quantile(np.abs(apart[:, 2]), 0.9)))
     parts = []
-    if position > 5e-4:
+    if position > APART_POSITION:
         parts.append(f"{1e3 * position:.2g} mm" if position < 0.1 else f"{position:.2g} m")
-    if heading > 0.02:
+    if heading > APART_HEADING:
         parts.append(f"{heading:.2g}°")
     return (" and ".join(parts) or "little, again and again") + " on a short leg"
 

@@ -6,13 +6,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES
-
-NEARLY = 0.9
-"""A dependence that explains this share of what the best one does may be the better name for it."""
+from werrimbi_odom.inference.rules import (
+    MINUTES_OF_A_LAW,
+    MINUTES_OF_PLACES,
+    MINUTES_OF_TIME,
+    NEARLY_AS_MUCH,
+    SURE,
+    USELESS_NUMBER,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,14 +64,14 @@ def for_the_unknown(diagnosis: Diagnosis) -> Manoeuvre | None:
         manoeuvre, words = _VARYING[name]
         ideal = next(item for item in MANOEUVRES if item.name == manoeuvre)
         why = f"it varies the {words} and holds as much else as can be held, so that the law shows"
-        return Manoeuvre(manoeuvre, why, f"drive {ideal.words}", 2.0)
+        return Manoeuvre(manoeuvre, why, f"drive {ideal.words}", MINUTES_OF_A_LAW)
     if name == "position":
         return Manoeuvre(
             "square",
             "the same drive on different places of the floor shows where the error is and how wide",
             "drive the same small square, in both senses, on and off the places where the error is "
             "largest",
-            4.0,
+            MINUTES_OF_PLACES,
         )
     if name in ("time", "duration", "distance"):
         return Manoeuvre(
@@ -75,7 +80,7 @@ def for_the_unknown(diagnosis: Diagnosis) -> Manoeuvre | None:
             "back after a rest",
             "drive one and the same line forwards and backwards for ten minutes; then after a rest "
             "again",
-            10.0,
+            MINUTES_OF_TIME,
         )
     return Manoeuvre(
         "out_and_back",
@@ -83,7 +88,7 @@ def for_the_unknown(diagnosis: Diagnosis) -> Manoeuvre | None:
         "follows it",
         f"drive one and the same line forwards and backwards, with {name} as low and as high as "
         "it gets, and in between",
-        4.0,
+        MINUTES_OF_PLACES,
     )
 
 
@@ -96,10 +101,10 @@ def strongest(diagnosis: Diagnosis) -> Dependence | None:
     if not sure:
         return None
     top = max(_explains(cell) for cell in sure)
-    near = [cell for cell in sure if _explains(cell) >= NEARLY * top]
+    near = [cell for cell in sure if _explains(cell) >= NEARLY_AS_MUCH * top]
     return max(near, key=lambda cell: (cell.variable.name != CONSTANT, _explains(cell)))
 
 
 def _explains(cell: Dependence) -> float:
     """What a dependence explains beyond what as many useless numbers would."""
-    return cell.gain - 2.0 * cell.degrees
+    return cell.gain - USELESS_NUMBER * cell.degrees

@@ -13,20 +13,19 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from werrimbi_odom.inference.rules import (
+    DELAY_BETTER,
+    DELAY_EVIDENCE,
+    DELAY_LONGEST,
+    DELAY_ROWS,
+    DELAY_SHORTEST,
+    DELAY_SPANS,
+    DELAY_TAMED,
+    DELAY_UNEXPLAINED,
+    FEWEST_CUTS,
+)
 from werrimbi_odom.inference.set_up.records import Record
 from werrimbi_odom.model.pose import Floats, wrap_all
-
-LONGEST = 5.0
-"""Lags looked at, both ways [s]."""
-
-SHORTEST = 0.25
-"""Smaller ones are left to the fits [s]: a derivative finds them."""
-
-BETTER = 1.1
-"""How many times less another lag must leave unexplained to be called better, ..."""
-
-EVIDENCE = 15.0
-"""... and the logarithm of that over all independent seconds."""
 
 _PERIOD = 0.1
 
@@ -39,11 +38,11 @@ def lag_of(records: Sequence[Record]) -> tuple[float, float]:
     (lag, gain)
         (0, 1) where no other lag is clearly better.
     """
-    most = round(LONGEST / _PERIOD)
+    most = round(DELAY_LONGEST / _PERIOD)
     sums = [_Sums(width, most) for width in (2, 3)]
     for record in records:
         grid = np.arange(record.time[0], record.time[-1], _PERIOD)
-        if grid.size < 4 * most or record.seen.size < 20:
+        if grid.size < DELAY_SPANS * most or record.seen.size < FEWEST_CUTS:
             continue
         left = np.diff(np.interp(grid, record.time, record.left))
         right = np.diff(np.interp(grid, record.time, record.right))
@@ -54,7 +53,7 @@ def lag_of(records: Sequence[Record]) -> tuple[float, float]:
         ):
             if measured is not None:
                 total.add(wheels, measured)
-    used = [total for total in sums if total.rows > 100]
+    used = [total for total in sums if total.rows > DELAY_ROWS]
     if not used:
         return 0.0, 1.0
     misfit = np.sum([total.rows * np.log(total.unexplained()) for total in used], axis=0)
@@ -68,7 +67,7 @@ def lag_of(records: Sequence[Record]) -> tuple[float, float]:
             lag += 0.5 * _PERIOD * float(before - after) / float(bend)
     gain = float(np.exp(misfit[most] - misfit[best]))
     seconds = used[0].rows * _PERIOD
-    if abs(lag) < SHORTEST or gain < BETTER or seconds * np.log(gain) < EVIDENCE:
+    if abs(lag) < DELAY_SHORTEST or gain < DELAY_BETTER or seconds * np.log(gain) < DELAY_EVIDENCE:
         return 0.0, 1.0
     return float(lag), gain
 
@@ -86,7 +85,7 @@ class _Sums:
     def add(self, wheels: Floats, measured: Floats) -> None:
         """One run: (p, n) of the wheels, (n,) measured on the same grid, NaN where nothing was."""
         known = np.isfinite(measured)
-        if known.sum() < 4 * self.most:
+        if known.sum() < DELAY_SPANS * self.most:
             return
         scale = np.std(measured[known])
         if scale == 0.0:
@@ -106,12 +105,12 @@ class _Sums:
         """Share of the variance at each lag."""
         solved = np.linalg.lstsq(self.gram, self.cross, rcond=1e-9)[0]
         explained = np.sum(self.cross * solved, axis=0) / self.square
-        return np.asarray(np.clip(1.0 - explained, 1e-3, 1.0))
+        return np.asarray(np.clip(1.0 - explained, DELAY_UNEXPLAINED, 1.0))
 
 
 def _turns(record: Record, grid: Floats) -> Floats | None:
     known = np.isfinite(record.yaw)
-    if known.sum() < 20:
+    if known.sum() < FEWEST_CUTS:
         return None
     yaw = np.concatenate([[0.0], np.cumsum(wrap_all(np.diff(record.yaw[known])))])
     steps = np.diff(np.interp(grid, record.seen[known], yaw, left=np.nan, right=np.nan))
@@ -120,7 +119,7 @@ def _turns(record: Record, grid: Floats) -> Floats | None:
 
 def _squared_steps(record: Record, grid: Floats) -> Floats | None:
     known = np.isfinite(record.place)
-    if known.sum() < 20:
+    if known.sum() < FEWEST_CUTS:
         return None
     place = np.interp(grid, record.seen[known], record.place[known].real, np.nan, np.nan) + (
         1j * np.interp(grid, record.seen[known], record.place[known].imag)
@@ -133,5 +132,5 @@ def _tamed(values: Floats) -> Floats:
     size = np.abs(values[np.isfinite(values)])
     if size.size == 0:
         return values
-    limit = 3.0 * float(np.quantile(size, 0.9))
+    limit = DELAY_TAMED * float(np.quantile(size, 0.9))
     return np.clip(values, -limit, limit)

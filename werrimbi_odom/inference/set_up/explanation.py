@@ -15,11 +15,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-ASKEW = 0.3
-"""Mounts turned by less [rad] are left to the fits: a derivative finds them."""
-
-BOTH_REVERSED = 1.6
-"""Two counters of the wrong sign are less than two mistakes: one convention makes both."""
+from werrimbi_odom.inference.rules import ASKEW, ASKEW_BY, BOTH_REVERSED, TWIN_WITHIN
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,10 +49,10 @@ class Wired:
 
     @property
     def mistakes(self) -> float:
-        """How many, more or less; a large angle of the mount is one of them."""
+        """How many: minus log10 of how often robots are wired so (`rules.set_up`)."""
         both = self.left_reversed and self.right_reversed
         reversals = BOTH_REVERSED if both else float(self.left_reversed + self.right_reversed)
-        askew = float(abs(self.yaw) > ASKEW) + 0.15 * abs(self.yaw)
+        askew = float(abs(self.yaw) > ASKEW) + ASKEW_BY * abs(self.yaw)
         return float(self.swapped + self.mirrored) + reversals + askew
 
     def names(self) -> tuple[str, ...]:
@@ -130,7 +126,7 @@ def twins_of(name: str, ways: list[Wired]) -> tuple[str, ...]:
     first = ways[0]
     found: list[str] = []
     for other in ways[1:]:
-        if other.mistakes - first.mistakes < 0.7 and name not in other.names():
+        if other.mistakes - first.mistakes < TWIN_WITHIN and name not in other.names():
             kept = set(first.names())
             found += [each for each in other.names() if each not in kept and each not in found]
     return tuple(found)

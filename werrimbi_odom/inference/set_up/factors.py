@@ -6,6 +6,8 @@ from __future__ import annotations
 
 import math
 
+from werrimbi_odom.inference.rules import NEAR, ORDINARY
+
 FACTORS: dict[str, float] = {
     "2": 2.0,
     "1/2": 0.5,
@@ -19,12 +21,6 @@ FACTORS: dict[str, float] = {
     "1/1000": 1e-3,
 }
 """True over entered, by name."""
-
-NEAR = 1.13
-"""A value within this ratio of a simple factor is taken for it (pi and 4 are 1.27 apart)."""
-
-ORDINARY = 1.3
-"""A value within this ratio of 1 is a matter of calibration, not of set-up."""
 
 RADIUS: dict[str, str] = {
     "2": "half the radius was entered, or twice the counts of a turn",

@@ -9,9 +9,9 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 from werrimbi_odom.effects import find
-from werrimbi_odom.inference.set_up.explanation import ASKEW, Setting, Wired, twins_of
+from werrimbi_odom.inference.rules import ASKEW, LONGEST_ARM, NEAR, WIDE
+from werrimbi_odom.inference.set_up.explanation import Setting, Wired, twins_of
 from werrimbi_odom.inference.set_up.factors import (
-    NEAR,
     base_words,
     is_ordinary,
     metre_words,
@@ -23,9 +23,6 @@ from werrimbi_odom.inference.set_up.factors import (
 
 Misfit = Callable[[Setting], float]
 """Typical error of a set-up, in units of the best one's."""
-
-WIDE = 1.5
-"""A finding makes the typical error at least this much smaller."""
 
 
 @dataclass(frozen=True)
@@ -48,9 +45,6 @@ class SetUpFinding:
     without: Setting | None = field(default=None, compare=False, repr=False)
     """The set-up found, less this."""
 
-
-LONGEST_ARM = 5.0
-"""What the effect's bounds allow [m]."""
 
 IN_DEGREES = "reference_yaw_in_degrees"
 """The one finding that is no effect: the reference is to be recorded, or converted, anew."""

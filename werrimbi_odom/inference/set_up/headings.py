@@ -11,6 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from werrimbi_odom.inference.rules import FEWEST_CUTS, SURE_SIZE
 from werrimbi_odom.inference.set_up.explanation import (
     Estimate,
     Setting,
@@ -18,7 +19,6 @@ from werrimbi_odom.inference.set_up.explanation import (
     wirings,
 )
 from werrimbi_odom.inference.set_up.findings import SetUpFinding, findings_of
-from werrimbi_odom.inference.set_up.poses import FEWEST, SURE
 from werrimbi_odom.inference.set_up.records import Record, cut, effective_track
 from werrimbi_odom.inference.set_up.regression import swept, turning
 from werrimbi_odom.model.pose import wrap_all
@@ -30,10 +30,10 @@ def search_headings(
 ) -> tuple[list[SetUpFinding], Setting | None]:
     """What is wrong; sizes are not measured, so the second is always None."""
     cuts = cut(records, robot, "heading")
-    fit = turning(cuts, with_bias=True) if cuts.count >= FEWEST else None
+    fit = turning(cuts, with_bias=True) if cuts.count >= FEWEST_CUTS else None
     if fit is None:
         return [], None
-    if abs(fit.left) < SURE * fit.left_std or abs(fit.right) < SURE * fit.right_std:
+    if abs(fit.left) < SURE_SIZE * fit.left_std or abs(fit.right) < SURE_SIZE * fit.right_std:
         return [], None
     track = effective_track(robot)
     estimate = Estimate(fit.left, fit.right, None, None)

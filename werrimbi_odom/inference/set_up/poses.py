@@ -12,6 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.inference.comparison.reference_noise import Measure
+from werrimbi_odom.inference.rules import (
+    DEGREES_BETTER,
+    DEGREES_RANGE,
+    DEGREES_WRAPS,
+    FEWEST_CUTS,
+    RADIANS_WRAPS,
+    SURE_SIZE,
+)
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
     Estimate,
@@ -23,12 +31,6 @@ from werrimbi_odom.inference.set_up.findings import SetUpFinding, arm_finding, f
 from werrimbi_odom.inference.set_up.records import Cuts, Record, cut, effective_track
 from werrimbi_odom.inference.set_up.regression import Moving, Turning, errors, moving, turning
 from werrimbi_odom.model.robot import Robot
-
-FEWEST = 20
-"""Cuts that a regression is trusted with."""
-
-SURE = 8.0
-"""Standard deviations that a wheel's or the base's size must lie from zero to be one."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -44,9 +46,9 @@ class Regressed:
         """Whether both wheels and the base are told."""
         turn, move = self.turning, self.moving
         return (
-            abs(turn.left) > SURE * turn.left_std
-            and abs(turn.right) > SURE * turn.right_std
-            and abs(move.half_base) > SURE * move.half_base_std
+            abs(turn.left) > SURE_SIZE * turn.left_std
+            and abs(turn.right) > SURE_SIZE * turn.right_std
+            and abs(move.half_base) > SURE_SIZE * move.half_base_std
         )
 
     def misfit(self, setting: Setting, track: float) -> float:
@@ -69,7 +71,7 @@ class Regressed:
 def regressed(records: Sequence[Record], robot: Robot) -> Regressed | None:
     """Both regressions; None where the drives do not tell."""
     cuts = cut(records, robot, "pose")
-    if cuts.count < FEWEST:
+    if cuts.count < FEWEST_CUTS:
         return None
     turn = turning(cuts)
     move = None if turn is None else moving(cuts, turn.left, turn.right)
@@ -79,19 +81,22 @@ def regressed(records: Sequence[Record], robot: Robot) -> Regressed | None:
 def degrees_gain(records: Sequence[Record], robot: Robot, measured: Measure) -> float:
     """How many times better the reference's yaw fits as degrees; 1 where it does not."""
     yaw = np.concatenate([each.yaw[np.isfinite(each.yaw)] for each in records])
-    if measured == "position" or yaw.size == 0 or np.ptp(yaw) < 2.1 * math.pi:
+    if measured == "position" or yaw.size == 0 or np.ptp(yaw) < DEGREES_RANGE:
         return 1.0
     if measured == "heading":
         # Where it was wrapped, it was wrapped at a whole turn.
         jumps = np.concatenate([np.abs(np.diff(each.yaw)) for each in records])
-        wrapped = int(np.sum((jumps > 300.0) & (jumps < 361.0)))
-        return math.inf if wrapped > np.sum((jumps > 4.0) & (jumps < 7.0)) else 1.0
-    radians = regressed(records, robot)
-    degrees = regressed([each.in_degrees() for each in records], robot)
-    if degrees is None or radians is None:
+        degrees, radians = (
+            int(np.sum((jumps > low) & (jumps < high)))
+            for low, high in (DEGREES_WRAPS, RADIANS_WRAPS)
+        )
+        return math.inf if degrees > radians else 1.0
+    given = regressed(records, robot)
+    mended = regressed([each.in_degrees() for each in records], robot)
+    if mended is None or given is None:
         return 1.0
-    gain = radians.moving.scatter / degrees.moving.scatter
-    return gain if gain > 2.0 else 1.0
+    gain = given.moving.scatter / mended.moving.scatter
+    return gain if gain > DEGREES_BETTER else 1.0
 
 
 def search_poses(

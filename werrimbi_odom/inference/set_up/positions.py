@@ -17,6 +17,17 @@ from itertools import product
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference.rules import (
+    ARM_IN_HALF_BASES,
+    COARSE_WINDOWS,
+    FINE_WINDOWS,
+    GIVEN_AS_GOOD,
+    POSITION_CUTS,
+    POSITIONS_REFINED,
+    POSITIONS_WIDE,
+    WINDOW,
+    WINDOW_FLOOR,
+)
 from werrimbi_odom.inference.set_up.explanation import (
     Estimate,
     Setting,
@@ -28,18 +39,6 @@ from werrimbi_odom.inference.set_up.records import Complexes, Cuts, Record, cut,
 from werrimbi_odom.inference.set_up.regression import swept
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-
-WINDOW = 12
-"""Cuts in a window."""
-
-COARSE, FINE = 20, 60
-"""Windows looked at, spread over all drives: over the whole range, and while refining."""
-
-LONGEST = 6.0
-"""Longest lever arm that is believed, in half bases."""
-
-WIDE_MARGIN = 2.0
-"""Another set-up must make the typical error this much smaller than the given one, refined."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,7 +116,7 @@ def _scale(gone: Complexes, move: Complexes) -> float:
     return float(np.median(match[moved] / size[moved])) if moved.any() else 0.0
 
 
-def windows_of(cuts: Cuts, most: int = FINE) -> Windows | None:
+def windows_of(cuts: Cuts, most: int = FINE_WINDOWS) -> Windows | None:
     """Windows spread over all drives; None where there is not one."""
     starts = np.arange(0, cuts.count - WINDOW + 1, WINDOW // 2)
     starts = starts[cuts.stretch[starts] == cuts.stretch[starts + WINDOW - 1]]
@@ -129,7 +128,7 @@ def windows_of(cuts: Cuts, most: int = FINE) -> Windows | None:
     begin = np.repeat(cuts.begin[starts], WINDOW)
     move = np.cumsum(cuts.move[inside], axis=1).ravel()
     end = cuts.end[inside].ravel()
-    floor = 0.01 * float(np.median(np.abs(cuts.move))) + 1e-12
+    floor = WINDOW_FLOOR * float(np.median(np.abs(cuts.move))) + 1e-12
     nothing = np.full(end.size, np.nan)
     stretches = Cuts(cuts.left, cuts.right, begin, end, nothing, nothing, move, end * 0)
     return Windows(_compact(stretches), floor)
@@ -162,23 +161,26 @@ def search_positions(
     records: Sequence[Record], robot: Robot
 ) -> tuple[list[SetUpFinding], Setting | None]:
     """What is wrong, and the sizes that were measured."""
-    cuts = cut(records, robot, "position", fewest=60)
-    windows, some = windows_of(cuts), windows_of(cuts, COARSE)
+    cuts = cut(records, robot, "position", fewest=POSITION_CUTS)
+    windows, some = windows_of(cuts), windows_of(cuts, COARSE_WINDOWS)
     if windows is None or some is None:
         return [], None
     track = effective_track(robot)
     tried = sorted(
         (some.misfit(left / track, right / track), left, right) for left, right in _grid()
     )
-    best = min(_refined(windows, left / track, right / track) for _, left, right in tried[:6])
+    best = min(
+        _refined(windows, left / track, right / track)
+        for _, left, right in tried[:POSITIONS_REFINED]
+    )
     given = _refined(windows, 1.0 / track, 1.0 / track)
-    if given[0] < 1.05 * best[0]:
+    if given[0] < GIVEN_AS_GOOD * best[0]:
         best = given
     _, left, right = best
     arm = 0j
     for _ in range(3):
         half_base, arm = windows.mount(left, right, arm)
-        if abs(arm) > LONGEST * half_base:  # circles alone do not tell an arm from a base
+        if abs(arm) > ARM_IN_HALF_BASES * half_base:  # circles alone do not tell an arm from a base
             half_base, arm = windows.half_base(left, right), 0j
             break
         _, left, right = _refined(windows, left, right, arm, step=0.03)
@@ -194,7 +196,7 @@ def search_positions(
 
     found = findings_of(setting, ways, misfit)
     entered = windows.misfit(1.0 / track, 1.0 / track, 0.5 * track)
-    if not found or entered < WIDE_MARGIN * misfit(setting):
+    if not found or entered < POSITIONS_WIDE * misfit(setting):
         return [], None
     return found, setting
 

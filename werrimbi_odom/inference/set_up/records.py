@@ -22,6 +22,7 @@ from werrimbi_odom.inference.comparison.reference_noise import Measure
 from werrimbi_odom.inference.legs.counters import between_messages, summed
 from werrimbi_odom.inference.legs.cutting import leg_ends, usable_rows
 from werrimbi_odom.inference.legs.gaps import gaps_in, touched
+from werrimbi_odom.inference.rules import CUTS, MOST_CUTS, POSE_ROWS_OF_SET_UP
 from werrimbi_odom.inference.set_up.robot import mount_of
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driving import features
@@ -34,9 +35,6 @@ from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
 
 Complexes = NDArray[np.complex128]
-
-FEWEST, MOST = 300, 8000
-"""Cuts of a whole session: longer than half a turn beyond, shorter below."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -153,7 +151,7 @@ def measured_by(records: Sequence[Record]) -> Measure | None:
     place = sum(int(np.isfinite(each.place).sum()) for each in records)
     yaw = sum(int(np.isfinite(each.yaw).sum()) for each in records)
     both = sum(int((np.isfinite(each.place) & np.isfinite(each.yaw)).sum()) for each in records)
-    if both >= 0.3 * max(place, yaw) and both > 1:
+    if both >= POSE_ROWS_OF_SET_UP * max(place, yaw) and both > 1:
         return "pose"
     if place > 1 and place >= yaw:
         return "position"
@@ -165,9 +163,7 @@ def effective_track(robot: Robot) -> float:
     return robot.wheel_separation * sizes_of(robot).base
 
 
-def cut(
-    records: Sequence[Record], robot: Robot, measured: Measure, *, fewest: int = FEWEST
-) -> Cuts:
+def cut(records: Sequence[Record], robot: Robot, measured: Measure, *, fewest: int = CUTS) -> Cuts:
     """Cut all runs at rows of the reference, every half turn of the faster wheel.
 
     Parameters
@@ -179,7 +175,7 @@ def cut(
     usable = [_usable(each, measured) for each in records]
     total = sum(float(_progress(each)[-1]) for each in usable if each.seen.size > 1)
     half_turn = math.pi * robot.wheel_radius
-    length = min(max(half_turn, total / MOST), total / fewest) if total > 0.0 else half_turn
+    length = min(max(half_turn, total / MOST_CUTS), total / fewest) if total > 0.0 else half_turn
     view = mount_of(robot)
     parts, offset, stretch = [], 0, 0
     for each in usable:

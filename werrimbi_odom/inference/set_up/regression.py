@@ -18,6 +18,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
+from werrimbi_odom.inference.rules import ARM_TOLD
 from werrimbi_odom.inference.set_up.records import Complexes, Cuts
 from werrimbi_odom.model.motion import sinc
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -82,7 +84,7 @@ def moving(cuts: Cuts, left: float, right: float) -> Moving | None:
     alone = robust(gone[:, None], cuts.move)
     if alone is None:
         return None
-    if both is not None and both[1][0] < 0.02 * abs(both[0][0]):
+    if both is not None and both[1][0] < ARM_TOLD * abs(both[0][0]):
         value, std, scatter = both
         return Moving(complex(value[0]), complex(value[1]), float(std[0]), float(std[1]), scatter)
     # A circle is a circle about any point: base and lever arm are then one.
@@ -132,8 +134,7 @@ def robust(
             return None
         value = np.linalg.solve(normal, (rows.conj().T * weight) @ aims)
         off = np.abs(aims - rows @ value)
-        # Median absolute deviation of a normal scatter.
-        scatter = 1.4826 * float(np.median(off)) + floor
+        scatter = MEDIAN_TO_SIGMA * float(np.median(off)) + floor
         before = weight
         if turn < 15:
             weight = 1.0 / np.maximum(off, 0.05 * scatter + floor)

@@ -15,6 +15,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.inference.comparison.reference_noise import Measure
+from werrimbi_odom.inference.rules import (
+    ONE_WHEEL_FACTOR,
+    SPARSE_APART,
+    SPARSE_CUTS,
+    SPARSE_CUTS_MORE,
+    SPARSE_MARGIN,
+    SPARSE_MOVE,
+    SPARSE_SHARES,
+    SPARSE_TURN,
+)
 from werrimbi_odom.inference.set_up.explanation import (
     AS_ENTERED,
     Estimate,
@@ -30,23 +40,14 @@ from werrimbi_odom.model.motion import sinc
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
-SHARES = (0.002, 0.005, 0.01, 0.02, 0.04)
-"""What a robot that is set up right may err by, of its path and turning; the likeliest counts."""
-
 STEPS = 4000
 """In all drives together, some tenths of a second each."""
-
-MARGIN = 10.0
-"""Log-likelihood by which a set-up must be better than the one entered ..."""
-
-APART = 5.0
-"""... and better than any that says otherwise."""
 
 
 def is_sparse(records: Sequence[Record], robot: Robot, measured: Measure) -> bool:
     """Whether the reference is too rare to follow the robot through its turns."""
     cuts = cut(records, robot, measured)
-    return cuts.count < 4 * len(records) + 16
+    return cuts.count < SPARSE_CUTS * len(records) + SPARSE_CUTS_MORE
 
 
 def search_sparse(
@@ -62,7 +63,7 @@ def search_sparse(
         ((drives.fits(each), i, each) for i, each in enumerate(_settings())), reverse=True
     )
     (best, _, setting), given = tried[0], drives.fits(AS_ENTERED)
-    if best < given + MARGIN:
+    if best < given + SPARSE_MARGIN:
         return [], None
     left, right, half_base, _ = setting.numbers(track)
     yaw = -float(np.angle(half_base)) if measured == "pose" else None
@@ -72,7 +73,7 @@ def search_sparse(
     estimate = Estimate(left, right, 2.0 * abs(half_base), yaw)
     same = [setting_of(estimate, way, track) for way in upright]
     for value, _, other in tried[1:]:
-        if value < best - APART:
+        if value < best - SPARSE_APART:
             break
         if not any(_alike(other, one, measured == "pose") for one in same):
             return [], None
@@ -116,7 +117,7 @@ def _settings() -> Iterator[Setting]:
                     yield replace(plain, left=factor, right=factor)
                     yield replace(plain, base=factor)
                     yield replace(plain, left=factor, right=factor, base=factor)
-                    if 0.2 < factor < 5.0:
+                    if 1.0 / ONE_WHEEL_FACTOR < factor < ONE_WHEEL_FACTOR:
                         yield replace(plain, left=factor)
                         yield replace(plain, right=factor)
 
@@ -145,9 +146,9 @@ class _Drives:
         extent = self._extent(left, right, half_base)
         off, of_heading = errors(cuts, left, right, half_base, arm)
         values = []
-        for share in SHARES:
-            of_turn = 0.005 + share * turned
-            of_move = 0.003 + share * path + of_turn * extent
+        for share in SPARSE_SHARES:
+            of_turn = SPARSE_TURN + share * turned
+            of_move = SPARSE_MOVE + share * path + of_turn * extent
             if self.facing:
                 value = -0.5 * np.abs(off / of_move) ** 2 - 2.0 * np.log(of_move)
                 value += _log_wrapped(of_heading.real, of_turn)

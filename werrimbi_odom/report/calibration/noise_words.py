@@ -6,13 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from werrimbi_odom.inference.calibration.out_and_back import (
-    ADVISED_RUNS,
-    MISFIT_P,
-    NoiseEstimate,
-    NoiseFit,
-    pivot_scatter,
-)
+from werrimbi_odom.inference.calibration.out_and_back import NoiseEstimate, NoiseFit, pivot_scatter
+from werrimbi_odom.inference.rules import ADVISED_RUNS, SURE_WHEN_ASKED
 from werrimbi_odom.report.numbers import scaled_with_std
 from werrimbi_odom.report.printed import filled, table
 
@@ -82,13 +77,13 @@ def _mean(fit: NoiseFit) -> str:
         f"Mean of the runs (systematic, kept apart): x {x:.1f} ± {std_x:.1f} mm, "
         f"y {y:.1f} ± {std_y:.1f} mm, yaw {yaw:.1f} ± {std_yaw:.1f} mrad"
     )
-    if fit.mean_p < MISFIT_P:
+    if fit.mean_p < SURE_WHEN_ASKED:
         return f"{said}. That is more than scatter: calibrate base and radii first (umbmark)."
     return f"{said}; no more than scatter."
 
 
 def _verdict(fit: NoiseFit) -> str:
-    if fit.misfit_p < MISFIT_P:
+    if fit.misfit_p < SURE_WHEN_ASKED:
         return "Careful: what is assumed does not explain the scatter; do not trust these k."
     left, right = (scaled_with_std(each.value, each.std) for each in (fit.left, fit.right))
     if fit.split_known:
@@ -98,7 +93,7 @@ def _verdict(fit: NoiseFit) -> str:
 
 def _misfit(fit: NoiseFit) -> str:
     """How well the model's covariance matches the runs', and what would mend it."""
-    if fit.misfit_p >= MISFIT_P:
+    if fit.misfit_p >= SURE_WHEN_ASKED:
         return f"Of runs by this model, {100.0 * fit.misfit_p:.2g} % match it worse than these do."
     ratio = np.sqrt(np.diag(fit.data) / np.diag(fit.model))
     names = [f"{name} {value:.1f}" for name, value in zip(("x", "y", "yaw"), ratio, strict=True)]

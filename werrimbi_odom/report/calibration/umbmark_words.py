@@ -7,13 +7,14 @@ from __future__ import annotations
 import math
 
 from werrimbi_odom.inference.calibration.squares import (
-    ADVISED_RUNS,
     OTHER_VEHICLES,
     Squares,
     e_max_of_scatter,
     e_max_syst,
 )
-from werrimbi_odom.inference.calibration.umbmark import NORMAL_95, Estimate, Umbmark
+from werrimbi_odom.inference.calibration.umbmark import Estimate, Umbmark
+from werrimbi_odom.inference.chances import NORMAL_95
+from werrimbi_odom.inference.rules import ADVISED_SQUARES
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.numbers import scaled_with_std
@@ -121,9 +122,10 @@ def _doubts(squares: Squares, result: Umbmark) -> list[str]:
             f"about beta; chance {result.disagreement_p:.1g}). Something besides base and radii "
             "moved the robot: a slip, play in a gear, a start askew."
         )
-    if min(len(squares.cw), len(squares.ccw)) < ADVISED_RUNS:
+    if min(len(squares.cw), len(squares.ccw)) < ADVISED_SQUARES:
         lines.append(
-            f"{ADVISED_RUNS} squares in each sense are usual; with fewer the ± above grows quickly."
+            f"{ADVISED_SQUARES} squares in each sense are usual; with fewer the ± above grows "
+            "quickly."
         )
     return lines
 

@@ -7,8 +7,9 @@ from __future__ import annotations
 import math
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
-from werrimbi_odom.inference.comparison.groups import DEPENDS_P, ByVariable
+from werrimbi_odom.inference.comparison.groups import ByVariable
 from werrimbi_odom.inference.comparison.verdict import verdict_of
+from werrimbi_odom.inference.rules import SURE_OF_LEGS
 from werrimbi_odom.report.printed import filled, table
 
 _MOST = 3  # variables with a table of their own
@@ -32,7 +33,7 @@ def tables_of(comparison: Comparison) -> str:
 
 
 def _depends(item: ByVariable) -> bool:
-    return any(p_value < DEPENDS_P for p_value in item.p_values.values())
+    return any(p_value < SURE_OF_LEGS for p_value in item.p_values.values())
 
 
 def _motions(main: OfLength) -> str:
@@ -88,7 +89,7 @@ def _short(name: str, most: int = 26) -> str:
 def _variable(item: ByVariable) -> str:
     name, _, unit = item.name.partition(" [")
     unit = unit.rstrip("]")
-    with_it = [channel for channel, p in item.p_values.items() if p < DEPENDS_P]
+    with_it = [channel for channel, p in item.p_values.items() if p < SURE_OF_LEGS]
     angles = item.name.startswith("heading")
     rows = []
     for part in item.bins:

@@ -8,8 +8,9 @@ import math
 from collections.abc import Sequence
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
-from werrimbi_odom.inference.comparison.consistency import FEWEST, AtLength, trend_of
+from werrimbi_odom.inference.comparison.consistency import AtLength, trend_of
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
+from werrimbi_odom.inference.rules import FEWEST_LEGS
 from werrimbi_odom.report.comparison.phrases import systematic_told
 from werrimbi_odom.report.left_out import left_out_words
 from werrimbi_odom.report.printed import filled
@@ -57,7 +58,7 @@ def _headline(comparison: Comparison, verdict: Verdict) -> str:
     if not verdict.enough:
         return (
             f"Too little to judge: {_counted(count, 'leg')} of "
-            f"{_metres(comparison.prepared.leg)}, {FEWEST} are the least. "
+            f"{_metres(comparison.prepared.leg)}, {FEWEST_LEGS} are the least. "
             "Drive more, or try a shorter --leg."
         )
     if verdict.good:
@@ -97,7 +98,7 @@ def _by_motion(comparison: Comparison, verdict: Verdict) -> list[str]:
     )
     for kind in KINDS:
         figures = comparison.main.by_motion[kind]
-        if figures.figures.count < FEWEST:
+        if figures.figures.count < FEWEST_LEGS:
             if kind in verdict.few_and_bad:
                 number = _counted(figures.figures.count, "leg")
                 times = math.sqrt(figures.figures.nees)

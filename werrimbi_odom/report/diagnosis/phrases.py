@@ -7,14 +7,13 @@ from __future__ import annotations
 import math
 
 from werrimbi_odom.effects.page import page_of
-from werrimbi_odom.inference.adding.values import SIGNIFICANT
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, chance
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
-from werrimbi_odom.inference.rules import ONE_WHEEL
+from werrimbi_odom.inference.rules import ONE_WHEEL, SIGNIFICANT
 from werrimbi_odom.inference.set_up.mistakes import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words

@@ -8,6 +8,7 @@ from functools import partial
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
+from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
 from werrimbi_odom.report.diagnosis.phrases import at_bounds
 from werrimbi_odom.report.diagnosis.told import Told
@@ -21,9 +22,6 @@ from werrimbi_odom.workbench.steps import Diagnosed
 from werrimbi_odom.workbench.tab import Tab, millimetres
 from werrimbi_odom.workbench.views.floor import floor
 from werrimbi_odom.workbench.views.why import why
-
-SURE = 1e-3
-"""Chance below which a cell of the map is marked."""
 
 SHORT = 5
 """Lines of the verdict that are open at once."""

@@ -1,0 +1,18 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Every number that decides a verdict, with its derivation or the reason why it was chosen.
+
+Where a number could be derived, its reason says from what. Where it was chosen, it says so, and
+what speaks for it. Tolerances of numerics (a rank, a step of a derivative, the size of a block)
+decide nothing and stand where they are used. By how much right and wrong verdicts stood off these
+numbers is plotted in docs/evidence.md.
+"""
+
+from werrimbi_odom.inference.rules.calibrations import *  # noqa: F403
+from werrimbi_odom.inference.rules.comparison import *  # noqa: F403
+from werrimbi_odom.inference.rules.how_sure import *  # noqa: F403
+from werrimbi_odom.inference.rules.priors import *  # noqa: F403
+from werrimbi_odom.inference.rules.records import *  # noqa: F403
+from werrimbi_odom.inference.rules.search import *  # noqa: F403
+from werrimbi_odom.inference.rules.set_up import *  # noqa: F403
+from werrimbi_odom.inference.rules.told import *  # noqa: F403

@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What counts of a recording: poses, legs, gaps, jumps, and the parts that drives are cut into."""
+
+from __future__ import annotations
+
+import math
+
+# --------------------------------------------------------------------------------- poses and legs
+
+POSE_ROWS = 0.5
+"""Share of a reference's rows that must hold a position and a heading, for the others to be left
+out and poses to be compared: most of them, as the name of what was measured should be."""
+
+POSE_ROWS_OF_SET_UP = 0.3
+"""The same in the search for set-up mistakes. Chosen, less than for a comparison: poses tell every
+mistake in closed form, positions alone not, and a third of the rows is enough for regressions."""
+
+FEW_POSES, MOMENT = 10, 1.0
+"""Of fewer reference poses those count too that lie outside the ticks' time by no more than this
+[s]. Chosen: by tape one pose is taken before the recording is begun and one after its end."""
+
+QUARTER_TURN = 0.5 * math.pi
+"""Turning [rad] that is worth a leg of path, whatever the leg's length: the corner of a square
+divides its sides."""
+
+PARTS_OF_A_LEG = 4
+"""Fits use legs this much shorter than those that are judged. Noise grows with the root of the way
+and drift with the way, so over four times the length they part by a factor of 2."""
+
+EDGE = 0.3
+"""Time at both ends of a run whose legs are not counted [s]. Chosen: clocks that are synchronised
+over a network differ by less; what is later than that the search for set-up mistakes finds."""
+
+EDGE_LEGS = 20
+"""Legs of a run up to which none is left out at its ends: two of twenty are a tenth of what is
+measured, and two poses a drive are all there is."""
+
+# ------------------------------------------------------------------------------------------- gaps
+
+GAP_INTERVALS = 10.0
+"""Times the usual interval, from which on a silence is a gap.
+
+Of messages that come at random with a steady mean one interval in 1000 is as long (an exponential
+variable is above ten medians with a chance of 2^-10); of those that come at a rate none is.
+"""
+
+GAP_WAYS = 3.0
+"""Times the usual way of an interval, that must have been gone in a gap.
+
+A localisation that speaks every quarter of a metre is silent for as long as the robot stands, and
+its next interval is as long a way as any: that is its habit, no gap.
+"""
+
+GAP_LEG = 0.25
+"""Share of a leg that must have been gone in a gap: less makes no leg longer than others are."""
+
+GAP_FEWEST = 20
+"""Intervals with travel in them, below which nobody knows what is usual: poses taken by hand."""
+
+# ------------------------------------------------------------------------- jumps of the reference
+
+JUMP_SCATTER = 12.0
+"""Times the usual scatter of an interval, beyond which its error may be a jump of the reference.
+Chosen: by Chebyshev's inequality no distribution whatever reaches it in more than 0.7 % of
+intervals, and `JUMP_SHARE` is asked beside it."""
+
+JUMP_SHARE = 0.5
+"""Share of the motion about an interval that its error must be beyond to be a jump. A base or a
+radius that is off by half is a mistake of the set-up, which errs like that in every interval."""
+
+JUMP_SHARE_OF_A_GYRO = 1.5
+"""The same of a heading by itself. A gyro does not lose its place; what is late by more than an
+interval errs by all that the robot turns in it (a share of 1), and a start looks like a leap until
+base and clock are right."""
+
+JUMP_LATE = 0.5
+"""Time [s] within which motion may be that of an interval, the reference's clock being off: above
+the `EDGE` that is left to the fits."""
+
+JUMP_NEIGHBOURS, JUMP_FEWEST = 3, 8
+"""Intervals to either side whose median is usual, and the least number in which any jump is told:
+their window of seven, and one more."""
+
+JUMP_LASTS = 0.2
+"""Share of a run's largest jump that must be left at a leg's end for it to be spoilt. Chosen: a
+spike goes back to within the noise, and a lost place stays."""
+
+JUMP_OF_A_LEG = 40.0
+"""Squared deviation of a leg, in units of what is usual for its run, above which the reference
+jumped: chi-squared of three degrees is beyond it in one leg of 10^8."""
+
+# ----------------------------------------------------------------- drives that are put together
+
+GROSS = 3.0
+"""Times the median error of the fitted drives, beyond which a drive is looked at by itself. A
+manoeuvre that shows an effect errs more than others by as much, so this alone is no finding."""
+
+OWN_GAIN = 3.0
+"""Times by which its own set-up must lower such a drive's typical error: twice the 1.5 that a whole
+session must show, because one drive is less than a session."""
+
+FOLDS = 5
+"""Of the cross-validation: a model is fitted on four fifths and judged on the rest, five times."""
+
+FOLD_PARTS = 4
+"""Of a drive in each fold: 20 parts of a drive of a minute are three seconds each, longer than
+errors of neighbouring legs are alike."""
+
+HALF_PARTS = 10
+"""Of a drive, that go to odd and even halves in turn."""
+
+SET_ASIDE_BLOCKS, SET_ASIDE = 8, (1, 5)
+"""Stretches into which every drive is cut where no held-out drives are given, and those of them
+that are put aside: a quarter, from both halves of the drive."""
+
+SET_ASIDE_ROWS = 80
+"""Poses that a drive must have for it, ten a stretch; else whole drives are put aside."""
+
+RATE_OF_FIT = 50.0
+"""Steps a second of recorded driving that a fit works with, at the least [Hz]; of faster messages
+some are taken together (two at 100 Hz, four at 200 Hz).
+
+A robot that brakes at 1 m/s^2 while it turns at 2 rad/s leaves the arc of a step of 20 ms by 1.3
+um, and laws are the same however a drive is split into steps; speeds, which come in counts a step,
+are told the better. The ends of legs are where they were, counted from all messages."""
