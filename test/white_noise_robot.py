@@ -24,7 +24,9 @@ class WhiteNoiseRobot:
     ticks_per_revolution: float = 2000.0
 
 
-def wandering(random: np.random.Generator, seconds: float) -> tuple[np.ndarray, np.ndarray]:
+def wandering(
+    random: np.random.Generator, seconds: float, rate: float = RATE
+) -> tuple[np.ndarray, np.ndarray]:
     """Speeds and yaw rates of a drive with lines, curves both ways, spins, stops, reversing."""
     knots = int(seconds / 2.0) + 2
     kind = random.choice(5, size=knots, p=[0.3, 0.35, 0.15, 0.1, 0.1])
@@ -39,11 +41,11 @@ def wandering(random: np.random.Generator, seconds: float) -> tuple[np.ndarray, 
         ],
     )
     bend = random.choice([-1.0, 1.0], knots) * random.uniform(0.3, 1.2, knots)
-    rate = np.choose(kind, [np.zeros(knots), bend, bend, np.zeros(knots), np.zeros(knots)])
-    time = np.arange(int(seconds * RATE)) / RATE
+    turning = np.choose(kind, [np.zeros(knots), bend, bend, np.zeros(knots), np.zeros(knots)])
+    time = np.arange(int(seconds * rate)) / rate
     held = np.minimum((time / 2.0).astype(int), knots - 1)
-    smooth = np.ones(15) / 15.0
-    return np.convolve(speed[held], smooth, "same"), np.convolve(rate[held], smooth, "same")
+    smooth = np.ones(int(0.3 * rate)) / int(0.3 * rate)
+    return np.convolve(speed[held], smooth, "same"), np.convolve(turning[held], smooth, "same")
 
 
 def square(side: float, sense: float) -> tuple[np.ndarray, np.ndarray]:
@@ -65,6 +67,7 @@ def drive(
     sigma_yaw: float = 2e-3,
     every: int = 3,
     fine: int = 4,
+    hertz: float = RATE,
 ) -> Run:
     """A recorded run: the encoders count the commanded travel, the robot's true travel errs.
 
@@ -72,8 +75,8 @@ def drive(
     Gaussian noise at every `every`-th message.
     """
     speed, rate = commands
-    left = (speed - 0.5 * robot.separation * rate) / RATE
-    right = (speed + 0.5 * robot.separation * rate) / RATE
+    left = (speed - 0.5 * robot.separation * rate) / hertz
+    right = (speed + 0.5 * robot.separation * rate) / hertz
     count = speed.size
     scale = np.sqrt(np.abs(np.stack([left, right])) / fine)[..., None]
     noise = scale * random.standard_normal((2, count, fine))
@@ -84,7 +87,7 @@ def drive(
     yaw = np.concatenate([[0.0], np.cumsum(turn)]) + random.uniform(-3.0, 3.0)
     step = 0.5 * (true_left + true_right) * np.sinc(0.5 * turn / np.pi)
     path = np.concatenate([[0j], np.cumsum(step * np.exp(1j * (yaw[:-1] + 0.5 * turn)))])
-    time = np.arange(count + 1) / RATE
+    time = np.arange(count + 1) / hertz
     counts = [
         np.floor(
             random.uniform(-5e4, 5e4)

@@ -33,7 +33,7 @@ from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import DrivenPath, path_of, predict_all
 from werrimbi_odom.inference.fitting.together import Together
-from werrimbi_odom.inference.linear import Nuisance, ScoreTest, score_test_of_products
+from werrimbi_odom.inference.linear import ScoreTest, score_test_of_products
 from werrimbi_odom.inference.rules import FLOOR_CELL, NEIGHBOUR
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
@@ -133,11 +133,16 @@ def dependences(
     frame, rest = unexplained(runs, point, kind, knobs, predict_all(point.model, runs))
     told = unexpected(runs, point, kind)
     found: list[tuple[Amount, Variable, Form, ScoreTest]] = []
+    known = np.concatenate([frame.basis, rest[:, None]], axis=-1)
     for cell, change in _changes(runs, point):
-        own = told.marks(change)[..., :-1].reshape(rest.size, -1)
-        parts = runs.legs if cell.variable.per_run else runs.legs[[0, -1]]
-        for amount, columns in zip(cell.amounts, np.split(own, len(cell.amounts), -1), strict=True):
-            tested = _tested(columns, frame, rest, 3 * parts)
+        own = np.ascontiguousarray(told.marks(change)[..., :-1].reshape(rest.size, -1).T)
+        parts = 3 * (runs.legs if cell.variable.per_run else runs.legs[[0, -1]])
+        rows = [slice(*pair) for pair in itertools.pairwise(parts.tolist())]
+        products = np.stack([own[:, part] @ known[part] for part in rows])
+        width = own.shape[0] // len(cell.amounts)
+        for number, amount in enumerate(cell.amounts):
+            here = slice(number * width, (number + 1) * width)
+            tested = _tested([own[here, part] for part in rows], products[:, here])
             if tested is not None:
                 found.append((amount, cell.variable, cell.form, tested))
     cells = [
@@ -157,26 +162,24 @@ def dependences(
     return tuple(sorted(cells, key=lambda cell: (cell.p_value, -cell.gain / cell.degrees)))
 
 
-def _tested(
-    columns: Floats, frame: Nuisance, rest: Floats, parts: NDArray[np.intp]
-) -> ScoreTest | None:
-    """Score test of columns (n, k), given once for each of the parts of the rows and zero beside.
+def _tested(patterns: Sequence[Floats], products: Floats) -> ScoreTest | None:
+    """Score test of patterns (k, n) that each part of the data has anew, zero in the others.
 
     With no copy of them less the nuisances, for there are many.
+
+    Parameters
+    ----------
+    products : ndarray, shape (parts, k, nuisances + 1)
+        With what the model can turn, and with what is left of the innovations, clear of that.
     """
-    width = columns.shape[1]
-    square = np.zeros((width * (parts.size - 1),) * 2)
-    crosses, products, sizes = [], [], []
-    for number, (begin, end) in enumerate(itertools.pairwise(parts.tolist())):
-        own, place = columns[begin:end], slice(number * width, (number + 1) * width)
-        square[place, place] = own.T @ own
-        crosses.append(frame.basis[begin:end].T @ own)
-        products.append(own.T @ rest[begin:end])  # the rest is clear of the nuisances already
-        sizes.append(np.sqrt(np.sum(own**2, axis=0)))
-    cross = np.concatenate(crosses, axis=-1)
-    return score_test_of_products(
-        square - cross.T @ cross, np.concatenate(products), np.concatenate(sizes)
-    )
+    width = products.shape[1]
+    square = np.zeros((len(patterns) * width,) * 2)
+    for number, own in enumerate(patterns):
+        place = slice(number * width, (number + 1) * width)
+        square[place, place] = own @ own.T
+    flat = products.reshape(square.shape[0], -1)
+    cross, size = flat[:, :-1], np.sqrt(np.diag(square))
+    return score_test_of_products(square - cross @ cross.T, flat[:, -1], size)
 
 
 class _Cells(NamedTuple):
