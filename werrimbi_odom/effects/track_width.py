@@ -33,7 +33,7 @@ def track_width(
     Formula    turn /= multiplier                                    [rad] = [rad] / [1]
     Signature  every turn is off by the same share, left and right, fast and slow; lines are good
     Ruler      spin ten turns by the odometry from a chalk line on the floor: the robot falls short
-               of the line by 20 pi * (multiplier - 1)
+               of the line by 20 pi * (1 - 1 / multiplier)
     Twins      wheel_separation_multiplier of the robot file is the same number
     """
     return motion._replace(turn=motion.turn / multiplier)

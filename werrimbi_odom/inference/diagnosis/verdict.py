@@ -22,7 +22,7 @@ from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.rules import CALIBRATION_WORTH, RIVAL, SIMPLER
+from werrimbi_odom.inference.rules import CALIBRATION_WORTH, RIVAL, SIMPLER, SURE
 from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding
 from werrimbi_odom.model.robot import Robot
 
@@ -107,11 +107,7 @@ def told(
     """Everything put together."""
     judge, set_up = begun.judge, begun.set_up
     mistakes = [finding.effect for finding in set_up.findings]
-    sizes = [
-        name
-        for name in final.calibrated
-        if final.importance[name] > CALIBRATION_WORTH * final.price_of_one
-    ]
+    sizes = [name for name in final.calibrated if _is_news(name, final, rounds[0].number)]
     effects = sorted([*final.names, *sizes], key=lambda name: -final.importance[name])
     found = tuple(dict.fromkeys([*mistakes, *effects]))
     rivals: tuple[str, ...] = ()
@@ -155,6 +151,13 @@ def told(
         Sides(start.holdout_yaw, last.holdout_yaw, "rad"),
         judge.left_out,
     )
+
+
+def _is_news(name: str, final: Fitted, tried: int) -> bool:
+    """Whether a size is a finding: worth its price twice, and as sure as any effect must be."""
+    worth = final.importance[name]
+    certain = chi2_above(worth, 1) * tried < SURE
+    return certain and worth > CALIBRATION_WORTH * final.price_of_one
 
 
 def _possible_twins(finding: SetUpFinding) -> tuple[str, ...]:

@@ -39,6 +39,10 @@ ORDINARY = 1.3
 factors are 2 and 1/2, half way to which is sqrt(2) = 1.41; a loaded tyre or a skidding base is
 seldom off by more."""
 
+MOST_OF_A_SKID = 2.5
+"""Effective over true base up to which robots are found that skid round a turn (Jackal 1.5, Husky
+1.875 by their makers' parameter files): a matter of four wheels, no mistake."""
+
 WIDE = 1.5
 """A finding makes the typical error at least this much smaller. Chosen: the
 smallest mistake, a factor of 1.3, errs by a third of the way where a calibrated robot errs by

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 
-from werrimbi_odom.inference.rules import NEAR, ORDINARY
+from werrimbi_odom.inference.rules import MOST_OF_A_SKID, NEAR, ORDINARY
 
 FACTORS: dict[str, float] = {
     "2": 2.0,
@@ -21,6 +21,11 @@ FACTORS: dict[str, float] = {
     "1/1000": 1e-3,
 }
 """True over entered, by name."""
+
+_SKID = (
+    "it has four driven wheels, or tracks, which skid in turns and act as on a base 1.3 to 2.5 "
+    "times as wide: then all is entered rightly, and this is its effective base"
+)
 
 RADIUS: dict[str, str] = {
     "2": "half the radius was entered, or twice the counts of a turn",
@@ -76,9 +81,15 @@ def radius_words(value: float, factor: str | None) -> str:
     return _words("both wheels' radius", value, factor, RADIUS, "look at radius, gear and encoder")
 
 
+def skids(base: float) -> bool:
+    """Whether wheels that skid may turn a robot as if its base were so many times as wide."""
+    return ORDINARY < base < MOST_OF_A_SKID
+
+
 def base_words(value: float, factor: str | None) -> str:
     """The base."""
-    return _words("the wheel base", value, factor, BASE, "measure it anew")
+    words = _words("the wheel base", value, factor, BASE, "measure it anew")
+    return f"{words}; or {_SKID}" if skids(value) else words
 
 
 def metre_words(value: float, factor: str | None) -> str:
@@ -105,12 +116,14 @@ def side_words(side: str, value: float, factor: str | None) -> str:
 
 def turning_words(value: float, factor: str | None) -> str:
     """Radii over base, where yaw alone was measured."""
+    skid = f"; or {_SKID}" if skids(1.0 / value) else ""
     return _words(
         "radius over base",
         value,
         factor,
         {},
-        "radius or base were entered wrongly; yaw alone cannot tell which: drive a taped distance",
+        f"radius or base were entered wrongly{skid}; yaw alone cannot tell which: drive a taped "
+        "distance",
     )
 
 

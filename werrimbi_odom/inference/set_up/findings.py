@@ -18,6 +18,7 @@ from werrimbi_odom.inference.set_up.factors import (
     radius_words,
     side_words,
     simple_factor,
+    skids,
     turning_words,
 )
 
@@ -133,9 +134,11 @@ def _sizes(setting: Setting, yaw_alone: bool) -> Iterator[SetUpFinding]:
     if yaw_alone:
         if not is_ordinary(common):
             words = turning_words(common, factor)
-            yield SetUpFinding(
-                "wheel_radius_scale", values, factor, words, ("track_width",), 1.0, smaller
-            )
+            name, twin = "wheel_radius_scale", "track_width"
+            if skids(1.0 / common):  # the base leads: distances are right as they are
+                name, twin, values = twin, name, {"multiplier": 1.0 / common}
+                factor = simple_factor(1.0 / common)
+            yield SetUpFinding(name, values, factor, words, (twin,), 1.0, smaller)
         return
     odd_radius, odd_base = not is_ordinary(common), not is_ordinary(base)
     wider = replace(setting, base=1.0)

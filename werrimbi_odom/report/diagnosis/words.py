@@ -9,6 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.diagnosis import VERY_SURE, Diagnosis
+from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
 from werrimbi_odom.model.effect import always_twins
@@ -207,7 +208,8 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
                 f"- Less of it is explained by this: {dependence_words(others[0])}. What goes with "
                 "the one may go with the other because of how it was driven."
             )
-    best = diagnosis.ranking[0] if diagnosis.ranking else None
+    judged_ones = [item for item in diagnosis.ranking if item.holdout is not None]
+    best = min(judged_ones, key=lambda item: _after(item.holdout), default=None)
     if best is not None and best.holdout is not None and best.holdout.after < best.holdout.before:
         lines.append(
             f"Nearest in the library is {best.effect}: errors fall from "
@@ -222,6 +224,10 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
         move = told.manoeuvre
         lines.append(f"To know more first, {move.do} ({move.name}): {move.why}.")
     return lines
+
+
+def _after(sides: Sides | None) -> float:
+    return math.inf if sides is None or math.isnan(sides.after) else sides.after
 
 
 def _things(diagnosis: Diagnosis) -> list[str]:
