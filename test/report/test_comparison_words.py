@@ -13,7 +13,6 @@ import pytest
 from scipy import stats
 
 from werrimbi_odom.inference.comparison.consistency import (
-    FEWEST,
     AtLength,
     consistency,
     honest_bounds,
@@ -22,7 +21,7 @@ from werrimbi_odom.inference.comparison.consistency import (
 )
 from werrimbi_odom.inference.comparison.systematic import NoiseFactor, Systematic
 from werrimbi_odom.inference.comparison.verdict import Noise, Verdict
-from werrimbi_odom.inference.rules import HONEST_CHANCE, HONEST_WITHIN
+from werrimbi_odom.inference.rules import FEWEST_LEGS, HONEST_CHANCE, HONEST_WITHIN
 from werrimbi_odom.report.comparison.words import covariance_words
 
 SYSTEMATIC = Systematic("line", "heading", "travel", 0.1, 0.01, 1e-9, 0.1, 0.1, True)
@@ -83,7 +82,7 @@ def test_sentences_are_true_to_their_table(seed: int) -> None:
     main = lengths[min(2, len(lengths) - 1)].nees
     (text,) = covariance_words(judged, main)
     rows = said_of(text, lengths, main)
-    enough = [item for item in lengths if item.count >= FEWEST]
+    enough = [item for item in lengths if item.count >= FEWEST_LEGS]
     says = {item.says for item in enough}
     if "honest" in text and "in straight driving" not in text:
         assert says == {"honest"}
@@ -127,5 +126,5 @@ def test_a_covariance_is_honest_only_where_it_is_so_at_every_length() -> None:
     good = [AtLength(1.0, 1000, 1.02, 3000), AtLength(4.0, 500, 1.41, 1500)]
     assert of_all(good) == "honest"
     assert of_all([*good, AtLength(16.0, 100, 28.8, 300)]) == "too small"
-    assert of_all([*good, AtLength(16.0, FEWEST - 1, 28.8, 27)]) == "honest"
+    assert of_all([*good, AtLength(16.0, FEWEST_LEGS - 1, 28.8, 27)]) == "honest"
     assert of_all([]) == "unknown"
