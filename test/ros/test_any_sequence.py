@@ -176,9 +176,7 @@ class Driven:
         if self.kind == "int64_pair":
             ends += ["unpaired", "earlier of a pair"]
         told = sum(counts[end] for end in ends) + self.node._tracker.started
-        waiting = (
-            sum(each.waits for each in self.node._input._newest) if self.kind == "int64_pair" else 0
-        )
+        waiting = self.node._input._pairing.waiting if self.kind == "int64_pair" else 0
         assert counts["messages"] == self.arrived == told + waiting, counts
 
 

@@ -29,6 +29,11 @@ class Pairing:
         self.earlier = 0
         """Counts that waited for theirs: each pair has one that came first."""
 
+    @property
+    def waiting(self) -> int:
+        """Counts that may still find one."""
+        return sum(count.waits for count in self._newest)
+
     def take(self, side: int, value: int, arrival: int) -> tuple[int, int] | None:
         """Take a count; the left and the right one where it has a partner.
 
