@@ -31,6 +31,8 @@ class Value:
     says: str
     null: float
     per_run: bool = False
+    is_shape: bool = False
+    """Whether it is a length or a threshold of the law, which has no null of its own."""
 
 
 def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
@@ -56,6 +58,7 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
             item.says,
             item.null,
             per_run,
+            bool(item.tries),
         )
     return found
 
