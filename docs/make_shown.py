@@ -44,7 +44,7 @@ SECTIONS: dict[str, tuple[Shown, ...]] = {
     "Find out why": (
         Shown(
             "Real robots, by the tool's own advice alone. The attainable figures are those of the "
-            "recordings' own description (shared/data): 1.9, 4, 3.3 and 26 mm.",
+            "recordings' own description: 1.9, 4, 3.3 and 26 mm.",
             "python docs/follow_advice.py",
         ),
         Shown(

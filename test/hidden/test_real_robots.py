@@ -21,7 +21,7 @@ ATTAINABLE = {
     "khepera_laser_moved": 3.3e-3,
     "labyrinth": 26e-3,
 }
-"""With everything that is wrong found and fitted on other parts (shared/data/README.md) [m]."""
+"""With everything that is wrong found and fitted on other parts [m]."""
 
 
 def _advice() -> ModuleType:

@@ -16,6 +16,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, diagnose
 from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.diagnosis.values import values_of
 
 
 def headings_of(run: Run) -> Run:
@@ -70,3 +71,27 @@ def test_a_size_is_found_as_surely_as_an_effect(away: float) -> None:
     chances = [each.p_value for each in found.ranking if each.effect in found.found]
     assert all(each is not None and each < SURE for each in chances)
     assert found.verdict == ("none" if away < 3.0 else "named")
+
+
+@pytest.mark.parametrize("factor", [57.3, 1.0 / 2.1])
+def test_a_file_whose_multiplier_mends_a_factor_is_fitted_as_any_other(factor: float) -> None:
+    """`add track_width` writes a multiplier of 1/57.3 where degrees were entered.
+
+    That was beyond the bounds of a fit: it had no derivative, and nothing missing was seen.
+    """
+    run = run_of(ROBOT, 5, 40)
+    true = ROBOT.wheel_separation_multiplier / factor
+    entered = replace(ROBOT, wheel_separation=ROBOT.wheel_separation * factor)
+    off = replace(entered, wheel_separation_multiplier=1.05 * true)
+    found = diagnose([run], off, LIBRARY, holdout=[run])
+    assert found.effect == "track_width"
+    assert found.robot.wheel_separation_multiplier == pytest.approx(true, rel=0.003)
+
+
+def test_a_rival_that_no_model_holds_has_no_size_to_check() -> None:
+    """Of headings alone the radii are the base's rival: "multiplier 1" was printed for them."""
+    runs = [headings_of(run) for run in runs_of(as_turning(ROBOT, 1.95), [1, 2])]
+    found = diagnose(runs, ROBOT, LIBRARY, holdout=runs)
+    assert found.rivals == ("track_width", "wheel_radius_scale")
+    assert values_of(found, "track_width")["multiplier"].value == pytest.approx(1.95, rel=0.03)
+    assert values_of(found, "wheel_radius_scale") == {}

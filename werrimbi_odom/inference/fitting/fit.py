@@ -172,7 +172,7 @@ def fit_model(
 
 
 def _at_bound(value: float, knob: Knob) -> bool:
-    low, high = knob.bounds
+    low, high = knob.bounds_about(value)
     margin = 1e-6 * (high - low)
     return value <= low + margin or value >= high - margin
 
@@ -257,7 +257,8 @@ def moved(model: Model, design: Design, step: Floats) -> Model:
     own: list[dict[str, float]] = [{} for _ in model.own]
     for (knob, index), move in zip(design.columns, step.tolist(), strict=True):
         target = shared if index < 0 else own[index]
-        target[knob.name] = float(np.clip(model.value(knob, max(index, 0)) + move, *knob.bounds))
+        now = model.value(knob, max(index, 0))
+        target[knob.name] = float(np.clip(now + move, *knob.bounds_about(now)))
     return model.turned(shared, own)
 
 

@@ -60,6 +60,11 @@ class Knob:
     undetermined: float
     per_run: bool = False
 
+    def bounds_about(self, value: float) -> tuple[float, float]:
+        """The bounds, wider where a robot file is beyond them: a factor that was mended there."""
+        (low, high), reach = self.bounds, 0.5 * abs(value)
+        return (low if value >= low else value - reach, high if value <= high else value + reach)
+
 
 CALIBRATION = tuple(
     Knob(name, "", 1e-4, CALIBRATION_BOUNDS, CALIBRATION_KNOWN) for name in MULTIPLIERS
@@ -162,9 +167,9 @@ class Model:
 
     def moved_by(self, knob: Knob, move: float) -> Model:
         """One knob moved, a run's own in all runs that have it; bounds are kept."""
-        low, high = knob.bounds
         if not knob.per_run:
             now = value_of(self.robot, knob.name)
+            low, high = knob.bounds_about(now)
             return Model(
                 changed(self.robot, {knob.name: min(max(now + move, low), high)}), self.own
             )

@@ -40,7 +40,10 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
     if name == IN_DEGREES:
         return {}
     if name in CALIBRATED:
-        return {next(iter(find(name).parameters)): _calibrated(diagnosis, name)}
+        value = _calibrated(diagnosis, name)
+        if math.isclose(value.value, value.null, rel_tol=1e-6):  # a rival that no model here holds
+            return {}
+        return {next(iter(find(name).parameters)): value}
     fit = _fit_with(diagnosis, name)
     if fit is None:
         return {}
