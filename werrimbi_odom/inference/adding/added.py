@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
@@ -41,25 +42,42 @@ class Side:
         return statistics_of(getattr(self, which))
 
     @property
+    def unit(self) -> Literal["m", "rad"]:
+        """Radians where headings alone were measured, and errors are those of the heading."""
+        return "m" if np.isfinite(self.after.errors.error[:, 0]).any() else "rad"
+
+    def error(self, which: str) -> float:
+        """Root mean square error over legs, of positions, or where there are none of headings."""
+        return error_of(getattr(self, which), self.unit)
+
+    @property
     def sides(self) -> Sides:
-        """Position error before and after [m]."""
-        before, after = self.figures("before"), self.figures("after")
-        return Sides(before.rmse_position_m, after.rmse_position_m)
+        """Error before and after."""
+        return Sides(self.error("before"), self.error("after"), self.unit)
 
     @property
     def promised(self) -> float:
-        """Position error that the covariance of the final model promises [m].
+        """The error that the covariance of the final model promises, in the same unit.
 
         Without the few legs that begin with a heading that nobody knows yet. It is the noise's
         alone where the model explains the drives (`Added.noise_alone`).
         """
         errors = self.after.errors.chosen(~self.after.outlier)
-        measured = np.isfinite(errors.error[:, 0])
-        promised = errors.covariance[measured, 0, 0] + errors.covariance[measured, 1, 1]
+        if self.unit == "rad":
+            promised = errors.covariance[np.isfinite(errors.error[:, 2]), 2, 2]
+        else:
+            measured = np.isfinite(errors.error[:, 0])
+            promised = errors.covariance[measured, 0, 0] + errors.covariance[measured, 1, 1]
         if promised.size == 0:
             return float("nan")
         usual = promised <= UNUSUAL_PROMISE * np.median(promised)
         return float(np.sqrt(np.mean(promised[usual])))
+
+
+def error_of(legs: Legs, unit: Literal["m", "rad"]) -> float:
+    """Root mean square error of legs, of positions [m] or of headings [rad]."""
+    figures = statistics_of(legs)
+    return figures.rmse_position_m if unit == "m" else figures.rmse_yaw_rad
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -11,12 +11,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import Literal
 
 import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.adding.added import Added, Side
+from werrimbi_odom.inference.adding.added import Added, Side, error_of
 from werrimbi_odom.inference.adding.fits import Fits, Show, fits_of
 from werrimbi_odom.inference.adding.objection import Worth, objection
 from werrimbi_odom.inference.adding.start import (
@@ -35,7 +36,6 @@ from werrimbi_odom.inference.comparison.judged_legs import (
     consistency_by_length,
     in_runs,
     judged_legs,
-    statistics_of,
 )
 from werrimbi_odom.inference.diagnosis.diagnosis import chance
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
@@ -148,12 +148,12 @@ def add_effects(
     show(0.75, "judging")
     train, kept = _judged(judge, fits.none, fit)
     chances = {effect.name: _chance(effect, fits, also) for effect in effects}
-    alone = {name: _error_at_home(judge, each) for name, each in fits.without.items()}
+    alone = {name: _error_at_home(judge, each, kept.unit) for name, each in fits.without.items()}
     objections = {}
     for effect in effects:
         name = effect.name
         others = tuple(other.name for other in effects if other is not effect)
-        without = alone.get(name, kept.figures("calibrated").rmse_position_m)
+        without = alone.get(name, kept.error("calibrated"))
         mended = np.inf if name in also else without
         worth = Worth(kept.sides, mended, chances[name], name in held, others)
         against = objection(effect, parameters_of(effect, fit, robot), worth, set_up)
@@ -242,10 +242,10 @@ def _judged(judge: Judge, base: Fitted, fit: Fitted) -> tuple[Side, Side]:
     return train, kept
 
 
-def _error_at_home(judge: Judge, fit: Fitted) -> float:
-    """Position error of the held-out drives with a model [m]."""
+def _error_at_home(judge: Judge, fit: Fitted, unit: Literal["m", "rad"]) -> float:
+    """Error of the held-out drives with a model."""
     legs = _legs(judge.holdout, judge.at_home(_noisy(fit)).model)
-    return statistics_of(legs).rmse_position_m
+    return error_of(legs, unit)
 
 
 def _noisy(fit: Fitted) -> Model:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import NamedTuple
 
@@ -39,7 +40,8 @@ def objection(
     """Why the effect should not be added, in a line; None where nothing speaks against it."""
     name = effect.name
     before, after = worth.kept.before, worth.kept.after
-    figures = f"{1e3 * before:.3g} mm before, {1e3 * after:.3g} mm after"
+    unit = worth.kept.unit
+    figures = f"{_told(before, unit)} before, {_told(after, unit)} after"
     hint = ""
     if set_up.findings and not is_of_set_up(effect, set_up):
         hint = f"; look at {set_up.findings[0].effect} first ({set_up.findings[0].words})"
@@ -50,7 +52,7 @@ def objection(
                 f"physically possible; so it is not that effect{hint}"
             )
     if not np.isfinite(after):
-        return f"{name} cannot be judged: the held-out drives have no leg with measured positions"
+        return f"{name} cannot be judged: the held-out drives have no leg that was measured"
     if not after < before * (1.0 - HELD_OUT_FALL):
         return f"{name} does not lower the error of the held-out drives ({figures}){hint}"
     if name in CALIBRATED or not parameters:
@@ -68,9 +70,13 @@ def objection(
         verb = "leave" if worth.others else "leaves"
         return (
             f"{name} does not lower the error of the held-out drives: {rest} {verb} "
-            f"{1e3 * worth.alone:.3g} mm, with the effect it is {1e3 * after:.3g} mm{hint}"
+            f"{_told(worth.alone, unit)}, with the effect it is {_told(after, unit)}{hint}"
         )
     return _by_chance(name, worth)
+
+
+def _told(error: float, unit: str) -> str:
+    return f"{1e3 * error:.3g} mm" if unit == "m" else f"{math.degrees(error):.3g}°"
 
 
 def _by_chance(name: str, worth: Worth) -> str | None:

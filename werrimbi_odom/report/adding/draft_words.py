@@ -10,6 +10,7 @@ from typing import Any
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.drafting import Draft
 from werrimbi_odom.report.adding.words import json_of
+from werrimbi_odom.report.numbers import error_words
 from werrimbi_odom.report.printed import filled
 
 
@@ -17,12 +18,12 @@ def draft_words(draft: Draft, tried: Added) -> str:
     """What was drafted, and what the error is with it."""
     cell, sides = draft.dependence, tried.holdout.sides
     alone = tried.noise_alone(tried.holdout)
-    floor = f"noise alone: {1e3 * alone:.2f} mm; " if tried.explained else ""
+    floor = f"noise alone: {error_words(alone, sides.unit)}; " if tried.explained else ""
     text = (
         f"No effect of the library explains these drives. Their {cell.channel} error goes with "
         f"{cell.name}, and a {draft.form} in it explains them best among the simple laws. With it, "
-        f"the error of the held-out drives is {1e3 * sides.after:.2f} mm where it was "
-        f"{1e3 * sides.before:.2f} mm ({floor}rms over "
+        f"the error of the held-out drives is {error_words(sides.after, sides.unit)} where it was "
+        f"{error_words(sides.before, sides.unit)} ({floor}rms over "
         f"legs of {tried.holdout.after.leg:g} m). Why it is so, the data cannot know: read the "
         "law, find the physics, give it its name."
     )

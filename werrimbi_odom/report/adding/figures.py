@@ -25,9 +25,11 @@ class Step:
     name: str
     """What was done last: as given, calibrated, + an effect."""
     train: float
-    """Root mean square position error of the drives of the fit [m]."""
+    """Root mean square error of the drives of the fit."""
     holdout: float
-    """Of the drives held out [m]."""
+    """Of the drives held out."""
+    unit: str = "m"
+    """m, of positions; rad, of headings where nothing else was measured."""
 
 
 def steps_of(added: Added) -> list[Step]:
@@ -38,8 +40,9 @@ def steps_of(added: Added) -> list[Step]:
     return [
         Step(
             name,
-            added.train.figures(which).rmse_position_m,
-            added.holdout.figures(which).rmse_position_m,
+            added.train.error(which),
+            added.holdout.error(which),
+            added.holdout.unit,
         )
         for name, which in names
     ]
@@ -61,6 +64,9 @@ def error_falling_figure(steps: Sequence[Step], floor: float = float("nan")) -> 
         default=1.0,
     )
     unit, factor = ("m", 1.0) if largest > 0.1 else ("mm", 1e3)
+    of_headings = bool(steps) and steps[0].unit == "rad"
+    if of_headings:
+        unit, factor = "°", np.degrees(1.0)
     names = [escaped(step.name) for step in steps]
     for name, values, ink, look in (
         (

@@ -47,13 +47,16 @@ def adding_page(added: Added, made: Mapping[str, str]) -> Page:
             "is still missing there is no such line.",
             {"": error_falling_figure(steps_of(added), added.noise_alone(added.holdout))},
         ),
-        Shown(
-            "legs",
-            "Errors of the held-out drives",
-            "Each mark is a leg; with the effect the cloud should be smaller and about zero.",
-            {"": held_out_legs_figure(added)},
-        ),
     ]
+    if added.holdout.unit == "m":
+        shown.append(
+            Shown(
+                "legs",
+                "Errors of the held-out drives",
+                "Each mark is a leg; with the effect the cloud should be smaller and about zero.",
+                {"": held_out_legs_figure(added)},
+            )
+        )
     cards = "".join(effect_card(effect) for effect in added.effects)
     shown.append(
         Shown(

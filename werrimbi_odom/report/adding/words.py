@@ -30,8 +30,8 @@ def _headline(added: Added) -> str:
     change = f"{abs(share):.{0 if abs(share) >= 10 else 1}f} % {'lower' if share > 0 else 'higher'}"
     names = listed([effect.name for effect in added.effects])
     text = (
-        f"With {names} the error of the held-out drives is {_mm(sides.after)} mm where "
-        f"it was {_mm(sides.before)} mm ({change}; rms over legs of {leg:g} m)."
+        f"With {names} the error of the held-out drives is {_told(sides.after, sides.unit)} where "
+        f"it was {_told(sides.before, sides.unit)} ({change}; rms over legs of {leg:g} m)."
     )
     if added.also:
         text += f" Put right with it, as one set-up: {', '.join(added.also)}."
@@ -83,7 +83,9 @@ def remark_told(item: FittedParameter) -> str:
 def _errors(added: Added) -> str:
     sides = (("held-out drives", added.holdout), ("fitted drives", added.train))
     columns = {"before": "before", "calibrated": "calibrated", "after": "with it"}
-    title = f"Position error, rms over legs of {added.holdout.after.leg:g} m"
+    unit = added.holdout.unit
+    what = "Position" if unit == "m" else "Heading"
+    title = f"{what} error, rms over legs of {added.holdout.after.leg:g} m"
     if added.is_calibration:
         del columns["calibrated"]
     else:
@@ -93,8 +95,8 @@ def _errors(added: Added) -> str:
     rows = [
         [
             name,
-            *(_mm(side.figures(which).rmse_position_m) for which in columns),
-            *(_mm(added.noise_alone(side)) for _ in floors),
+            *(_number(side.error(which), unit) for which in columns),
+            *(_number(added.noise_alone(side), unit) for _ in floors),
         ]
         for name, side in sides
     ]
@@ -102,12 +104,13 @@ def _errors(added: Added) -> str:
         [
             f"  without {name}",
             *("" for _ in range(len(columns) - 1)),
-            _mm(error),
+            _number(error, unit),
             *("" for _ in floors),
         ]
         for name, error in added.without.items()
     ]
-    return table(title, ["[mm]", *columns.values(), *floors], rows)
+    head = "[mm]" if unit == "m" else "[°]"
+    return table(title, [head, *columns.values(), *floors], rows)
 
 
 def _remarks(added: Added) -> list[str]:
@@ -176,8 +179,13 @@ def _noise(added: Added) -> str:
     return f"The noise of the wheels was fitted too: {', '.join(wheels)}."
 
 
-def _mm(metres: float) -> str:
-    value = 1e3 * metres
+def _told(error: float, unit: str) -> str:
+    """An error of legs, with its unit: of positions [m], or of headings [rad]."""
+    return f"{_number(error, unit)} mm" if unit == "m" else f"{_number(error, unit)}°"
+
+
+def _number(error: float, unit: str) -> str:
+    value = 1e3 * error if unit == "m" else math.degrees(error)
     return f"{value:.2f}" if value < 100.0 else f"{value:.0f}"
 
 
@@ -234,8 +242,12 @@ def json_of(added: Added) -> dict[str, Any]:
 def _side(added: Added, side: Side) -> dict[str, Any]:
     after = side.figures("after")
     return {
-        "before": side.sides.before,
-        "after": side.sides.after,
+        "before": side.figures("before").rmse_position_m,
+        "after": after.rmse_position_m,
+        "rmse_yaw_rad": {
+            "before": side.figures("before").rmse_yaw_rad,
+            "after": after.rmse_yaw_rad,
+        },
         "calibrated": side.figures("calibrated").rmse_position_m,
         "noise_alone": added.noise_alone(side),
         "median_before": side.figures("before").median_position_m,
