@@ -33,8 +33,9 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     residuals_of,
     stamp_noise,
 )
-from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.knobs import YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.own_values import known_at_home
+from werrimbi_odom.inference.fitting.prediction import legs_shown
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import (
     Record,
@@ -60,7 +61,7 @@ from werrimbi_odom.inference.rules import (
     TAPE_YAW,
 )
 from werrimbi_odom.model.encoder import EncoderLimits
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
 
@@ -342,11 +343,14 @@ def in_runs(prepared: Prepared, robot: Robot | Model) -> Model:
 def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
     """Errors of all legs of one length, in the order of the runs; gaps are no legs."""
     parts = []
-    for group, runs in zip(prepared.groups, prepared.cuts[leg], strict=True):
+    asked = prepared.cuts[prepared.leg]
+    for group, usual, runs in zip(prepared.groups, asked, prepared.cuts[leg], strict=True):
         own = _of_group(group, model)
         by_position = group.measure == "position"
         if by_position:
             _, own = residuals_of(own, group.every, group.measure)
+        elif group.measure == "heading":
+            own = _with_drifts(own, usual)
         errors = errors_of(
             own,
             runs,
@@ -399,6 +403,27 @@ def paths(prepared: Prepared, model: Model) -> tuple[Residual, ...]:
 def _of_group(group: _Group, model: Model) -> Model:
     """The model with what the group's runs have of their own."""
     return Model(model.robot, tuple(model.own[index] for index in group.index))
+
+
+def _with_drifts(model: Model, runs: Together) -> Model:
+    """The model with the drift of each run's gyro, which is no error of the robot.
+
+    That is the slope of the heading errors over time that most legs have (least absolute values: a
+    median of slopes, weighed by the legs' durations), as fits have a drift of every run free.
+    """
+    seen = legs_shown(model, runs)[:, 2]
+    error = wrap_all(runs.finish[:, 2] - runs.start[:, 2] - seen)
+    known = np.isfinite(error) & ~runs.gap & (runs.duration > 0.0)
+    own = []
+    for index, mine in enumerate(model.own):
+        rows = np.flatnonzero(known & (runs.run_of_leg == index))
+        slopes = error[rows] / runs.duration[rows]
+        order = np.argsort(slopes)
+        weight = np.cumsum(runs.duration[rows][order])
+        middle = int(np.searchsorted(weight, 0.5 * weight[-1])) if rows.size else 0
+        drift = float(slopes[order][middle]) if rows.size else 0.0
+        own.append({**mine, YAW_DRIFT: drift})
+    return Model(model.robot, tuple(own))
 
 
 def _jumped(group: _Group, runs: Together, kind: ReferenceKind) -> NDArray[np.bool_]:
