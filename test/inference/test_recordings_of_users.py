@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,7 +13,9 @@ import pytest
 from test.inference.driven import run_of, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import LIBRARY
+from werrimbi_odom.effects.collection import load_file
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.adding.drafting import draft_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, diagnose
 from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
 from werrimbi_odom.model.robot import Robot
@@ -95,3 +98,39 @@ def test_a_rival_that_no_model_holds_has_no_size_to_check() -> None:
     assert found.rivals == ("track_width", "wheel_radius_scale")
     assert values_of(found, "track_width")["multiplier"].value == pytest.approx(1.95, rel=0.03)
     assert values_of(found, "wheel_radius_scale") == {}
+
+
+SQUASH = '''
+from werrimbi_odom.effects.shapes import mean_square, steady
+from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.effect import Parameter, wheel_effect
+from werrimbi_odom.model.motion import Number, WheelTravel
+
+
+@wheel_effect(growth=Parameter("s^2/m^2", null=0, typical=-0.05, bounds=(-1, 1), says="share"))
+def squash(
+    travel: WheelTravel[Number], drive: Drive[Number], growth: float
+) -> WheelTravel[Number]:
+    """Both radii shrink with the square of the wheel's speed.
+
+    Formula    left and right *= 1 + growth * speed^2
+    Signature  as a scale, with the speed
+    Ruler      a taped line, slowly and fast
+    """
+    left = growth * mean_square(steady(abs(drive.left_speed.end)))
+    right = growth * mean_square(steady(abs(drive.right_speed.end)))
+    return WheelTravel(travel.left * (1 + left), travel.right * (1 + right))
+'''
+
+
+def test_a_radius_that_falls_with_speed_is_drafted_backwards_too(tmp_path: Path) -> None:
+    """Forms were told apart before they were fitted: "path (travel without sign)" was written."""
+    (tmp_path / "squash.py").write_text(SQUASH)
+    (squash,) = load_file(tmp_path / "squash.py")
+    truth = replace(ROBOT, effects=(squash.using(growth=-0.08),))
+    runs = runs_of(truth, [1, 2, 3, 4])
+    found = draft_effect(diagnose(runs, ROBOT, LIBRARY, holdout=[run_of(truth, 5)]))
+    cell = found.dependence
+    assert (cell.name, found.form, cell.amount.per) == ("wheel_speed", "square", "travel")
+    applied = found.fit.point.model.robot.effects[-1]
+    assert applied.values["growth"] == pytest.approx(-0.08, rel=0.03)

@@ -271,8 +271,8 @@ def _fitted(diagnosis: Diagnosis, drives: Drives, plan: _Plan) -> _Option:
     base = diagnosis.final
     assert plan.score is not None
     start = start_at(base, plan.score, base.knobs)
-    # One round tells the forms apart; whoever adds the draft fits it to the end.
-    fit = drives.fit(start.point, start.names, start.knobs, diagnosis.given, rounds=1)
+    # After one round the noise is still what stood for the law: a true one cost more than another.
+    fit = drives.fit(start.point, start.names, start.knobs, diagnosis.given, rounds=2)
     return _Option(plan.cell, plan.seen, plan.form, plan.effect, plan.source, fit)
 
 
