@@ -94,9 +94,15 @@ def test_every_verb_gives_the_same_figures(case: str) -> None:
         [figures(figures_of(prepare(runs, robot, kind), robot)) for runs in (train, held)],
     ):
         np.testing.assert_array_equal(other, of_compare)
+    judged = 0 if diagnosis.train.unit == "m" else 2
+    assert (judged == 2) == (case == "headings alone")
     np.testing.assert_array_equal(
         [diagnosis.train.before, diagnosis.holdout.before],
-        [errors[0] for errors in of_compare],
+        [errors[judged] for errors in of_compare],
+    )
+    np.testing.assert_array_equal(
+        [added.train.sides.before, added.holdout.sides.before],
+        [errors[judged] for errors in of_compare],
     )
     np.testing.assert_array_equal(diagnosis.headings.before, of_compare[1][2])
     counted = [legs.main.all.figures.count for legs in compared]
