@@ -155,3 +155,23 @@ def test_a_reference_in_millimetres_is_to_be_converted_and_nothing_else() -> Non
         words = str(refused.value)
         assert words.count("millimetres") == 1
         assert "divide by 1000" in words
+
+
+def test_headings_alone_are_judged_by_headings_beside_the_gyros_drift() -> None:
+    """A gyro that drifts by a third of a degree a second, and a base 2 % wider than entered."""
+    truth = replace(PLAIN, wheel_separation_multiplier=1.02)
+    runs = []
+    for number, run in enumerate(runs_of(truth, (1, 2, 3, 4))):
+        assert run.reference is not None
+        time, nothing = run.reference.time, np.full(run.reference.time.size, np.nan)
+        yaw = run.reference.yaw + (0.006 - 0.003 * number) * (time - time[0])
+        runs.append(replace(run, reference=replace(run.reference, x=nothing, y=nothing, yaw=yaw)))
+    found = add_effect(find("track_width"), runs[:3], PLAIN, holdout=runs[3:])
+    assert found.objection is None
+    assert found.parameters["multiplier"].value == pytest.approx(1.02, abs=1e-3)
+    assert found.holdout.unit == "rad"
+    assert found.holdout.sides.after < 0.7 * found.holdout.sides.before
+    words, figures = words_of(found), json_of(found)
+    assert "nan" not in words
+    assert "°" in words.splitlines()[0]
+    assert figures["holdout"]["rmse_yaw_rad"]["after"] == found.holdout.sides.after
