@@ -7,7 +7,6 @@ from __future__ import annotations
 import os
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -15,7 +14,7 @@ import pytest
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
+from werrimbi_odom.files.run import Reference, ReferenceKind, Run
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, judged_by, prepare
@@ -31,16 +30,6 @@ ROBOTS = (
 )
 
 
-def plain(run: Any) -> Run:
-    ticks, reference = run.ticks, run.reference
-    return Run(
-        "simulated",
-        Path("simulated"),
-        Ticks(ticks.time, ticks.left, ticks.right, {}),
-        Reference(reference.time, reference.x, reference.y, reference.yaw),
-    )
-
-
 def short_drive(seed: int) -> Run:
     """Positions alone, 14 mm, now and then; 8.7 m of turning; the base is 17 % larger than said."""
     random = np.random.default_rng(seed)
@@ -51,7 +40,7 @@ def short_drive(seed: int) -> Run:
     commands = speed[:end], (1.6 * rate + 0.9 * sense)[:end]
     run = drive(true, commands, random, sigma_xy=14e-3, every=30)
     run.reference.yaw[:] = np.nan
-    return plain(run)
+    return run
 
 
 def test_a_wrong_base_is_found_in_one_short_drive_with_positions_alone() -> None:
@@ -80,15 +69,13 @@ def gyro_drive(
     random = np.random.default_rng(seed)
     true = WhiteNoiseRobot(0.385, 0.05, 0.05, 5e-4, 5e-4)
     run = drive(true, wandering(random, 60.0), random, sigma_yaw=0.0, every=1)
-    reference = run.reference
-    reference.x[:] = reference.y[:] = np.nan
-    seen = reference.time - late + stamps * random.standard_normal(reference.time.size)
-    reference.yaw = np.interp(seen, reference.time, reference.yaw)
+    time = run.reference.time
+    seen = time - late + stamps * random.standard_normal(time.size)
+    yaw = np.interp(seen, time, run.reference.yaw)
     if rounding:
-        reference.yaw = rounding * np.round(reference.yaw / rounding)
-    for name in ("time", "x", "y", "yaw"):
-        setattr(reference, name, getattr(reference, name)[::every])
-    return plain(run)
+        yaw = rounding * np.round(yaw / rounding)
+    nothing = np.full(time[::every].size, np.nan)
+    return replace(run, reference=Reference(time[::every], nothing, nothing, yaw[::every]))
 
 
 def test_a_gyro_does_not_jump_at_starts_and_fast_turns() -> None:
@@ -129,9 +116,9 @@ def test_a_noise_that_no_wheel_has_is_not_written() -> None:
     """The reference measures a point half a metre ahead, and is said to be good to a millimetre."""
     random = np.random.default_rng(7)
     run = drive(WhiteNoiseRobot(), wandering(random, 60.0), random)
-    run.reference.x += 0.5 * np.cos(run.reference.yaw)
-    run.reference.y += 0.5 * np.sin(run.reference.yaw)
-    runs = match_finely([plain(run)], NOMINAL, 1.0)
+    run.reference.x[:] += 0.5 * np.cos(run.reference.yaw)
+    run.reference.y[:] += 0.5 * np.sin(run.reference.yaw)
+    runs = match_finely([run], NOMINAL, 1.0)
     result = calibrate(runs, NOMINAL, sigma_xy=1e-3, sigma_yaw=2e-3)
     strange = [name for name, item in result.noises.items() if item.value > STRANGE_NOISE]
     assert strange

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.chances import student_quantile
+from werrimbi_odom.inference.chances import NORMAL_95, student_quantile
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.design import slopes_of, spread_out, unexpected
@@ -20,7 +20,6 @@ from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, MULTIPLIERS, START_YAW, Knob
 from werrimbi_odom.inference.fitting.likelihood import Variances, relative_errors
 from werrimbi_odom.inference.fitting.noise import (
-    NORMAL_95,
     NoiseEstimate,
     noise_estimates,
     with_noise,

@@ -14,6 +14,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference.chances import NORMAL_95
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.likelihood import Variances, headings_alone
 from werrimbi_odom.inference.fitting.prediction import Prediction
@@ -36,8 +37,6 @@ STAMP_NOISE = "reference_sigma_stamp"
 """Beside them, of a reference of headings alone [s]."""
 
 _ALL = (*NOISES, STAMP_NOISE)
-
-NORMAL_95 = 1.959963984540054
 
 _LOWEST, _HIGHEST = np.log(1e-14), np.log(10.0)
 
