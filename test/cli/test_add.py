@@ -111,4 +111,4 @@ def test_what_cannot_be_written_is_found_before_the_work(
     creeping: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert main(words(creeping, "lateral_slip", Path("/proc/new.yaml"))) == 2
-    assert "--out /proc/new.yaml: " in capsys.readouterr().err
+    assert "--out /proc/new.yaml cannot be written" in capsys.readouterr().err

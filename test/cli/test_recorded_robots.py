@@ -46,7 +46,8 @@ def test_every_recorded_drive(
     )
     np.testing.assert_array_equal(rows["t_s"], ticks["t_s"])
     for name in ("x_m", "y_m"):
-        assert rows[name][0] == reference[name][0]
+        begins = reference[name][0]  # of a gyro there is none: dead reckoning begins at zero
+        assert rows[name][0] == (begins if np.isfinite(begins) else 0.0)
     if np.isfinite(reference["yaw_rad"]).any():
         apart = rows["yaw_rad"][0] - reference["yaw_rad"][0]
         assert np.cos(apart) == pytest.approx(1.0)
@@ -70,7 +71,7 @@ def test_every_recorded_drive(
 
     found = json.loads(figures.read_text())
     assert found["rows"]["messages"] == ticks["t_s"].size
-    assert found["end_error_m"] is not None
+    assert (found["end_error_m"] is not None) == np.isfinite(reference["x_m"]).any()
     assert found["distance_m"] > 0.0
 
 

@@ -23,7 +23,7 @@ USUAL_AT_FIRST = 0.1
 """Taken for the interval before the first message [s]."""
 PAUSE = 1.0
 """After a longer interval [s] what is usual is learnt anew, with this for the first interval."""
-CLOSE = 0.5
+CLOSE = 0.4
 """A message comes too soon when it comes after less than this share of the usual interval."""
 
 

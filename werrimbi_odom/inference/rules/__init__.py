@@ -8,11 +8,11 @@ decide nothing and stand where they are used. By how much right and wrong verdic
 numbers is plotted in docs/evidence.md.
 """
 
-from werrimbi_odom.inference.rules.calibrations import *  # noqa: F403
-from werrimbi_odom.inference.rules.comparison import *  # noqa: F403
-from werrimbi_odom.inference.rules.how_sure import *  # noqa: F403
-from werrimbi_odom.inference.rules.priors import *  # noqa: F403
-from werrimbi_odom.inference.rules.records import *  # noqa: F403
-from werrimbi_odom.inference.rules.search import *  # noqa: F403
-from werrimbi_odom.inference.rules.set_up import *  # noqa: F403
-from werrimbi_odom.inference.rules.told import *  # noqa: F403
+from werrimbi_odom.inference.rules.calibrations import *  # noqa: F401, F403
+from werrimbi_odom.inference.rules.comparison import *  # noqa: F401, F403
+from werrimbi_odom.inference.rules.how_sure import *  # noqa: F401, F403
+from werrimbi_odom.inference.rules.priors import *  # noqa: F401, F403
+from werrimbi_odom.inference.rules.records import *  # noqa: F401, F403
+from werrimbi_odom.inference.rules.search import *  # noqa: F401, F403
+from werrimbi_odom.inference.rules.set_up import *  # noqa: F401, F403
+from werrimbi_odom.inference.rules.told import *  # noqa: F401, F403
