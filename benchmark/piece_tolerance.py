@@ -23,7 +23,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from test.model.drives import ROBOT, Ticks, figure_eight, random_drive, square
 from test.plain_twin import plain_run
 from werrimbi_odom.model import pieces
-from werrimbi_odom.model.pieces import PieceTolerance
+from werrimbi_odom.model.stretch import PieceTolerance
 from werrimbi_odom.model.trajectory import trajectory
 
 TOLERANCES = ((0.001, 0.003), (0.003, 0.01), (0.01, 0.03), (0.03, 0.1))

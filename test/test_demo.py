@@ -63,7 +63,7 @@ def of_optitrack(tmp_path: Path, name: str) -> None:
     robot, run = OPTITRACK / "robot.yaml", OPTITRACK / name
     said = " ".join(demo(tmp_path, "--robot", str(robot), "--run", str(run)).split())
     assert "all: 0.000 µm from offline" in said
-    sigmas = re.search(r"The end lies ([\d.]+) σ from the truth", said)
+    sigmas = re.search(r"The end lies ([\d.]+) σ from what was measured", said)
     assert sigmas is not None
     # Uncalibrated values: the demo must say so in words where the end is not explained by noise.
     assert ("not calibrated" in said) == (float(sigmas.group(1)) >= 3.4)

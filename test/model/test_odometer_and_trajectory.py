@@ -21,9 +21,10 @@ from werrimbi_odom.model import course, cutting, recorded_counts
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.odometer import Odometer
-from werrimbi_odom.model.pieces import Piece, PieceTolerance
+from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.stretch import PieceTolerance
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 
 TOLERANCE = 1e-9

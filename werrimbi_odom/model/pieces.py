@@ -13,7 +13,6 @@ from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.of_floats import of_floats
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.stretch import PieceRule, Stretch, extended
-from werrimbi_odom.model.stretch import PieceTolerance as PieceTolerance
 from werrimbi_odom.model.uncertainty import Uncertainty
 
 PieceKind = Literal["line", "arc", "spin"]

@@ -40,8 +40,10 @@ class PiecesOfRun(Sequence[Piece]):
 
     @overload
     def __getitem__(self, which: int) -> Piece: ...
+
     @overload
     def __getitem__(self, which: slice) -> tuple[Piece, ...]: ...
+
     def __getitem__(self, which: int | slice) -> Piece | tuple[Piece, ...]:
         if isinstance(which, slice):
             return tuple(self[at] for at in range(*which.indices(len(self))))
