@@ -266,6 +266,25 @@ def test_the_twist_is_the_mean_over_the_interval_and_knows_its_noise_and_quantis
     assert cross == pytest.approx((noise_right - noise_left) / (2 * 0.35) / 0.25)
 
 
+@pytest.mark.parametrize("late", [0.0, 0.3])
+def test_a_driver_that_sends_several_at_once_makes_no_speed(late: float) -> None:
+    """At 50 Hz and 0.5 m/s it hangs, then sends what waited 20 microseconds apart."""
+    odometer = Odometer(ROBOT)
+    counts = np.arange(200) * 0.01 / ROBOT.left_tick
+    stamps = 0.02 * np.arange(200.0)
+    hung = stamps[100:104].max() + late
+    stamps[100:104] = hung + 2e-5 * np.arange(4)
+    stamps[104:] += late
+    speeds = []
+    for time, count in zip(stamps.tolist(), counts.tolist(), strict=True):
+        estimate = odometer.update(time, count, count)
+        if estimate is not None:
+            speeds.append(estimate.twist.along)
+            assert estimate.twist_covariance.speed < 1e-3
+    assert max(speeds) < 0.55
+    assert speeds[-1] == pytest.approx(0.5)
+
+
 def test_an_empty_record_is_refused_in_words() -> None:
     nothing = np.empty(0)
     with pytest.raises(ValueError, match="no row has a finite time and finite counts"):

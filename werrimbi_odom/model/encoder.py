@@ -114,7 +114,8 @@ class Encoder:
     _last: Reading | None = None
     _doubted: Reading | None = None
     pace: Pace = field(default_factory=Pace)
-    _period: float = USUAL_AT_FIRST
+    lasted: float = USUAL_AT_FIRST
+    """Seconds over which the latest step was judged: its own, but where it came much too soon."""
     _left_speed: float = 0.0
     _right_speed: float = 0.0
 
@@ -150,7 +151,7 @@ class Encoder:
         if duration <= RESOLUTION:
             if not self._goes_on(duration):
                 return None
-            duration = self._period
+            duration = self.lasted
         return self._advance(reading, duration)
 
     def _goes_on(self, elapsed: float) -> bool:
@@ -193,7 +194,7 @@ class Encoder:
         left_turns = abs(left) / robot.left_ticks_per_revolution
         right_turns = abs(right) / robot.right_ticks_per_revolution
         self.pace.see((left_turns if left_turns > right_turns else right_turns) / lasted)
-        self._period = lasted
+        self.lasted = lasted
         left_travel, right_travel = left * robot.left_tick, right * robot.right_tick
         self._left_speed, self._right_speed = left_travel / lasted, right_travel / lasted
         return WheelStep(reading.time, duration, left_travel, right_travel)
@@ -229,7 +230,7 @@ class Encoder:
         last : Reading
             The reading they end with.
         """
-        self._left_speed, self._right_speed, self._period = left / lasted, right / lasted, lasted
+        self._left_speed, self._right_speed, self.lasted = left / lasted, right / lasted, lasted
         self.tally.messages += durations.size
         self.tally.accepted += durations.size
         self.tally.gaps += int(np.count_nonzero(durations > self.limits.gap_duration))

@@ -49,6 +49,10 @@ class Estimate(NamedTuple):
 
     step: WheelStep
     """Travel of the wheels since the last message, before any effect."""
+    late: WheelStep
+    """The same, over the time of which the twist is the mean."""
+    late_motion: BodyMotion[float]
+    """In that time."""
     pose: Pose
     """In the odometry frame; yaw goes on counting past a whole turn."""
     motion: BodyMotion[float]
@@ -87,15 +91,19 @@ class Estimate(NamedTuple):
 
     @property
     def twist(self) -> BodyMotion[float]:
-        """Speed forward and to the left [m/s] and yaw rate [rad/s], mean over the last interval."""
-        along, sideways, turn = self.motion
-        per_second = 1.0 / self.step.duration
+        """Speed forward and to the left [m/s] and yaw rate [rad/s], mean over the last interval.
+
+        A message that came much too soon (a driver that hung, then sent several at once) is taken
+        together with those before it: a few microseconds divide no travel.
+        """
+        along, sideways, turn = self.late_motion
+        per_second = 1.0 / self.late.duration
         return BodyMotion(along * per_second, sideways * per_second, turn * per_second)
 
     @property
     def twist_covariance(self) -> TwistCovariance:
-        """Of the twist: wheel noise over the last interval, quantisation of its two readings."""
-        return twist_covariance(self.robot, self.step)
+        """Of the twist: wheel noise over its interval, quantisation of the two readings."""
+        return twist_covariance(self.robot, self.late)
 
 
 class Odometer:
@@ -129,6 +137,7 @@ class Odometer:
         self._counts = (0.0, 0.0)
         self._pose = Pose()
         self._piece = OpenPiece(0.0, Pose(), known(robot.covariance_order))
+        self._late: tuple[WheelStep, BodyMotion[float]] | None = None
 
     @property
     def tally(self) -> EncoderTally:
@@ -181,9 +190,14 @@ class Odometer:
         closed = self._cut(step, travel, motion, pose)
         self._time, self._counts, self._pose = time, (left, right), pose
         self.distance += abs(motion.along)
+        late = step, motion
+        if step.duration < self._encoder.lasted and self._late is not None:
+            late = joined(*self._late, *late)
+        self._late = late
         piece = self._piece
         return Estimate(
             step,
+            *late,
             pose,
             motion,
             self.distance,
@@ -301,8 +315,18 @@ def with_lost_travel(
     return after_piece(errors, BodyMotion(0.0, 0.0, 0.0), noise, yaw, 0.0, 0.0)
 
 
+def joined(
+    before: WheelStep, moved: BodyMotion[float], step: WheelStep, motion: BodyMotion[float]
+) -> tuple[WheelStep, BodyMotion[float]]:
+    """Two steps as one, and the motion in them."""
+    _, *earlier = before
+    time, *later = step
+    sums = [a + b for a, b in zip(earlier, later, strict=True)]
+    return WheelStep(time, *sums), BodyMotion(*(a + b for a, b in zip(moved, motion, strict=True)))
+
+
 def twist_covariance(robot: Robot, step: WheelStep) -> TwistCovariance:
-    """Covariance of the mean twist of one step.
+    """Covariance of the mean twist of a step.
 
     A counter read at an instant is uniform over one count, so the difference of two readings has
     a variance of a sixth of a squared count beside the noise of the wheel (equation 4).
