@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -94,6 +94,8 @@ class Engine:
     def __init__(self, chassis: Chassis, start: Pose, angles: tuple[float, float]) -> None:
         self._model = mujoco.MjModel.from_xml_string(to_mjcf(chassis))
         self._data = mujoco.MjData(self._model)
+        # The engine's own memory; to ask for it anew at each step costs as much as the step.
+        self._q, self._v, self._speeds = self._data.qpos, self._data.qvel, self._data.ctrl
         self._x, self._y, self._yaw = (self._place(name) for name in ("x", "y", "yaw"))
         self._wheels = [self._place(wheel.side) for wheel in chassis.wheels]
         self._shafts = [self._place(shaft_joint(wheel)) for wheel in chassis.wheels]
@@ -134,20 +136,20 @@ class Engine:
     @property
     def pose(self) -> Pose:
         """Of the axle's midpoint in the world."""
-        q = self._data.qpos
+        q = self._q
         return Pose(float(q[self._x]), float(q[self._y]), float(q[self._yaw]))
 
     @property
     def wheel_angles(self) -> tuple[float, float]:
         """Of the wheels, left and right [rad]."""
-        left, right = self._data.qpos[self._wheels]
-        return float(left), float(right)
+        left, right = self._wheels
+        return float(self._q[left]), float(self._q[right])
 
     @property
     def shaft_angles(self) -> tuple[float, float]:
         """Of the encoders' shafts, left and right [rad]: the wheels', but for play."""
-        left, right = self._data.qpos[self._shafts]
-        return float(left), float(right)
+        left, right = self._shafts
+        return float(self._q[left]), float(self._q[right])
 
     def radius(self, side: str) -> float:
         """Present rolling radius of a wheel [m]."""
@@ -160,29 +162,36 @@ class Engine:
 
     def advance(self, left_speed: float, right_speed: float) -> None:
         """Hold the commanded speeds of the motors [rad/s] for one PERIOD."""
-        self._data.ctrl[:] = (left_speed, left_speed, right_speed, right_speed)
+        self._speeds[:] = (left_speed, left_speed, right_speed, right_speed)
         self._run(round(PERIOD / STEP))
-        self._data.qpos[self._gives] = 0.0
+        for give in self._gives:
+            self._q[give] = 0.0
 
     def check(self) -> None:
         """Raise UnstableError if anything went wrong since the beginning."""
         if any(warning.number for warning in self._data.warning):
             raise UnstableError("the physics engine became unstable; is the robot buildable?")
 
-    def move(self, shift: Shift) -> None:
-        """Move the whole robot on the floor, and turn its velocity with it.
+    def move(self, shifts: Iterable[Shift]) -> None:
+        """Move the whole robot on the floor by each in turn, and turn its velocity with it.
 
         The floor is the same everywhere, so contacts and forces do not notice.
         """
-        q, v = self._data.qpos, self._data.qvel
-        middle = float(q[self._yaw]) + shift.turn / 2
-        cos, sin = math.cos(middle), math.sin(middle)
-        q[self._x] += cos * shift.along - sin * shift.sideways
-        q[self._y] += sin * shift.along + cos * shift.sideways
-        q[self._yaw] += shift.turn
-        cos, sin = math.cos(shift.turn), math.sin(shift.turn)
+        q, v = self._q, self._v
+        x, y, yaw = self.pose
         vx, vy = float(v[self._x]), float(v[self._y])
-        v[self._x], v[self._y] = cos * vx - sin * vy, sin * vx + cos * vy
+        for along, sideways, turn in shifts:
+            middle = yaw + turn / 2
+            cos, sin = math.cos(middle), math.sin(middle)
+            x, y, yaw = (
+                x + (cos * along - sin * sideways),
+                y + (sin * along + cos * sideways),
+                yaw + turn,
+            )
+            cos, sin = math.cos(turn), math.sin(turn)
+            vx, vy = cos * vx - sin * vy, sin * vx + cos * vy
+        q[self._x], q[self._y], q[self._yaw] = x, y, yaw
+        v[self._x], v[self._y] = vx, vy
 
 
 Reshaper = Callable[[Engine, Stride], None]
@@ -232,9 +241,8 @@ def drive(
             pose=now,
         )
         speed = (stride.left + stride.right) / 2 / PERIOD
-        engine.move(Shift(0.0, CURVE_CREEP * speed * (now.yaw - before.yaw), 0.0))
-        for shifter in shifters:
-            engine.move(shifter(stride))
+        creep = Shift(0.0, CURVE_CREEP * speed * (now.yaw - before.yaw), 0.0)
+        engine.move((creep, *(shifter(stride) for shifter in shifters)))
         for reshape in reshapers:
             reshape(engine, stride)
         before, wheels = engine.pose, turned
