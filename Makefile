@@ -28,7 +28,7 @@ demo: setup  ## recorded ticks through the real node; ROBOT=robot.yaml RUN=folde
 	$(BIN)/python -m werrimbi_odom.demo $(if $(ROBOT),--robot '$(ROBOT)') $(if $(RUN),--run '$(RUN)') --out demo
 
 test: setup lint  ## linters, then all tests but the long ones
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -m 'not evidence' --numprocesses auto --dist loadfile
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -m 'not evidence' --numprocesses $$(( $$(nproc) + 1 )) --dist loadfile
 
 lint: setup
 	$(BIN)/ruff check .

@@ -4,10 +4,12 @@
 
 from __future__ import annotations
 
+import fcntl
 import os
 import re
 import signal
-from collections.abc import Generator
+from collections.abc import Callable, Generator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -40,3 +42,23 @@ def pytest_make_collect_report(collector: pytest.Collector) -> Generator[None, A
 def no_line_by_the_clock(monkeypatch: pytest.MonkeyPatch) -> None:
     """What stderr holds does not depend on how busy the machine is."""
     monkeypatch.setattr("werrimbi_odom.cli.progress.EVERY", float("inf"))
+
+
+@pytest.fixture(scope="session")
+def simulated(tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Path]:
+    """Drives as `werrimbi simulate` writes them, made once for all tests: to be read alone."""
+    place = tmp_path_factory.getbasetemp()
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        place = place.parent  # which all workers share
+
+    def made(*words: str) -> Path:
+        from werrimbi_odom.cli.main import main
+
+        folder = place / "_".join(("simulated", *words)).replace("--", "")
+        with open(f"{folder}.lock", "w", encoding="utf-8") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not folder.exists():
+                assert main(["simulate", "--out", str(folder), *words]) == 0
+        return folder
+
+    return made

@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -20,12 +21,9 @@ EFFECT = "castor_kick"
 
 
 @pytest.fixture(scope="module")
-def drives(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Four short drives of a robot whose castor kicks, made by the physics engine."""
-    folder = tmp_path_factory.mktemp("drives")
-    code = main(["simulate", "--out", str(folder / "d"), "--hide", EFFECT, "--seed", "6"])
-    assert code == 0
-    return folder / "d"
+def drives(simulated: Callable[..., Path]) -> Path:
+    """Drives of a robot whose castor kicks, made by the physics engine."""
+    return simulated("--hide", "random", "--seed", "6")
 
 
 def runs(drives: Path) -> list[Path]:

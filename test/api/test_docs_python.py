@@ -5,18 +5,19 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-from werrimbi_odom.cli.main import main
-
 PAGE = Path(__file__).parents[2] / "docs" / "python.md"
 
 
-def test_the_blocks_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_blocks_run(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, simulated: Callable[..., Path]
+) -> None:
     monkeypatch.chdir(tmp_path)
-    assert main(["simulate", "--out", "drives", "--hide", "castor_kick", "--seed", "6"]) == 0
+    Path("drives").symlink_to(simulated("--hide", "random", "--seed", "6"))
     blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     assert len(blocks) == 3
     names: dict[str, object] = {}

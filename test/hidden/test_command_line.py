@@ -7,6 +7,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ pytestmark = pytest.mark.skipif(
     not {"diagnose", "add"} <= set(VERBS), reason="the verbs diagnose and add do not exist yet"
 )
 
-SEED = 6
+SEED = "6"
 """Hides a castor that kicks: --hide random draws the effect and its strength."""
 
 
@@ -42,9 +43,10 @@ def told(file: Path) -> dict[str, Any]:
     return found
 
 
-def test_a_random_hidden_effect_is_found_added_and_gone(tmp_path: Path) -> None:
-    day, better = tmp_path / "day", tmp_path / "better.yaml"
-    werrimbi("simulate", "--hide", "random", "--seed", SEED, "--out", day)
+def test_a_random_hidden_effect_is_found_added_and_gone(
+    tmp_path: Path, simulated: Callable[..., Path]
+) -> None:
+    day, better = simulated("--hide", "random", "--seed", SEED), tmp_path / "better.yaml"
     robot, train, holdout = day / "robot.yaml", runs_of(day, "train"), runs_of(day, "holdout")
     werrimbi("compare", "--robot", robot, *holdout, "--json", tmp_path / "before.json")
     apart = ["--holdout", *holdout]
