@@ -11,10 +11,15 @@ from __future__ import annotations
 import io
 import pickle
 from collections.abc import Mapping
+from types import MappingProxyType
 from typing import Any
 
 from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.model.effect import Effect
+
+
+def _read_only(values: dict[str, Any]) -> Mapping[str, Any]:
+    return MappingProxyType(values)
 
 
 class _Out(pickle.Pickler):
@@ -27,6 +32,11 @@ class _Out(pickle.Pickler):
             return "effect", thing.name
         word = self._words.get(id(thing))
         return None if word is None else ("known", word)
+
+    def reducer_override(self, thing: Any) -> Any:
+        if isinstance(thing, MappingProxyType):  # a robot file's values; pickle has no word for it
+            return _read_only, (dict(thing),)
+        return NotImplemented
 
 
 class _In(pickle.Unpickler):

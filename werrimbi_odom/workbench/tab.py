@@ -129,7 +129,7 @@ class Tab:
         try:
             self.changed("cancel")
             opened = self.shared.opened
-            return await job.result(opened.given, known_to_both(opened), self.shared.collection)
+            return await job.result(opened.given, known_to_both(opened))
         except CancelledError:
             self.tell(f"The {name} was cancelled; nothing has changed.")
         except InputError as error:

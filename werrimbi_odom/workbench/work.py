@@ -14,20 +14,21 @@ from collections.abc import Mapping
 from multiprocessing.connection import Connection
 from typing import Any, get_args
 
-from werrimbi_odom.effects.collection import Collection, all_effects
+from werrimbi_odom.effects.collection import all_effects
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.asked import Recordings
 from werrimbi_odom.inference.comparison.reference_noise import Measure
 from werrimbi_odom.workbench.crossing import packed, unpacked
-from werrimbi_odom.workbench.opened import Given, Opened, Show, opened
+from werrimbi_odom.workbench.opened import Opened, Show, opened
 from werrimbi_odom.workbench.tasks import Diagnose, Open, Task
 
 
 def known_to_both(opened: Opened) -> Mapping[str, Any]:
     """What both processes cut alike, and need not send."""
-    return {"train": opened.train.prepared, "holdout": opened.holdout.prepared}
+    return {"train": opened.train, "holdout": opened.holdout}
 
 
-def known_before(given: Given) -> Mapping[str, Any]:
+def known_before(given: Recordings) -> Mapping[str, Any]:
     """What both have before anything is cut."""
     runs = (*given.runs, *given.holdout)
     return {"given": given, **{f"run {number}": run for number, run in enumerate(runs)}}
@@ -37,8 +38,8 @@ def left_there(opened: Opened) -> Mapping[str, Any]:
     """Most of what was cut: whoever compares cuts it himself, and the page does without."""
     there: dict[str, Any] = {}
     for side, drives in (("train", opened.train), ("holdout", opened.holdout)):
-        there[f"{side} cuts"] = drives.prepared.cuts
-        there |= {f"{side} {group.measure}": group.every for group in drives.prepared.groups}
+        there[f"{side} cuts"] = drives.cuts
+        there |= {f"{side} {group.measure}": group.every for group in drives.groups}
     return there
 
 
@@ -62,7 +63,7 @@ def work(asked: Connection) -> None:
         def show(share: float, words: str) -> None:
             asked.send(("share", share, words))
 
-        result = _done(task, given, collection, show)
+        result = _done(task, given, show)
         asked.send(("done", None, ""))
         asked.send_bytes(result)
     except InputError as error:
@@ -71,18 +72,18 @@ def work(asked: Connection) -> None:
         pass  # nobody waits any more
 
 
-def _done(task: Task, given: Given, collection: Collection, show: Show) -> bytes:
+def _done(task: Task, given: Recordings, show: Show) -> bytes:
     """What came of it, packed."""
     if isinstance(task, Open):
         show(0.0, "matching ticks and reference")
         here = opened(given)
-        look = here.look(given.robot, show)
+        look = here.look(given.source.robot, show)
         return packed((here, look), {**known_before(given), **left_there(here)})
     os.nice(5)  # the page stays quick
     from werrimbi_odom.workbench.verbs import added, diagnosed
 
     if isinstance(task, Diagnose):
-        return packed(diagnosed(task, given, collection, show), {})
+        return packed(diagnosed(task, given, show), {})
     show(0.0, "opening")
     here = opened(given)
-    return packed(added(task, here, collection, show), known_to_both(here))
+    return packed(added(task, here, show), known_to_both(here))

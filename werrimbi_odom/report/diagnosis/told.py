@@ -39,7 +39,7 @@ def told_of(
     effects = given.collection.effects
     diagnosis = diagnose(
         given.runs,
-        given.source.robot,
+        given.robot,
         effects,
         holdout=given.holdout,
         **given.judging,

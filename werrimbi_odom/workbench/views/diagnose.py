@@ -45,7 +45,7 @@ def diagnose_view(tab: Tab) -> None:
         return
     with box("div", "columns"):
         with box("div", "left"):
-            _verdict(tab, found)
+            _verdict(found.told)
             _add_all(tab, found.diagnosis)
             _ranking(tab, found.diagnosis)
             _response(tab, found)
@@ -86,15 +86,7 @@ def _ask(tab: Tab) -> None:
                 why(tab, tab.why)
 
 
-def _verdict(tab: Tab, found: Diagnosed) -> None:
-    given = tab.shared.opened.given
-    told = Told(
-        found.diagnosis,
-        found.manoeuvre,
-        found.sights,
-        given.judging["leg"],
-        bool(given.holdout),
-    )
+def _verdict(told: Told) -> None:
     lines = unwrapped(words_of(told, STEPS))
     with box("div", "verdict"):
         text("p", lines[0], "headline", data_key="verdict")
@@ -182,7 +174,7 @@ def _response(tab: Tab, found: Diagnosed) -> None:
 
 def _following(tab: Tab, found: Diagnosed) -> None:
     """What to drive next."""
-    manoeuvre = found.manoeuvre
+    manoeuvre = found.told.manoeuvre
     if manoeuvre is None:
         return
     text("h3", "What to do next")
