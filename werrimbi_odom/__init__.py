@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from werrimbi_odom.api.calibrate_umbmark import calibrate_umbmark
     from werrimbi_odom.api.draft import draft
     from werrimbi_odom.api.drives import read_robot, read_run
+    from werrimbi_odom.api.odom import odom
     from werrimbi_odom.api.odometry import odometry
     from werrimbi_odom.api.verbs import add, compare, diagnose
     from werrimbi_odom.effects.library import LIBRARY as EFFECTS
@@ -45,6 +46,7 @@ if TYPE_CHECKING:
 _WHERE = {
     "read_robot": "api.drives",
     "read_run": "api.drives",
+    "odom": "api.odom",
     "odometry": "api.odometry",
     "compare": "api.verbs",
     "diagnose": "api.verbs",
@@ -75,6 +77,7 @@ __all__ = [
     "compare",
     "diagnose",
     "draft",
+    "odom",
     "odometry",
     "read_robot",
     "read_run",

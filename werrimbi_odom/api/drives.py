@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
@@ -55,7 +55,7 @@ def read_robot(path: str | Path, effects: Sequence[str | Path] = ()) -> RobotFil
     InputError
         When it cannot be used; the message says file, line and mend.
     """
-    return read_robot_file(path, collection_of(effects))
+    return read_robot_file(path, collection_of(effects) if effects else None)
 
 
 def read_run(
@@ -64,15 +64,29 @@ def read_run(
     *,
     ticks_topic: str | None = None,
     reference_topic: str | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Run:
     """Read a recorded drive: a run folder, a rosbag2 or an .mcap.
+
+    Parameters
+    ----------
+    ticks_topic, reference_topic
+        Of a bag with several.
+    progress
+        Told the share that is read.
 
     Raises
     ------
     InputError
         When it cannot be used; the message says where and how to mend it.
     """
-    return read_one(Path(path), robot, ticks_topic=ticks_topic, reference_topic=reference_topic)
+    return read_one(
+        Path(path),
+        robot,
+        ticks_topic=ticks_topic,
+        reference_topic=reference_topic,
+        progress=progress,
+    )
 
 
 def collection_of(effects: Sequence[str | Path] = ()) -> Collection:

@@ -22,6 +22,23 @@ def filled(text: str, *, hanging: bool = False) -> str:
     )
 
 
+def pairs(title: str, rows: Sequence[tuple[str, str]]) -> str:
+    """Names to the left, values to the right of them, filled."""
+    width = max(len(name) for name, _ in rows) + 4
+    lines = [
+        textwrap.fill(
+            value,
+            max(WIDTH, width + 40),
+            initial_indent=f"  {name}".ljust(width),
+            subsequent_indent=" " * width,
+            break_long_words=False,
+            break_on_hyphens=False,
+        )
+        for name, value in rows
+    ]
+    return "\n".join([title, *lines])
+
+
 def table(title: str, heads: Sequence[str], rows: Sequence[Sequence[str]]) -> str:
     """First column to the left, the others to the right, two blanks between."""
     columns = list(zip(heads, *rows, strict=True))
