@@ -52,8 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     InputError
         When something cannot be used, or the port is taken.
     """
-    from werrimbi_odom.workbench.job import Job
-    from werrimbi_odom.workbench.tasks import Open
+    from werrimbi_odom.workbench.job import Job, Open
 
     job = Job(Open())
     job.start()  # before all else, so that it imports while the drives are read

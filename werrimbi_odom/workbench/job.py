@@ -18,12 +18,41 @@ from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.workbench.begin import begin
-from werrimbi_odom.workbench.tasks import Task
 
 if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
     from werrimbi_odom.files.asked import Recordings
+    from werrimbi_odom.model.robot import Robot
+
+
+@dataclass(frozen=True)
+class Diagnose:
+    """Find out what a robot's model is missing."""
+
+    robot: Robot
+
+
+@dataclass(frozen=True)
+class Add:
+    """Fit more effects together, and compare."""
+
+    effects: tuple[str, ...]
+    robot: Robot
+
+
+@dataclass(frozen=True)
+class Open:
+    """Cut the drives into legs, and compare the robot as given."""
+
+
+Task = Diagnose | Add | Open
+
+
+def begin(asked: Connection) -> None:
+    """See `work.work`."""
+    from werrimbi_odom.workbench.work import work
+
+    work(asked)
 
 
 class CancelledError(Exception):
@@ -94,7 +123,7 @@ class Job:
 
     def ask(self, given: Recordings) -> None:
         """Say what is to be done, to a process that was started."""
-        from werrimbi_odom.workbench.crossing import packed
+        from werrimbi_odom.workbench.work import packed
 
         data = packed((self.task, given), {})
         # It may still be importing, and a pipe holds little until it reads.
@@ -128,7 +157,7 @@ class Job:
     def _received(
         self, receiving: Connection, known: Mapping[str, Any], collection: Collection
     ) -> Any:
-        from werrimbi_odom.workbench.crossing import unpacked
+        from werrimbi_odom.workbench.work import unpacked
 
         while True:
             what, value, words = receiving.recv()

@@ -11,8 +11,8 @@ from typing import Any
 from nicegui import Client, app, ui
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.workbench.drawings import empty_floor
 from werrimbi_odom.workbench.figure import ask_for_drawing
-from werrimbi_odom.workbench.floor import empty_floor
 from werrimbi_odom.workbench.html import box, button, listen, text
 from werrimbi_odom.workbench.opening import Opening
 from werrimbi_odom.workbench.tab import Shared, Tab, new_tab

@@ -18,9 +18,9 @@ from werrimbi_odom.report.diagnosis.figures import (
     set_up_figure,
 )
 from werrimbi_odom.report.diagnosis.told import Told
+from werrimbi_odom.workbench.job import Add, Diagnose
 from werrimbi_odom.workbench.opened import Opened, Show, split
 from werrimbi_odom.workbench.steps import Diagnosed, Step
-from werrimbi_odom.workbench.tasks import Add, Diagnose
 
 
 def diagnosed(task: Diagnose, given: Recordings, show: Show) -> Diagnosed:

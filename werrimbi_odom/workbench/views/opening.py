@@ -8,8 +8,8 @@ from typing import Any
 
 from nicegui import ui
 
+from werrimbi_odom.workbench.drawings import measured_drawing
 from werrimbi_odom.workbench.html import box, text
-from werrimbi_odom.workbench.measured import measured_drawing
 from werrimbi_odom.workbench.opening import Opening
 
 
