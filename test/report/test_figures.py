@@ -31,7 +31,6 @@ from werrimbi_odom.report.comparison.figures import (
     variables_of,
 )
 from werrimbi_odom.report.comparison.path_figure import covariance_along
-from werrimbi_odom.report.decimate import FEWEST, MARKS, MOST, along_path
 from werrimbi_odom.report.diagnosis.figures import (
     before_after,
     before_after_figure,
@@ -43,6 +42,7 @@ from werrimbi_odom.report.diagnosis.figures import (
 from werrimbi_odom.report.diagnosis.response import parts_of, response
 from werrimbi_odom.report.diagnosis.wheel_angle import once_a_turn, over_a_turn, wheel_errors
 from werrimbi_odom.report.sketches import library as sketches
+from werrimbi_odom.report.style import FEWEST, MARKS, MOST, along_path
 
 RELATIVE = 1e3 * AMPLITUDE / PLAIN.wheel_radius
 """How much more or less than its radius says an eccentric wheel rolls, at the most [mm/m]."""

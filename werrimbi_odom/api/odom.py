@@ -78,9 +78,9 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     from werrimbi_odom.files.start_pose import start_of
     from werrimbi_odom.model.effect import view_of
     from werrimbi_odom.model.shown import shown
-    from werrimbi_odom.report.printed import pairs
     from werrimbi_odom.report.reckoning import reckoning_of
     from werrimbi_odom.report.reckoning_page import reckoning_page
+    from werrimbi_odom.report.text import pairs
 
     recorded = run if isinstance(run, Run) else read_run(run, robot)
     complete, learnt = _usable(recorded, lambda: with_learnt_phases(recorded, robot))

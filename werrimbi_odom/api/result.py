@@ -54,7 +54,7 @@ class Result(Generic[Found]):
 
     def to_dict(self) -> dict[str, Any]:
         """What `--json` writes: numbers, words, lists, dictionaries; None: not known."""
-        from werrimbi_odom.report.plain import plain
+        from werrimbi_odom.report.numbers import plain
 
         found = plain(self.figures_of_json())
         assert isinstance(found, dict)

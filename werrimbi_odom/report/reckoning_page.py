@@ -8,8 +8,8 @@ import numpy as np
 
 from werrimbi_odom.report.page import Page, Shown
 from werrimbi_odom.report.path_figure import PathDrawing, path_figure, spread_along_path
-from werrimbi_odom.report.printed import pairs
 from werrimbi_odom.report.reckoning import Reckoning
+from werrimbi_odom.report.text import pairs
 
 _POINTS = 2000  # of the path, that are drawn
 

@@ -21,8 +21,19 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.legs import CHI2_95
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.report.decimate import FEWEST, MARKS, along_path, small
-from werrimbi_odom.report.style import BLUE, GREY, IN_THE_DARK, KEPT_HERE, ORANGE, PAPER, plain
+from werrimbi_odom.report.style import (
+    BLUE,
+    FEWEST,
+    GREY,
+    IN_THE_DARK,
+    KEPT_HERE,
+    MARKS,
+    ORANGE,
+    PAPER,
+    along_path,
+    plain,
+    small,
+)
 from werrimbi_odom.workbench.steps import Step
 
 if TYPE_CHECKING:

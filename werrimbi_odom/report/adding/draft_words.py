@@ -10,7 +10,7 @@ from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.drafting import Draft
 from werrimbi_odom.report.adding.words import json_of
 from werrimbi_odom.report.numbers import error_words
-from werrimbi_odom.report.printed import filled
+from werrimbi_odom.report.text import filled
 
 
 def draft_words(draft: Draft, tried: Added) -> str:

@@ -18,7 +18,7 @@ from werrimbi_odom.inference.rules import ADVISED_SQUARES
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.numbers import scaled_with_std
-from werrimbi_odom.report.printed import filled, table
+from werrimbi_odom.report.text import filled, table
 
 DOUBTFUL_P = 0.01
 

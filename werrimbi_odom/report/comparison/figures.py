@@ -16,9 +16,17 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.comparison.channels import CHANNELS, NAMES, measured_channels
 from werrimbi_odom.report.comparison.nees_figure import nees_figure
 from werrimbi_odom.report.comparison.path_figure import path_figure
-from werrimbi_odom.report.decimate import MARKS, small, spread_and_extremes
 from werrimbi_odom.report.diagnosis.wheel_angle import WHEEL_ANGLES, wheel_angle_figure
-from werrimbi_odom.report.style import BLUE, FAINT, GREY, paled, plain
+from werrimbi_odom.report.style import (
+    BLUE,
+    FAINT,
+    GREY,
+    MARKS,
+    paled,
+    plain,
+    small,
+    spread_and_extremes,
+)
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

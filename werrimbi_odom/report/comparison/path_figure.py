@@ -14,18 +14,22 @@ from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.trajectory import trajectory
-from werrimbi_odom.report.decimate import FEWEST, MOST, along_path, small, spread_and_extremes
 from werrimbi_odom.report.path_figure import ellipse, spread_along_path
 from werrimbi_odom.report.style import (
     BLUE,
+    FEWEST,
     GREEN,
     GREY,
+    MOST,
     ORANGE,
     PAPER,
     RISING,
+    along_path,
     escaped,
     paled,
     plain,
+    small,
+    spread_and_extremes,
 )
 
 if TYPE_CHECKING:

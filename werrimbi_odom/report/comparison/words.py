@@ -12,8 +12,8 @@ from werrimbi_odom.inference.comparison.consistency import AtLength, trend_of
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
 from werrimbi_odom.inference.rules import FEWEST_LEGS
 from werrimbi_odom.report.comparison.phrases import systematic_told
-from werrimbi_odom.report.left_out import left_out_words
-from werrimbi_odom.report.printed import filled
+from werrimbi_odom.report.phrases import left_out_words
+from werrimbi_odom.report.text import filled
 
 NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
 _FEW = 0.6  # of the squared errors, held by a twentieth of the legs

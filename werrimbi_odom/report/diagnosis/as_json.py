@@ -17,7 +17,7 @@ from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, strongest
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.values import values_of
-from werrimbi_odom.report.left_out import left_out_json
+from werrimbi_odom.report.phrases import left_out_json
 
 
 def json_of(

@@ -11,10 +11,20 @@ import numpy as np
 
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
-from werrimbi_odom.report.decimate import MARKS, small
 from werrimbi_odom.report.diagnosis.evidence_figures import amount_words, variable_words
 from werrimbi_odom.report.diagnosis.response import unit_of
-from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, RISING, escaped, plain
+from werrimbi_odom.report.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    MARKS,
+    ORANGE,
+    RISING,
+    escaped,
+    plain,
+    small,
+)
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

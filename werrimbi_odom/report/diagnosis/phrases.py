@@ -20,7 +20,7 @@ from werrimbi_odom.report.diagnosis.expected import expected_words
 from werrimbi_odom.report.diagnosis.told import Told
 from werrimbi_odom.report.diagnosis.values import Value, ranked_of, values_of
 from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity
-from werrimbi_odom.report.sizes import sizes_words
+from werrimbi_odom.report.phrases import sizes_words
 
 
 def mistakes(diagnosis: Diagnosis) -> dict[str, SetUpFinding]:

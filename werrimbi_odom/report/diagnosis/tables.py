@@ -13,7 +13,7 @@ from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.report.diagnosis.dependence import short_words
 from werrimbi_odom.report.diagnosis.values import values_of
 from werrimbi_odom.report.numbers import error_words, in_unit, p_words
-from werrimbi_odom.report.printed import table
+from werrimbi_odom.report.text import table
 
 _RANKED = 8
 _MAPPED = 10

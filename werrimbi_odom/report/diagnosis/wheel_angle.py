@@ -15,8 +15,7 @@ import numpy as np
 
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.report.decimate import small
-from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, escaped, paled, plain
+from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, escaped, paled, plain, small
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

@@ -29,9 +29,9 @@ from werrimbi_odom.report.diagnosis.phrases import (
     whole,
 )
 from werrimbi_odom.report.diagnosis.told import Told
-from werrimbi_odom.report.left_out import jumps_words, left_out_words
 from werrimbi_odom.report.numbers import chance_words, error_words, listed
-from werrimbi_odom.report.printed import filled
+from werrimbi_odom.report.phrases import jumps_words, left_out_words
+from werrimbi_odom.report.text import filled
 
 
 @dataclass(frozen=True)

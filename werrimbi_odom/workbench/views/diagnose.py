@@ -14,7 +14,7 @@ from werrimbi_odom.report.diagnosis.phrases import at_bounds
 from werrimbi_odom.report.diagnosis.told import Told
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.numbers import chance_words, error_words, listed
-from werrimbi_odom.report.page_text import unwrapped
+from werrimbi_odom.report.text import unwrapped
 from werrimbi_odom.workbench.figure import figure
 from werrimbi_odom.workbench.html import box, button, paragraphs, text
 from werrimbi_odom.workbench.parts import CellPart
