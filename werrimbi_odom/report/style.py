@@ -47,6 +47,15 @@ RISING = (
 is told apart with any kind of colour blindness. Pages turn it round in the dark."""
 
 
+def coloured(figure: go.Figure, most: float, title: str, **bar: object) -> go.Figure:
+    """Colours from nothing to most, with a bar beside the figure that says what they mean."""
+    bar = {"title": {"text": title}, "thickness": 14, **bar}
+    scale = [list(stop) for stop in RISING]
+    return figure.update_layout(
+        coloraxis={"colorscale": scale, "cmin": 0.0, "cmax": most, "colorbar": bar}
+    )
+
+
 def paled(colour: str, share: float) -> str:
     """A colour with an opacity from 0 to 1; the page still knows its name in the dark."""
     return f"{colour}{round(255 * share):02X}"

@@ -9,15 +9,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.inference.comparison.compare import Comparison
-from werrimbi_odom.report.comparison.figures import (
-    error_against_figure,
-    legs_by_motion_figure,
-    nees_figure,
-    path_figure,
-    variables_of,
-)
+from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
+from werrimbi_odom.report.comparison.path_figure import path_figure
 from werrimbi_odom.report.comparison.tables import tables_of
 from werrimbi_odom.report.comparison.words import words_of
+from werrimbi_odom.report.over_variable import error_against_figure, variables_of
 from werrimbi_odom.report.page import Page, Shown
 from werrimbi_odom.report.save import save_report
 

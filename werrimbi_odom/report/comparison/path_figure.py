@@ -23,8 +23,8 @@ from werrimbi_odom.report.style import (
     MOST,
     ORANGE,
     PAPER,
-    RISING,
     along_path,
+    coloured,
     escaped,
     paled,
     plain,
@@ -178,14 +178,7 @@ def _legs(figure: go.Figure, comparison: Comparison, run: int | None) -> None:
         marker={"color": GREY, "size": 12},
         hoverinfo="skip",
     )
-    figure.update_layout(
-        coloraxis={
-            "colorscale": [list(stop) for stop in RISING],
-            "cmin": 0.0,
-            "cmax": max(top, 1e-9),
-            "colorbar": {"title": {"text": f"error of<br>a leg [{unit}]"}, "thickness": 14},
-        }
-    )
+    coloured(figure, max(top, 1e-9), f"error of<br>a leg [{unit}]")
 
 
 def middles(comparison: Comparison) -> NDArray[np.complex128]:

@@ -13,10 +13,10 @@ import numpy as np
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.diagnosis.values import values_of
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, strongest
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
-from werrimbi_odom.report.diagnosis.values import values_of
 from werrimbi_odom.report.phrases import left_out_json
 
 

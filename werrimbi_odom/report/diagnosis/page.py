@@ -12,27 +12,25 @@ from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.named import effect_named
+from werrimbi_odom.inference.diagnosis.response import before_after
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.report.diagnosis.evidence_figures import variable_words
-from werrimbi_odom.report.diagnosis.figures import (
-    before_after,
-    before_after_figure,
-    dependence_figure,
-    effect_sketch,
+from werrimbi_odom.report.diagnosis.dependence_figure import dependence_figure
+from werrimbi_odom.report.diagnosis.evidence_figures import (
     evidence_map_figure,
-    ideal_of,
-    manoeuvre_figure,
     ordered_cells,
-    ranking_figure,
-    set_up_figure,
+    variable_words,
 )
+from werrimbi_odom.report.diagnosis.figures import ranking_figure, set_up_figure
+from werrimbi_odom.report.diagnosis.manoeuvre_figure import ideal_of, manoeuvre_figure
 from werrimbi_odom.report.diagnosis.tables import tables_of
 from werrimbi_odom.report.diagnosis.told import Told
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.over_variable import before_after_figure
 from werrimbi_odom.report.page import Page, Shown
 from werrimbi_odom.report.save import save_report
+from werrimbi_odom.report.sketches.library import effect_sketch
 
 _LISTED = 8
 

@@ -11,6 +11,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, chance
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
+from werrimbi_odom.inference.diagnosis.values import Value, ranked_of, values_of
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.rules import ONE_WHEEL, SIGNIFICANT
@@ -18,7 +19,6 @@ from werrimbi_odom.inference.set_up.mistakes import SetUpFinding
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
 from werrimbi_odom.report.diagnosis.told import Told
-from werrimbi_odom.report.diagnosis.values import Value, ranked_of, values_of
 from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity
 from werrimbi_odom.report.phrases import sizes_words
 
