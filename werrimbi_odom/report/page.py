@@ -38,6 +38,10 @@ _POLICY = (
 )
 
 
+NOTHING_SAID: Mapping[str, str] = {}
+"""Of how a page was made."""
+
+
 @dataclass(frozen=True)
 class Shown:
     """One place on the page: a figure, or several to choose from, or a drawing."""

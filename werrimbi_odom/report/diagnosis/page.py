@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import html
 from collections.abc import Mapping
-from pathlib import Path
 
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -28,38 +27,16 @@ from werrimbi_odom.report.diagnosis.tables import tables_of
 from werrimbi_odom.report.diagnosis.told import Told
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.over_variable import before_after_figure
-from werrimbi_odom.report.page import Page, Shown
-from werrimbi_odom.report.save import save_report
+from werrimbi_odom.report.page import NOTHING_SAID, Page, Shown
 from werrimbi_odom.report.sketches.library import effect_sketch
 
 _LISTED = 8
 
 
-def write_diagnosis_page(
-    diagnosis: Diagnosis,
-    path: Path,
-    *,
-    told: Told | None = None,
-    steps: NextSteps | None = None,
-    made: Mapping[str, str] | None = None,
-) -> list[Path]:
-    """Write the report; returns the files, of which there are several where they are pictures.
-
-    Parameters
-    ----------
-    path
-        .html for a page, .pdf or .png for the main figures alone.
-    told
-        The diagnosis with the next manoeuvre; without it none is drawn.
-    made
-        How it was made: command, files, options.
-    """
-    told = told or Told(diagnosis, None, ())
-    return save_report(diagnosis_page(told, steps or NextSteps(), made or {}), path)
-
-
-def diagnosis_page(told: Told, steps: NextSteps, made: Mapping[str, str]) -> Page:
-    """The report as a page."""
+def diagnosis_page(
+    told: Told, steps: NextSteps | None = None, made: Mapping[str, str] = NOTHING_SAID
+) -> Page:
+    """The report as a page; `made`: command, files, options."""
     diagnosis = told.diagnosis
     shown = [
         *_effects(diagnosis),
@@ -78,7 +55,9 @@ def diagnosis_page(told: Told, steps: NextSteps, made: Mapping[str, str]) -> Pag
     if diagnosis.set_up.findings:
         mistakes = ", ".join(item.effect for item in diagnosis.set_up.findings)
         title = f"What is set up wrongly: {mistakes}"
-    return Page(title, words_of(told, steps), shown, tables_of(diagnosis, told.sights), made)
+    return Page(
+        title, words_of(told, steps or NextSteps()), shown, tables_of(diagnosis, told.sights), made
+    )
 
 
 def _effects(diagnosis: Diagnosis) -> list[Shown]:
