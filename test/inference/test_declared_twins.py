@@ -20,11 +20,11 @@ from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.verdict import _possible_twins
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
+from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.inference.set_up.robot import mount_of
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.page import diagnosis_page
-from werrimbi_odom.report.diagnosis.phrases import Told
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.save import save_report
 

@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from werrimbi_odom.inference.adding.added import Added
     from werrimbi_odom.inference.comparison.compare import Comparison
     from werrimbi_odom.inference.comparison.judged_legs import Prepared
+    from werrimbi_odom.inference.manoeuvres.told import Told
     from werrimbi_odom.model.effect import Effect
-    from werrimbi_odom.report.diagnosis.told import Told
 
 Show = Callable[[float, str], None]
 """Told the share done, and what is being done."""
@@ -117,10 +117,10 @@ def diagnose(
 
 def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
     """`diagnose` for what was read already."""
+    from werrimbi_odom.inference.manoeuvres.told import told_of
     from werrimbi_odom.report.diagnosis.as_json import json_of
     from werrimbi_odom.report.diagnosis.page import diagnosis_page
     from werrimbi_odom.report.diagnosis.tables import tables_of
-    from werrimbi_odom.report.diagnosis.told import told_of
     from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 
     told = told_of(given, show)

@@ -11,9 +11,9 @@ from werrimbi_odom.api.verbs import diagnosed as diagnosis_of
 from werrimbi_odom.files.asked import Recordings
 from werrimbi_odom.inference.diagnosis.response import before_after
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
+from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.report.diagnosis.figures import set_up_figure
 from werrimbi_odom.report.diagnosis.manoeuvre_figure import ideal_of, manoeuvre_figure
-from werrimbi_odom.report.diagnosis.told import Told
 from werrimbi_odom.report.over_variable import before_after_figure
 from werrimbi_odom.workbench.job import Add, Diagnose
 from werrimbi_odom.workbench.opened import Opened, Show, split

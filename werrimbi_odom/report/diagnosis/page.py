@@ -14,6 +14,7 @@ from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.response import before_after
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
+from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.dependence_figure import dependence_figure
 from werrimbi_odom.report.diagnosis.evidence_figures import (
@@ -24,7 +25,6 @@ from werrimbi_odom.report.diagnosis.evidence_figures import (
 from werrimbi_odom.report.diagnosis.figures import ranking_figure, set_up_figure
 from werrimbi_odom.report.diagnosis.manoeuvre_figure import ideal_of, manoeuvre_figure
 from werrimbi_odom.report.diagnosis.tables import tables_of
-from werrimbi_odom.report.diagnosis.told import Told
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.over_variable import before_after_figure
 from werrimbi_odom.report.page import NOTHING_SAID, Page, Shown

@@ -8,10 +8,10 @@ from functools import partial
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
+from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
-from werrimbi_odom.report.diagnosis.phrases import at_bounds
-from werrimbi_odom.report.diagnosis.told import Told
+from werrimbi_odom.report.diagnosis.phrases import at_bounds_words
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.numbers import chance_words, error_words, listed
 from werrimbi_odom.report.text import unwrapped
@@ -190,7 +190,7 @@ def _following(tab: Tab, found: Diagnosed) -> None:
 
 
 def _by_chance(item: Ranked, diagnosis: Diagnosis) -> str:
-    wild = at_bounds(diagnosis).get(item.effect)
+    wild = at_bounds_words(diagnosis).get(item.effect)
     if wild is not None:
         return f"only with {wild}, the limit of what physics allows"
     if item.p_value is not None and item.p_value > SURE:
