@@ -117,3 +117,8 @@ def plain(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
+
+
+def counted(number: int, word: str) -> str:
+    """1 leg, 2 legs."""
+    return f"{number} {word}{'' if number == 1 else 's'}"
