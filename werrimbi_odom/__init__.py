@@ -28,9 +28,11 @@ if TYPE_CHECKING:
     from werrimbi_odom.api.calibrate_fit import calibrate_fit
     from werrimbi_odom.api.calibrate_noise import calibrate_noise
     from werrimbi_odom.api.calibrate_umbmark import calibrate_umbmark
+    from werrimbi_odom.api.draft import draft
     from werrimbi_odom.api.drives import read_robot, read_run
+    from werrimbi_odom.api.odom import odom
     from werrimbi_odom.api.odometry import odometry
-    from werrimbi_odom.api.verbs import add, compare, diagnose, draft
+    from werrimbi_odom.api.verbs import add, compare, diagnose
     from werrimbi_odom.effects.library import LIBRARY as EFFECTS
     from werrimbi_odom.errors import InputError
     from werrimbi_odom.model.effect import (
@@ -44,11 +46,12 @@ if TYPE_CHECKING:
 _WHERE = {
     "read_robot": "api.drives",
     "read_run": "api.drives",
+    "odom": "api.odom",
     "odometry": "api.odometry",
     "compare": "api.verbs",
     "diagnose": "api.verbs",
     "add": "api.verbs",
-    "draft": "api.verbs",
+    "draft": "api.draft",
     "calibrate_fit": "api.calibrate_fit",
     "calibrate_noise": "api.calibrate_noise",
     "calibrate_umbmark": "api.calibrate_umbmark",
@@ -74,6 +77,7 @@ __all__ = [
     "compare",
     "diagnose",
     "draft",
+    "odom",
     "odometry",
     "read_robot",
     "read_run",

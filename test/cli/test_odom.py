@@ -17,6 +17,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+import werrimbi_odom as wo
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -336,13 +337,13 @@ def test_a_device_is_written_to_and_stays_one(place: Path) -> None:
     assert not Path("/dev/null").is_file()
 
 
-def test_without_rich_the_figures_are_plain_text(
-    place: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+def test_it_prints_the_words_of_the_python_api(
+    place: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    for name in ("rich.console", "rich.table", "rich.text"):
-        monkeypatch.setitem(sys.modules, name, None)
     assert odom(place) == 0
-    assert "  distance       0.063 m in 1.0 s\n" in capsys.readouterr().out
+    told = wo.odom(wo.read_robot(place / "robot.yaml"), place / "run").summary()
+    assert capsys.readouterr().out.startswith(f"{told}\nwritten: ")
+    assert "  distance       0.063 m in 1.0 s\n" in told
 
 
 @pytest.mark.skipif(not (RECORDINGS / "square_bag").exists(), reason="no recordings/square_bag")

@@ -20,12 +20,13 @@ from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.verdict import _possible_twins
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
+from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.inference.set_up.robot import mount_of
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.report.diagnosis.page import write_diagnosis_page
-from werrimbi_odom.report.diagnosis.phrases import Told
+from werrimbi_odom.report.diagnosis.page import diagnosis_page
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.save import save_report
 
 OWN = '''
 import math
@@ -95,7 +96,7 @@ def test_a_users_effect_brings_its_twin_and_its_sketch(
     told = Told(found, proposed, ())
     assert "are one and the same, on any drive" in " ".join(words_of(told, NextSteps()).split())
     page = tmp_path / "page.html"
-    write_diagnosis_page(found, page, told=told)
+    save_report(diagnosis_page(told), page)
     shown = page.read_text(encoding="utf-8")
     assert "the mast leans, and the robot seems to crab</text>" in shown
     assert "hang a plumb line" in shown

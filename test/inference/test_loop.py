@@ -21,10 +21,10 @@ from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import Added, add_effect, add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.model.effect import Effect, Parameter, wheel_effect
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.diagnosis.told import Told
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)

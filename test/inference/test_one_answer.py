@@ -18,7 +18,9 @@ from test.inference.driven import run_of
 from test.inference.test_gaps import parts, silent, without_ticks
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
-from werrimbi_odom.effects.collection import find
+from werrimbi_odom.effects.collection import all_effects, find
+from werrimbi_odom.files.asked import How, Recordings
+from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.adding.adding import add_effect
 from werrimbi_odom.inference.comparison.compare import compare
@@ -26,8 +28,11 @@ from werrimbi_odom.inference.comparison.judged_legs import figures_of, prepare
 from werrimbi_odom.inference.comparison.legs import LegStatistics
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.workbench.opened import Given, opened
+from werrimbi_odom.workbench.opened import opened
 
+ANY_FILE = read_robot_file(
+    Path(__file__).parents[2] / "werrimbi_odom" / "recordings" / "square" / "robot.yaml"
+)
 WRONG = replace(ROBOT, wheel_separation_multiplier=1.01)
 ECCENTRIC = find("eccentric_left_wheel")
 UNKNOWN_PHASE = replace(WRONG, effects=(ECCENTRIC.using(amplitude=0.002),))
@@ -86,8 +91,8 @@ def test_every_verb_gives_the_same_figures(case: str) -> None:
     of_compare = [figures(each.main.all.figures) for each in compared]
     added = add_effect(find("track_width"), train, robot, kind, holdout=held)
     diagnosis = diagnose(train, robot, (), kind, holdout=held)
-    judging: Any = {"kind": kind, "leg": 1.0, "limits": None, "sigma_xy": None, "sigma_yaw": None}
-    look = opened(Given(robot, tuple(train), tuple(held), judging, ())).look(robot)
+    given = Recordings(ANY_FILE, all_effects(), tuple(train), tuple(held), How(kind), robot)
+    look = opened(given).look(robot)
     for other in (
         [figures(side.figures("before")) for side in (added.train, added.holdout)],
         [figures(each.main.all.figures) for each in (look.train, look.holdout)],

@@ -17,9 +17,9 @@ from werrimbi_odom.effects.collection import load_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.drafting import draft_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, diagnose
+from werrimbi_odom.inference.diagnosis.values import values_of
 from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.diagnosis.values import values_of
 
 
 def headings_of(run: Run) -> Run:

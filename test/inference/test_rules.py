@@ -33,6 +33,13 @@ ELSEWHERE = {
     "calibration/umbmark_equations.py": {"QUARTER": "a corner of a square"},
     "chances.py": {"MEDIAN_TO_SIGMA": "of the normal law", "NORMAL_95": "a quantile"},
     "comparison/legs.py": {"CHI2_95": "quantiles"},
+    "comparison/over_variable.py": {
+        "_BINS": "of a figure",
+        "_FEWEST": "of a figure",
+        "_PARTS": "of a figure",
+        "_FEW": "of a figure",
+        "FINE": "of a figure",
+    },
     "comparison/position_filter.py": {
         "_MEDIAN_CHI2_2": "a quantile",
         "_MOST_DOUBT": "beyond any doubt: where the search of it ends",
@@ -50,6 +57,12 @@ ELSEWHERE = {
     },
     "diagnosis/cross_validation.py": {"_RANK": "a rank"},
     "diagnosis/evidence.py": {"BATCH": "size of a block", "_BLOCK": "size of a block"},
+    "diagnosis/response.py": {
+        "PARTS": "of a figure",
+        "_UNTOLD": "of a figure: which error bars are too long to draw",
+        "_BLURRED": "a rank",
+        "_SAME": "rounding",
+    },
     "fitting/filtering.py": {
         "STRETCH": "size of a block",
         "SIDE_BY_SIDE": "size of a block",

@@ -15,12 +15,14 @@ from test.axe import COUNT, RUN, axe_script
 from werrimbi_odom.inference.adding.adding import Added
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.report.adding.page import write_adding_page
+from werrimbi_odom.inference.manoeuvres.told import Told
+from werrimbi_odom.report.adding.page import adding_page
 from werrimbi_odom.report.calibration.fit_figure import leg_figure
 from werrimbi_odom.report.calibration.page import calibration_page
-from werrimbi_odom.report.comparison.page import write_compare_page
-from werrimbi_odom.report.diagnosis.page import write_diagnosis_page
+from werrimbi_odom.report.comparison.page import compare_page
+from werrimbi_odom.report.diagnosis.page import diagnosis_page
 from werrimbi_odom.report.page import write_page
+from werrimbi_odom.report.save import save_report
 
 TOO_WIDE = "Math.max(0, document.documentElement.scrollWidth - window.innerWidth)"
 ALL_OPEN = "document.querySelectorAll('details').forEach(item => { item.open = true; })"
@@ -35,9 +37,9 @@ def pages(
 ) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("pages")
     found = {name: folder / f"{name}.html" for name in ("compare", "diagnose", "add", "fit")}
-    write_compare_page(comparison, found["compare"])
-    write_diagnosis_page(diagnosis, found["diagnose"])
-    write_adding_page(added, found["add"])
+    save_report(compare_page(comparison), found["compare"])
+    save_report(diagnosis_page(Told(diagnosis, None, ())), found["diagnose"])
+    save_report(adding_page(added), found["add"])
     errors = np.random.default_rng(1).normal(0.0, 0.01, (3000, 2))
     figure = leg_figure(errors, 0.5 * errors)
     numbers = {"wheel_separation_multiplier": (1.0, 1.01)}

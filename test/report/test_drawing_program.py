@@ -8,7 +8,7 @@ import re
 
 from plotly.offline import get_plotlyjs_version
 
-from werrimbi_odom.report.drawing_program import drawing_program
+from werrimbi_odom.report.page import drawing_program
 
 
 def test_it_is_of_the_version_that_plotly_makes_figures_for() -> None:

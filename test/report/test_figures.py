@@ -15,34 +15,29 @@ from conftest import AMPLITUDE, PLAIN, eccentric_run
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
+from werrimbi_odom.inference.comparison.dead_reckoning import covariance_along, path_figure
+from werrimbi_odom.inference.comparison.over_variable import once_a_turn, over_a_turn, wheel_errors
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Amount
 from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.diagnosis.response import before_after, parts_of, response
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.model.declared import DRAWINGS
 from werrimbi_odom.model.effect import Sketch
 from werrimbi_odom.report.adding.figures import error_falling_figure, steps_of
 from werrimbi_odom.report.calibration.fit_figure import leg_figure
-from werrimbi_odom.report.comparison.figures import (
+from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
+from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure
+from werrimbi_odom.report.diagnosis.figures import ranking_figure
+from werrimbi_odom.report.diagnosis.manoeuvre_figure import manoeuvre_figure
+from werrimbi_odom.report.over_variable import (
+    before_after_figure,
     error_against_figure,
-    legs_by_motion_figure,
-    nees_figure,
-    path_figure,
     variables_of,
 )
-from werrimbi_odom.report.comparison.path_figure import covariance_along
-from werrimbi_odom.report.decimate import FEWEST, MARKS, MOST, along_path
-from werrimbi_odom.report.diagnosis.figures import (
-    before_after,
-    before_after_figure,
-    effect_sketch,
-    evidence_map_figure,
-    manoeuvre_figure,
-    ranking_figure,
-)
-from werrimbi_odom.report.diagnosis.response import parts_of, response
-from werrimbi_odom.report.diagnosis.wheel_angle import once_a_turn, over_a_turn, wheel_errors
 from werrimbi_odom.report.sketches import library as sketches
+from werrimbi_odom.report.sketches.library import effect_sketch
+from werrimbi_odom.report.style import FEWEST, MARKS, MOST, along_path
 
 RELATIVE = 1e3 * AMPLITUDE / PLAIN.wheel_radius
 """How much more or less than its radius says an eccentric wheel rolls, at the most [mm/m]."""

@@ -12,9 +12,8 @@ import pytest
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.report import save
 from werrimbi_odom.report.page import Page, Shown, page_html
-from werrimbi_odom.report.page_text import paragraphs, tables, unwrapped
-from werrimbi_odom.report.printed import table
 from werrimbi_odom.report.save import save_report
+from werrimbi_odom.report.text import paragraphs, table, tables, unwrapped
 
 LONG = "One sentence that is longer than a line of eighty columns can hold, so it is wrapped."
 

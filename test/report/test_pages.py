@@ -19,12 +19,14 @@ from browser import Visit
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.report.adding.page import write_adding_page
+from werrimbi_odom.inference.manoeuvres.told import Told
+from werrimbi_odom.report.adding.page import adding_page
 from werrimbi_odom.report.calibration.fit_figure import leg_figure
 from werrimbi_odom.report.calibration.page import calibration_page
-from werrimbi_odom.report.comparison.page import write_compare_page
-from werrimbi_odom.report.diagnosis.page import write_diagnosis_page
+from werrimbi_odom.report.comparison.page import compare_page as page_of_comparison
+from werrimbi_odom.report.diagnosis.page import diagnosis_page as page_of_diagnosis
 from werrimbi_odom.report.page import write_page
+from werrimbi_odom.report.save import save_report
 
 Look = Callable[..., Visit]
 
@@ -45,14 +47,14 @@ def assert_well_drawn(visit: Visit) -> None:
 @pytest.fixture(scope="module")
 def compare_page(comparison: Comparison, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("compare") / "page.html"
-    write_compare_page(comparison, path)
+    save_report(page_of_comparison(comparison), path)
     return path
 
 
 @pytest.fixture(scope="module")
 def diagnosis_page(diagnosis: Diagnosis, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("diagnosis") / "page.html"
-    write_diagnosis_page(diagnosis, path)
+    save_report(page_of_diagnosis(Told(diagnosis, None, ())), path)
     return path
 
 
@@ -230,7 +232,7 @@ def test_the_evidence_map_is_there_and_a_click_opens_the_dependence(
 
 def test_the_effect_added_draws_itself(added: Added, tmp_path: Path, look: Look) -> None:
     page = tmp_path / "page.html"
-    write_adding_page(added, page)
+    save_report(adding_page(added), page)
     visit = look(page, UNDRAWN, FIGURES, dark=True)
     assert_well_drawn(visit)
 

@@ -15,7 +15,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.workbench.measured import EDGE, HEIGHT, WIDTH, measured_drawing
+from werrimbi_odom.workbench.drawings import EDGE, HEIGHT, WIDTH, measured_drawing
 
 SVG = "{http://www.w3.org/2000/svg}"
 

@@ -17,15 +17,14 @@ from test.workbench.conftest import ROOT
 from test.workbench.session import written
 from werrimbi_odom.effects.collection import all_effects
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import Judging
+from werrimbi_odom.files.asked import How, Recordings
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.workbench.job import CancelledError, Job
-from werrimbi_odom.workbench.opened import Given, opened
+from werrimbi_odom.workbench.job import CancelledError, Job, Open
+from werrimbi_odom.workbench.opened import opened
 from werrimbi_odom.workbench.opening import Opening
 from werrimbi_odom.workbench.saving import Target
-from werrimbi_odom.workbench.tasks import Open
 
 
 @pytest.fixture(scope="module")
@@ -42,9 +41,8 @@ def day(tmp_path_factory: pytest.TempPathFactory) -> tuple[RobotFile, list[Run],
 def begun(source: RobotFile, runs: list[Run], holdout: list[Run]) -> Opening:
     job = Job(Open())
     job.start()
-    judging = Judging(kind="absolute", leg=1.0, limits=source.limits, sigma_xy=None, sigma_yaw=None)
-    given = Given(source.robot, tuple(runs), tuple(holdout), judging, ())
-    return Opening(job, given, source, all_effects([]), Target(Path("new.yaml")))
+    given = Recordings(source, all_effects([]), tuple(runs), tuple(holdout), How())
+    return Opening(job, given, Target(Path("new.yaml")))
 
 
 def test_the_page_gets_the_figures_that_were_worked_out_elsewhere(
@@ -61,7 +59,7 @@ def test_the_page_gets_the_figures_that_were_worked_out_elsewhere(
         assert there.main.all.figures == own.main.all.figures
     assert shared.look.verdict.good == look.verdict.good
     assert shared.look.train.runs[0].run is day[1][0]
-    assert shared.look.train.prepared is shared.opened.train.prepared
+    assert shared.look.train.prepared is shared.opened.train
     assert shared.opened.judged_on == here.judged_on
 
 

@@ -11,8 +11,8 @@ from test.workbench.session import written
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
-from werrimbi_odom.workbench import floor
-from werrimbi_odom.workbench.floor import classes_of, floor_figure
+from werrimbi_odom.workbench import drawings
+from werrimbi_odom.workbench.drawings import classes_of, floor_figure, shown
 from werrimbi_odom.workbench.parts import (
     CellPart,
     bin_parts,
@@ -21,7 +21,6 @@ from werrimbi_odom.workbench.parts import (
     motion_parts,
     worst,
 )
-from werrimbi_odom.workbench.theme import shown
 
 
 @pytest.fixture(scope="module")
@@ -80,7 +79,7 @@ def test_more_legs_than_can_be_told_apart_are_counted_but_not_all_drawn(
     comparison: Comparison, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole = floor_figure(comparison)
-    monkeypatch.setattr(floor, "_LEGS", 5)
+    monkeypatch.setattr(drawings, "_LEGS", 5)
     thin = floor_figure(comparison)
     assert [line.name for line in thin.data] == [line.name for line in whole.data]
     for line in thin.data[:-1]:

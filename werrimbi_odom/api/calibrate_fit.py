@@ -53,9 +53,9 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     from werrimbi_odom.inference.legs.cutting import match_finely, stated
     from werrimbi_odom.report.calibration.fit_words import fit_in_words
     from werrimbi_odom.report.calibration.page import calibration_page
-    from werrimbi_odom.report.left_out import left_out_json, left_out_words
     from werrimbi_odom.report.page import Page
-    from werrimbi_odom.report.printed import filled
+    from werrimbi_odom.report.phrases import left_out_json, left_out_words
+    from werrimbi_odom.report.text import filled
 
     source, how = given.source, given.how
     runs = match_finely(given.runs, source.robot, how.leg, source.limits)

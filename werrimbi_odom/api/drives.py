@@ -4,13 +4,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import How, Recordings
-from werrimbi_odom.files.held import without_held_poses
+from werrimbi_odom.files.asked import How, Recordings, gathered
 from werrimbi_odom.files.reading import read_run as read_one
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
@@ -35,6 +34,10 @@ class Options(TypedDict, total=False):
     """The reference's noise in x and in y, where it is known [m]."""
     reference_sigma_yaw: float | None
     """The same in heading [rad]."""
+    ticks_topic: str | None
+    """Topic of the ticks, of bags that are still to be read."""
+    reference_topic: str | None
+    """The same of the reference."""
     effects: Sequence[str | Path]
     """Files with effects of your own, which the robot file may name."""
 
@@ -52,7 +55,7 @@ def read_robot(path: str | Path, effects: Sequence[str | Path] = ()) -> RobotFil
     InputError
         When it cannot be used; the message says file, line and mend.
     """
-    return read_robot_file(path, collection_of(effects))
+    return read_robot_file(path, collection_of(effects) if effects else None)
 
 
 def read_run(
@@ -61,15 +64,29 @@ def read_run(
     *,
     ticks_topic: str | None = None,
     reference_topic: str | None = None,
+    progress: Callable[[float], None] | None = None,
 ) -> Run:
     """Read a recorded drive: a run folder, a rosbag2 or an .mcap.
+
+    Parameters
+    ----------
+    ticks_topic, reference_topic
+        Of a bag with several.
+    progress
+        Told the share that is read.
 
     Raises
     ------
     InputError
         When it cannot be used; the message says where and how to mend it.
     """
-    return read_one(Path(path), robot, ticks_topic=ticks_topic, reference_topic=reference_topic)
+    return read_one(
+        Path(path),
+        robot,
+        ticks_topic=ticks_topic,
+        reference_topic=reference_topic,
+        progress=progress,
+    )
 
 
 def collection_of(effects: Sequence[str | Path] = ()) -> Collection:
@@ -95,16 +112,16 @@ def recordings_of(
         options.get("leg", 1.0),
         options.get("reference_sigma_xy"),
         options.get("reference_sigma_yaw"),
+        options.get("ticks_topic"),
+        options.get("reference_topic"),
+        tuple(Path(file) for file in options.get("effects", ())),
     )
-    fitted, held = (_read(each, robot, how.kind) for each in (runs, holdout))
+    fitted, held = _several(runs), _several(holdout)
     if not fitted:
         raise InputError("no drives were given")
-    return Recordings(robot, collection_of(options.get("effects", ())), fitted, held, how)
+    return gathered(robot, collection_of(how.effects), fitted, held, how)
 
 
-def _read(runs: Drives, robot: RobotFile, kind: ReferenceKind) -> tuple[Run, ...]:
-    several = [runs] if isinstance(runs, Run | str | Path) else list(runs)
-    found = [run if isinstance(run, Run) else read_run(run, robot) for run in several]
-    if kind == "absolute":
-        found = [without_held_poses(run, robot.robot) for run in found]
-    return tuple(found)
+def _several(runs: Drives) -> list[Run | Path]:
+    given = [runs] if isinstance(runs, Run | str | Path) else runs
+    return [each if isinstance(each, Run) else Path(each) for each in given]

@@ -4,8 +4,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
@@ -54,7 +54,7 @@ class Result(Generic[Found]):
 
     def to_dict(self) -> dict[str, Any]:
         """What `--json` writes: numbers, words, lists, dictionaries; None: not known."""
-        from werrimbi_odom.report.plain import plain
+        from werrimbi_odom.report.numbers import plain
 
         found = plain(self.figures_of_json())
         assert isinstance(found, dict)
@@ -68,13 +68,15 @@ class Result(Generic[Found]):
             for choice, figure in part.figures.items()
         }
 
-    def write_report(self, path: str | Path) -> list[Path]:
+    def write_report(self, path: str | Path, made: Mapping[str, str] | None = None) -> list[Path]:
         """Write the report; returns the files.
 
         Parameters
         ----------
         path
             .html for a page, .pdf or .png for the main figures alone.
+        made
+            How it was made (a command, files, options), for the foot of the page.
 
         Raises
         ------
@@ -83,7 +85,7 @@ class Result(Generic[Found]):
         """
         from werrimbi_odom.report.save import save_report
 
-        return save_report(self.page(), Path(path))
+        return save_report(replace(self.page(), made=made or {}), Path(path))
 
     def write_robot(self, path: str | Path, *, force: bool = False) -> RobotFile:
         """Write the robot file with what was found, comments and order kept.

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The verbs of the loop: compare, diagnose, add, draft; the same defaults as the command line."""
+"""The verbs of the loop: compare, diagnose, add; the same defaults as the command line."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
+from werrimbi_odom.api.next_command import beside, next_command
 from werrimbi_odom.api.result import NewRobot, Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.asked import Recordings
@@ -17,10 +18,10 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from werrimbi_odom.inference.adding.added import Added
-    from werrimbi_odom.inference.adding.drafting import Draft
     from werrimbi_odom.inference.comparison.compare import Comparison
+    from werrimbi_odom.inference.comparison.judged_legs import Prepared
+    from werrimbi_odom.inference.manoeuvres.told import Told
     from werrimbi_odom.model.effect import Effect
-    from werrimbi_odom.report.diagnosis.told import Told
 
 Show = Callable[[float, str], None]
 """Told the share done, and what is being done."""
@@ -59,19 +60,37 @@ def compare(
     return compared(given, show)
 
 
-def compared(given: Recordings, show: Show = silent) -> Result[Comparison]:
-    """`compare` for what was read already."""
+def compared(
+    given: Recordings, show: Show = silent, *, over: Prepared | None = None
+) -> Result[Comparison]:
+    """`compare` for what was read already.
+
+    Parameters
+    ----------
+    over
+        The drives cut before, so that before and after are over the same legs.
+    """
     from werrimbi_odom.inference.comparison.compare import compare as judge
+    from werrimbi_odom.inference.comparison.compare import judged
     from werrimbi_odom.report.comparison.as_json import json_of
     from werrimbi_odom.report.comparison.page import compare_page
     from werrimbi_odom.report.comparison.tables import tables_of
     from werrimbi_odom.report.comparison.words import words_of
 
-    found = judge(given.runs, given.source.robot, **given.judging, show=show)
-    step = "`diagnose`"
+    if over is None:
+        found = judge(given.runs, given.robot, **given.judging, show=show)
+    else:
+        found = judged(over, given.robot, show=show)
+    step = "`werrimbi diagnose`"
+
+    def words() -> str:
+        told = words_of(found, next_step=step)
+        following = [next_command(["diagnose"], given)] if step in told else []
+        return "\n".join([told, *following, "", tables_of(found)])
+
     return Result(
         found=found,
-        words=lambda: f"{words_of(found, next_step=step)}\n\n{tables_of(found)}",
+        words=words,
         figures_of_json=lambda: json_of(found),
         page=lambda: compare_page(found, next_step=step, made={}),
     )
@@ -98,18 +117,26 @@ def diagnose(
 
 def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
     """`diagnose` for what was read already."""
+    from werrimbi_odom.inference.manoeuvres.told import told_of
     from werrimbi_odom.report.diagnosis.as_json import json_of
     from werrimbi_odom.report.diagnosis.page import diagnosis_page
     from werrimbi_odom.report.diagnosis.tables import tables_of
-    from werrimbi_odom.report.diagnosis.told import told_of
     from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 
     told = told_of(given, show)
+
+    def steps() -> NextSteps:
+        better = beside(given.source.path, "better")
+        return NextSteps(
+            add=lambda names: next_command(["add", ",".join(names)], given, out=better).strip(),
+            draft=next_command(["draft"], given, out="my_effect", holdout=False).strip(),
+        )
+
     return Result(
         found=told,
-        words=lambda: f"{words_of(told, NextSteps())}\n\n{tables_of(told.diagnosis, told.sights)}",
+        words=lambda: f"{words_of(told, steps())}\n\n{tables_of(told.diagnosis, told.sights)}",
         figures_of_json=lambda: json_of(told.diagnosis, told.manoeuvre, told.sights),
-        page=lambda: diagnosis_page(told, NextSteps(), {}),
+        page=lambda: diagnosis_page(told, steps(), {}),
     )
 
 
@@ -143,17 +170,31 @@ def add(
         When the drives cannot be used, or an effect does not earn its place.
     """
     given = recordings_of(robot, runs, holdout, **options)
-    result = added(given, _effects(effect, given), show)
-    if result.found.objection is not None and not force:
-        raise InputError(f"{result.found.objection} (force=True takes it all the same)")
+    result = added(given, effects_of(effect, given), show)
+    if not force:
+        refuse_unearned(result.found, "force=True takes")
     return result
 
 
-def _effects(wanted: str | Effect | Sequence[str | Effect], given: Recordings) -> list[Effect]:
+def effects_of(wanted: str | Effect | Sequence[str | Effect], given: Recordings) -> list[Effect]:
+    """Effects, those that are names found: "A,B" or several.
+
+    Raises
+    ------
+    InputError
+        When a name is unknown, or given twice.
+    """
+    several: Sequence[str | Effect]
     if isinstance(wanted, str):
-        return [given.collection.find(name.strip()) for name in wanted.split(",")]
-    several = wanted if isinstance(wanted, Sequence) else [wanted]
-    return [given.collection.find(each) if isinstance(each, str) else each for each in several]
+        several = [name.strip() for name in wanted.split(",")]
+    else:
+        several = wanted if isinstance(wanted, Sequence) else [wanted]
+    found = [given.collection.find(each) if isinstance(each, str) else each for each in several]
+    names = [effect.name for effect in found]
+    twice = next((name for name in names if names.count(name) > 1), None)
+    if twice:
+        raise InputError(f"{','.join(names)} names {twice} twice")
+    return found
 
 
 def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> Result[Added]:
@@ -165,7 +206,7 @@ def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> 
     found = add_effects(
         effects,
         given.runs,
-        given.source.robot,
+        given.robot,
         holdout=given.holdout,
         **given.judging,
         show=show,
@@ -179,67 +220,25 @@ def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> 
     )
 
 
-def draft(
-    robot: RobotFile,
-    runs: Drives,
-    *,
-    holdout: Drives = (),
-    force: bool = False,
-    show: Show = silent,
-    **options: Unpack[Options],
-) -> Result[Draft]:
-    """Where the verdict is unknown: an effect whose law is the dependence that the drives show.
+def refuse_unearned(added: Added, insist: str) -> None:
+    """Whether every effect earns its place.
 
     Parameters
     ----------
-    force
-        Draft whatever the verdict is.
+    insist
+        What takes them all the same, in words.
 
-    Returns
-    -------
-    Result
-        `found.source` is the effect's file, `found.effect` the effect, to be read, and given to
-        `add`.
+    Raises
+    ------
+    InputError
+        When one does not: what speaks against it, and what can be added without it.
     """
-    given = recordings_of(robot, runs, holdout, **options)
-    return drafted(given, force=force, show=show)
-
-
-def drafted(given: Recordings, *, force: bool = False, show: Show = silent) -> Result[Draft]:
-    """`draft` for what was read already."""
-    from werrimbi_odom.inference.adding.adding import add_effects
-    from werrimbi_odom.inference.adding.drafting import draft_effect
-    from werrimbi_odom.inference.diagnosis.diagnosis import diagnose as search
-    from werrimbi_odom.report.adding.draft_words import draft_json, draft_words
-    from werrimbi_odom.report.adding.page import adding_page
-
-    robot = given.source.robot
-    diagnosis = search(
-        given.runs,
-        robot,
-        given.collection.effects,
-        holdout=given.holdout,
-        show=show,
-        **given.judging,
-    )
-    if diagnosis.verdict != "unknown" and not force:
-        raise InputError(
-            f"the verdict is {diagnosis.verdict}: only what is unknown is drafted (force=True "
-            "drafts the strongest dependence all the same)"
-        )
-    found = draft_effect(diagnosis, show)
-    tried = add_effects(
-        (found.effect,),
-        given.runs,
-        diagnosis.robot,
-        given=robot,
-        holdout=given.holdout,
-        show=show,
-        **given.judging,
-    )
-    return Result(
-        found=found,
-        words=lambda: draft_words(found, tried),
-        figures_of_json=lambda: draft_json(found, tried, ()),
-        page=lambda: adding_page(tried, {}),
-    )
+    if added.objection is None:
+        return
+    it = "it" if len(added.effects) == 1 else "them"
+    text = f"{added.objection}; nothing is written ({insist} {it} all the same"
+    good = [effect.name for effect in added.effects if effect.name not in added.objections]
+    if good:
+        rest = ",".join(good)
+        text += f", without {' and '.join(added.objections)}: werrimbi add {rest} ..."
+    raise InputError(f"{text})")

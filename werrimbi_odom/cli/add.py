@@ -6,17 +6,9 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.json_file import write_json
-from werrimbi_odom.cli.next_command import next_command
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
-from werrimbi_odom.errors import InputError
-
-if TYPE_CHECKING:
-    from werrimbi_odom.files.asked import Recordings
-    from werrimbi_odom.inference.adding.added import Added
-    from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.cli.result_files import tell_written, write_asked
 
 HELP = "add physical effects to the model: fit them, judge them on held-out drives, write them"
 
@@ -54,70 +46,18 @@ def run(arguments: argparse.Namespace) -> int:
     InputError
         When something cannot be used or written, or the effect does not lower the held-out error.
     """
+    from werrimbi_odom.api.next_command import next_command
+    from werrimbi_odom.api.verbs import added, effects_of, refuse_unearned
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.inference.adding.adding import add_effects
-    from werrimbi_odom.report.adding.words import words_of
 
     given = read_recordings(arguments)
-    effects = _asked(arguments, given)
+    effects = effects_of(arguments.effect, given)
     with share_done("fitting") as show:
-        added = add_effects(
-            effects,
-            given.runs,
-            given.source.robot,
-            holdout=given.holdout,
-            **given.judging,
-            show=show,
-        )
-    if added.objection is not None and not arguments.force:
-        raise InputError(_refused(arguments, added))
-    print(words_of(added))
-    written = _write(arguments, given, added)
-    print(f"\nwritten: {', '.join(map(str, written))}")
+        result = added(given, effects, show)
+    if not arguments.force:
+        refuse_unearned(result.found, "--force writes")
+    print(result.summary())
+    tell_written(write_asked(arguments, result))
     print("Is more missing?")
-    print(next_command(["diagnose"], arguments, robot=arguments.out))
+    print(next_command(["diagnose"], given, robot=arguments.out))
     return 0
-
-
-def _asked(arguments: argparse.Namespace, given: Recordings) -> list[Effect]:
-    """The effects of A,B,C, each once."""
-    names = [name.strip() for name in arguments.effect.split(",")]
-    twice = next((name for name in names if names.count(name) > 1), None)
-    if twice:
-        raise InputError(f"{arguments.effect} names {twice} twice")
-    return [given.collection.find(name) for name in names]
-
-
-def _refused(arguments: argparse.Namespace, added: Added) -> str:
-    """What speaks against which effect, and what can be added without it."""
-    good = [effect.name for effect in added.effects if effect.name not in added.objections]
-    it = "it" if len(added.effects) == 1 else "them"
-    text = f"{added.objection}; nothing is written (--force writes {it} all the same"
-    if not good:
-        return f"{text})"
-    rest = ",".join(good)
-    return f"{text}, without {' and '.join(added.objections)}: werrimbi add {rest} ...)"
-
-
-def _write(arguments: argparse.Namespace, given: Recordings, added: Added) -> list[Path]:
-    """The robot file, then the JSON and the page that were asked for; returns what was written."""
-    from werrimbi_odom.files.robot_file import write_robot_file
-    from werrimbi_odom.report.adding.words import json_of
-
-    write_robot_file(
-        given.source,
-        added.changes,
-        arguments.out,
-        force=arguments.force,
-        effects=added.robot.effects,
-    )
-    written = [arguments.out]
-    if arguments.json is not None:
-        write_json(arguments.json, json_of(added))
-        written.append(arguments.json)
-    if arguments.report is not None:
-        from werrimbi_odom.cli.report_made import made_of
-        from werrimbi_odom.report.adding.page import write_adding_page
-
-        written += write_adding_page(added, arguments.report, made=made_of(arguments))
-    return written

@@ -6,13 +6,9 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.calibration_files import add_file_arguments, write_all
 from werrimbi_odom.cli.recordings import remark
-
-if TYPE_CHECKING:
-    pass
+from werrimbi_odom.cli.result_files import add_file_arguments, tell_written, write_asked
 
 COLUMNS = ("ex_m", "ey_m", "eyaw_rad")
 
@@ -66,5 +62,5 @@ def run(arguments: argparse.Namespace) -> int:
         reference_sigma_yaw=arguments.reference_sigma_yaw,
     )
     print(result.summary())
-    write_all(arguments, result)
+    tell_written(write_asked(arguments, result))
     return 0

@@ -6,13 +6,9 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.calibration_files import add_file_arguments, write_all
 from werrimbi_odom.cli.recordings import remark
-
-if TYPE_CHECKING:
-    pass
+from werrimbi_odom.cli.result_files import add_file_arguments, tell_written, write_asked
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -68,5 +64,5 @@ def run(arguments: argparse.Namespace) -> int:
             show=show,
         )
     print(result.summary())
-    write_all(arguments, result)
+    tell_written(write_asked(arguments, result))
     return 0

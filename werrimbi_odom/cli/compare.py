@@ -5,15 +5,9 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
-from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.json_file import write_json
-from werrimbi_odom.cli.next_command import next_command
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
-
-if TYPE_CHECKING:
-    from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.cli.result_files import tell_written, write_asked
 
 HELP = "model against measurement: where it fails, and whether its covariance is honest"
 
@@ -35,46 +29,12 @@ def run(arguments: argparse.Namespace) -> int:
     InputError
         When robot file or runs cannot be used, or a file cannot be written.
     """
+    from werrimbi_odom.api.verbs import compared
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.inference.comparison.compare import compare
-    from werrimbi_odom.report.comparison.tables import tables_of
-    from werrimbi_odom.report.comparison.words import words_of
 
     given = read_recordings(arguments)
     with share_done("comparing") as show:
-        comparison = compare(
-            given.runs,
-            given.source.robot,
-            **given.judging,
-            show=show,
-        )
-    words = words_of(comparison, next_step="`werrimbi diagnose`")
-    print(words)
-    if "`werrimbi diagnose`" in words:
-        print(next_command(["diagnose"], arguments))
-    print()
-    print(tables_of(comparison))
-    written = _write(arguments, comparison)
-    if written:
-        print(f"\nwritten: {', '.join(map(str, written))}")
+        result = compared(given, show)
+    print(result.summary())
+    tell_written(write_asked(arguments, result))
     return 0
-
-
-def _write(arguments: argparse.Namespace, comparison: Comparison) -> list[Path]:
-    """The JSON and the page that were asked for; returns what was written."""
-    from werrimbi_odom.report.comparison.as_json import json_of
-
-    written = []
-    if arguments.json is not None:
-        write_json(arguments.json, json_of(comparison))
-        written.append(arguments.json)
-    if arguments.report is not None:
-        from werrimbi_odom.cli.report_made import made_of
-        from werrimbi_odom.report.comparison.page import write_compare_page
-
-        written += write_compare_page(
-            comparison,
-            arguments.report,
-            made=made_of(arguments),
-        )
-    return written

@@ -5,19 +5,11 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.cli.diagnose_fleet import add_fleet_arguments, refuse_mixing, run_fleet
-from werrimbi_odom.cli.json_file import write_json
-from werrimbi_odom.cli.next_command import beside, next_command
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
+from werrimbi_odom.cli.result_files import tell_written, write_asked
 from werrimbi_odom.errors import InputError
-
-if TYPE_CHECKING:
-    from werrimbi_odom.report.diagnosis.told import Told
-    from werrimbi_odom.report.diagnosis.words import NextSteps
 
 HELP = "which physical effect is missing, how sure that is, and what to do about it"
 
@@ -47,21 +39,14 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.fleet is not None:
         return run_fleet(arguments)
     _ask_for_robot_and_runs(arguments)
+    from werrimbi_odom.api.verbs import diagnosed
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.report.diagnosis.as_json import json_of
-    from werrimbi_odom.report.diagnosis.tables import tables_of
-    from werrimbi_odom.report.diagnosis.told import told_of
-    from werrimbi_odom.report.diagnosis.words import words_of
 
     given = read_recordings(arguments)
     with share_done("diagnosing") as show:
-        told = told_of(given, show)
-    print(words_of(told, _steps(arguments)))
-    print()
-    print(tables_of(told.diagnosis, told.sights))
-    written = _write(arguments, told, json_of(told.diagnosis, told.manoeuvre, told.sights))
-    if written:
-        print(f"\nwritten: {', '.join(map(str, written))}")
+        result = diagnosed(given, show)
+    print(result.summary())
+    tell_written(write_asked(arguments, result))
     return 0
 
 
@@ -74,39 +59,3 @@ def _ask_for_robot_and_runs(arguments: argparse.Namespace) -> None:
             f"the following arguments are required: {', '.join(lacking)} (see werrimbi diagnose "
             "--help)"
         )
-
-
-def _steps(arguments: argparse.Namespace) -> NextSteps:
-    """The commands that follow, for the same files."""
-    from werrimbi_odom.report.diagnosis.words import NextSteps
-
-    better = beside(arguments.robot, "better")
-
-    def add(names: Sequence[str]) -> str:
-        return next_command(["add", ",".join(names)], arguments, out=better).strip()
-
-    return NextSteps(
-        add=add,
-        draft=next_command(["draft"], arguments, out="my_effect", holdout=False).strip(),
-        diagnose="werrimbi diagnose",
-    )
-
-
-def _write(arguments: argparse.Namespace, told: Told, figures: dict[str, Any]) -> list[Path]:
-    """The JSON and the page that were asked for; returns what was written."""
-    written = []
-    if arguments.json is not None:
-        write_json(arguments.json, figures)
-        written.append(arguments.json)
-    if arguments.report is not None:
-        from werrimbi_odom.cli.report_made import made_of
-        from werrimbi_odom.report.diagnosis.page import write_diagnosis_page
-
-        written += write_diagnosis_page(
-            told.diagnosis,
-            arguments.report,
-            told=told,
-            steps=_steps(arguments),
-            made=made_of(arguments),
-        )
-    return written

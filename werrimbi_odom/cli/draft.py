@@ -10,13 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.cli.json_file import write_json
-from werrimbi_odom.cli.next_command import beside, next_command
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
-from werrimbi_odom.errors import InputError
+from werrimbi_odom.cli.result_files import tell_written
 
 if TYPE_CHECKING:
-    from werrimbi_odom.inference.adding.drafting import Draft
-    from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+    from werrimbi_odom.files.asked import Recordings
 
 HELP = "where no known effect explains the errors: write one from what they depend on"
 
@@ -46,89 +44,38 @@ def run(arguments: argparse.Namespace) -> int:
     InputError
         When something cannot be used or written, or the verdict is not unknown.
     """
+    from werrimbi_odom.api.draft import drafted
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.inference.adding.adding import add_effect
-    from werrimbi_odom.inference.adding.draft_package import package_of
-    from werrimbi_odom.inference.adding.drafting import draft_effect
-    from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-    from werrimbi_odom.report.adding.draft_words import draft_json, draft_words
 
     given = read_recordings(arguments)
-    known = given.collection.effects
     with share_done("diagnosing") as show:
-        robot = given.source.robot
-        diagnosis = diagnose(
-            given.runs, robot, known, holdout=given.holdout, show=show, **given.judging
-        )
-        if diagnosis.verdict != "unknown" and not arguments.force:
-            raise InputError(_known(diagnosis, arguments))
-        draft = draft_effect(diagnosis, show)
-        files = package_of(draft)
-        tried = add_effect(
-            draft.effect,
-            given.runs,
-            diagnosis.robot,
-            given=robot,
-            holdout=given.holdout,
-            show=show,
-            **given.judging,
-        )
-    _write(arguments.out, files)
-    print(draft_words(draft, tried))
-    print()
-    print(draft.source.partition("\n\n\n")[2].rstrip())
-    print(f"\nwritten: {', '.join(str(arguments.out / name) for name in files)}")
+        result = drafted(given, "" if arguments.force else "--force drafts", show)
+    files = result.write_package(arguments.out)
+    print(result.summary())
+    written = list(files)
     if arguments.json is not None:
-        written = [str(arguments.out / name) for name in files]
-        write_json(arguments.json, draft_json(draft, tried, written))
-        print(f"         {arguments.json}")
+        figures = result.to_dict()
+        figures["draft"]["files"] = list(map(str, files))
+        write_json(arguments.json, figures)
+        written.append(arguments.json)
     if arguments.report is not None:
         from werrimbi_odom.cli.report_made import made_of
-        from werrimbi_odom.report.adding.page import write_adding_page
 
-        pages = write_adding_page(tried, arguments.report, made=made_of(arguments))
-        print(f"         {', '.join(map(str, pages))}")
-    print(_next(arguments, draft))
+        written += result.write_report(arguments.report, made_of(arguments))
+    tell_written(written)
+    print(_next(arguments.out, given, result.found.name))
     return 0
 
 
-def _known(diagnosis: Diagnosis, arguments: argparse.Namespace) -> str:
-    """Why nothing is drafted, and what to do instead."""
-    force = "; --force drafts the strongest dependence all the same"
-    if diagnosis.verdict == "none":
-        return f"the verdict is none: the model explains these drives to their noise{force}"
-    if diagnosis.verdict == "ambiguous":
-        names = ", ".join(diagnosis.rivals)
-        return f"the verdict is ambiguous between effects of the library ({names}){force}"
-    better = beside(arguments.robot, "better")
-    names = ",".join(diagnosis.found)
-    add = next_command(["add", names], arguments, out=better, one_line=True)
-    return (
-        f"the verdict is named: {names}, which the library holds; add it, and draft "
-        f"with the new robot file what then remains: {add}"
-        f"{force}"
-    )
-
-
-def _write(folder: Path, files: dict[str, str]) -> None:
-    from werrimbi_odom.files.replacing import replacing
-
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        raise InputError(f"{folder} cannot be made: {error.strerror}") from error
-    for name, text in files.items():
-        with replacing(folder / name) as file:
-            file.write(text)
-
-
-def _next(arguments: argparse.Namespace, draft: Draft) -> str:
+def _next(folder: Path, given: Recordings, name: str) -> str:
     """The commands that try it, and that install it."""
-    file = arguments.out / f"{draft.name}.py"
-    explain = shlex.join(["werrimbi", "explain", draft.name, "--effects", str(file)])
-    new = beside(arguments.robot, "new")
-    add = next_command(["add", draft.name], arguments, effects=[file], out=new)
+    from werrimbi_odom.api.next_command import beside, next_command
+
+    file = folder / f"{name}.py"
+    explain = shlex.join(["werrimbi", "explain", name, "--effects", str(file)])
+    new = beside(given.source.path, "new")
+    add = next_command(["add", name], given, effects=[file], out=new)
     return (
         f"\nRead it:\n    {explain}\nTry it:\n{add}\nInstall it, and robot files and the node "
-        f"know its name:\n    {shlex.join(['pip', 'install', str(arguments.out)])}"
+        f"know its name:\n    {shlex.join(['pip', 'install', str(folder)])}"
     )

@@ -19,7 +19,7 @@ def write_json(path: Path, figures: Mapping[str, Any]) -> None:
         When the file cannot be written.
     """
     from werrimbi_odom.files.replacing import replacing
-    from werrimbi_odom.report.plain import plain
+    from werrimbi_odom.report.numbers import plain
 
     with replacing(path) as file:
         json.dump(plain(figures), file, indent=2, allow_nan=False)

@@ -115,13 +115,11 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
         When something cannot be used, or a run is given twice.
     """
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.files.asked import Asked, read, refuse_twice
+    from werrimbi_odom.files.asked import Asked, read
     from werrimbi_odom.files.judgeable import words_about
 
     holdout = tuple(getattr(arguments, "holdout", None) or ())
     asked = Asked(arguments.robot, tuple(arguments.runs), holdout, how_of(arguments))
-    paths = [*asked.runs, *asked.holdout]
-    refuse_twice(paths)
     collection = read_effects(arguments)
     with share_done("reading") as show:
         found = read(asked, collection, show)

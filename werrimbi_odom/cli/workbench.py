@@ -52,8 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     InputError
         When something cannot be used, or the port is taken.
     """
-    from werrimbi_odom.workbench.job import Job
-    from werrimbi_odom.workbench.tasks import Open
+    from werrimbi_odom.workbench.job import Job, Open
 
     job = Job(Open())
     job.start()  # before all else, so that it imports while the drives are read
@@ -86,25 +85,12 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _opening(job: Job, arguments: argparse.Namespace, given: Recordings) -> Opening:
     """What is to be opened and compared once, for all who look."""
-    from werrimbi_odom.workbench.opened import Given
     from werrimbi_odom.workbench.opening import Opening
     from werrimbi_odom.workbench.saving import Target, beside
 
     out = arguments.out or beside(Path(arguments.robot))
     target = Target(out, arguments.force and arguments.out is not None)
-    return Opening(
-        job,
-        Given(
-            given.source.robot,
-            given.runs,
-            given.holdout,
-            given.judging,
-            tuple(arguments.effects),
-        ),
-        given.source,
-        given.collection,
-        target,
-    )
+    return Opening(job, given, target)
 
 
 def _tell(path: Path, address: str, shared: Shared) -> None:

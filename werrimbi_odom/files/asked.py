@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypedDict
@@ -19,6 +19,7 @@ from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.files.run_folder import TICKS
 from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.robot import Robot
 
 BAG = "metadata.yaml"
 _NAMED = 8  # runs of a folder that are named before "..."
@@ -75,6 +76,13 @@ class Recordings:
     holdout: tuple[Run, ...]
     """Runs to judge on alone; empty where none were given."""
     how: How
+    fitted: Robot | None = None
+    """The robot to judge, where it is another one than the file's: more was fitted since."""
+
+    @property
+    def robot(self) -> Robot:
+        """The robot to judge."""
+        return self.fitted or self.source.robot
 
     @property
     def judging(self) -> Judging:
@@ -108,18 +116,43 @@ def read(
     InputError
         When something cannot be used.
     """
-    how = asked.how
     source = read_robot_file(asked.robot, effects=collection)
-    paths = [*asked.runs, *asked.holdout]
-    found = []
-    for number, path in enumerate(paths):
-        show(number / len(paths), f"reading {path.name}")
-        found.append(_run(path, source, how))
-    count = len(asked.runs)
+    return gathered(source, collection, asked.runs, asked.holdout, asked.how, show)
+
+
+def gathered(
+    source: RobotFile,
+    collection: Collection,
+    runs: Sequence[Run | Path],
+    holdout: Sequence[Run | Path],
+    how: How,
+    show: Callable[[float, str], None] = lambda share, words: None,
+) -> Recordings:
+    """Drives of a robot, those that are paths read.
+
+    Raises
+    ------
+    InputError
+        When something cannot be used, or a drive is given twice.
+    """
+    drives = [*runs, *holdout]
+    refuse_twice(drive for drive in drives if isinstance(drive, Path))
+    found: list[Run] = []
+    for number, drive in enumerate(drives):
+        if isinstance(drive, Run):
+            run = drive
+            if any(run is other for other in drives[:number]):
+                raise InputError(f"{run.path} is given twice; a drive counts once")
+        else:
+            show(number / len(drives), f"reading {drive.name}")
+            run = _read(drive, source, how)
+        refuse_unjudgeable(run)
+        found.append(without_held_poses(run, source.robot) if how.kind == "absolute" else run)
+    count = len(runs)
     return Recordings(source, collection, tuple(found[:count]), tuple(found[count:]), how)
 
 
-def _run(path: Path, source: RobotFile, how: How) -> Run:
+def _read(path: Path, source: RobotFile, how: How) -> Run:
     if path.is_dir() and not any((path / name).exists() for name in (TICKS, BAG)):
         within = sorted(
             {found.parent.name for name in (TICKS, BAG) for found in path.glob(f"*/{name}")}
@@ -130,9 +163,7 @@ def _run(path: Path, source: RobotFile, how: How) -> Run:
                 f"{path} is no run but a folder of {len(within)} "
                 f"({', '.join(within[:_NAMED])}{more}); give each of them: {path}/*"
             )
-    run = read_run(path, source, ticks_topic=how.ticks_topic, reference_topic=how.reference_topic)
-    refuse_unjudgeable(run)
-    return without_held_poses(run, source.robot) if how.kind == "absolute" else run
+    return read_run(path, source, ticks_topic=how.ticks_topic, reference_topic=how.reference_topic)
 
 
 def refuse_twice(paths: Iterable[Path]) -> None:

@@ -4,17 +4,15 @@
 
 from __future__ import annotations
 
-import json
 import traceback
 from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 
+from werrimbi_odom.api.verbs import diagnosed
 from werrimbi_odom.effects.collection import all_effects
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.asked import Asked, read
-from werrimbi_odom.report.diagnosis.as_json import json_of
-from werrimbi_odom.report.diagnosis.told import told_of
 from werrimbi_odom.report.fleet.rows import Row
 
 _ONE_AT_A_TIME = Lock()
@@ -40,9 +38,7 @@ def row_of(task: Task) -> Row:
 
         with _ONE_AT_A_TIME, threadpool_limits(1):
             asked = task.asked
-            told = told_of(read(asked, all_effects(asked.how.effects)))
-            figures = json_of(told.diagnosis, told.manoeuvre, told.sights)
-        figures = json.loads(json.dumps(figures))  # lists and floats alone, whoever works it out
+            figures = diagnosed(read(asked, all_effects(asked.how.effects))).to_dict()
         return Row(task.name, _drives(task), figures)
     except MemoryError:
         return failed(task, "this needs more memory than there is; cut the runs into several")

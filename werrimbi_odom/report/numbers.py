@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Numbers in words and tables."""
+"""Numbers in words, in tables, and as JSON has them."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 
 def length(value: float) -> str:
@@ -105,3 +106,19 @@ def p_words(p_value: float | None) -> str:
 def listed(words: Sequence[str], last: str = "and") -> str:
     """a, b and c."""
     return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}"
+
+
+def plain(value: Any) -> Any:
+    """Values that JSON has; null for what is not finite."""
+    if isinstance(value, Mapping):
+        return {key: plain(part) for key, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [plain(part) for part in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value
+
+
+def counted(number: int, word: str) -> str:
+    """1 leg, 2 legs."""
+    return f"{number} {word}{'' if number == 1 else 's'}"

@@ -18,17 +18,28 @@ from typing import TYPE_CHECKING
 
 from werrimbi_odom.files.replacing import replacing
 from werrimbi_odom.files.text import readable
-from werrimbi_odom.report.drawing_program import drawing_program
-from werrimbi_odom.report.page_text import paragraphs, tables
 from werrimbi_odom.report.style import IN_THE_DARK
+from werrimbi_odom.report.text import paragraphs, tables
 
 if TYPE_CHECKING:
+    from importlib.resources.abc import Traversable
+
     import plotly.graph_objects as go
+
+
+def drawing_program() -> Traversable:
+    """Where it is; 1.5 MB of JavaScript."""
+    return files("werrimbi_odom.report") / "plotly_js" / "plotly-cartesian.min.js"
+
 
 _POLICY = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; "
     "img-src data: blob:; font-src data:; form-action 'none'; base-uri 'none'"
 )
+
+
+NOTHING_SAID: Mapping[str, str] = {}
+"""Of how a page was made."""
 
 
 @dataclass(frozen=True)

@@ -4,8 +4,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,15 +74,8 @@ def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> go.Figure:
     magnified = drawing.magnified or magnification(drawing)
     name = "95 % ellipse" if magnified == 1.0 else f"95 % ellipse, drawn {magnified:g} × larger"
     if drawing.reference_x is not None and drawing.reference_y is not None:
-        figure.add_scatter(
-            x=drawing.reference_x,
-            y=drawing.reference_y,
-            mode="lines",
-            name="measured",
-            line={"color": GREY, "width": 5},
-            opacity=0.55,
-            hovertemplate="measured<br>x %{x:.3f} m<br>y %{y:.3f} m<extra></extra>",
-        )
+        look = {"color": GREY, "width": 5}
+        add_path(figure, drawing.reference_x, drawing.reference_y, "measured", look, opacity=0.55)
     for order, index in enumerate(spread_along_path(drawing.x, drawing.y, ellipses)):
         outline_x, outline_y = ellipse(
             float(drawing.x[index]),
@@ -101,32 +95,48 @@ def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> go.Figure:
             showlegend=order == 0,
             hoverinfo="skip",
         )
-    figure.add_scatter(
-        x=drawing.x,
-        y=drawing.y,
-        mode="lines",
-        name="odometry",
-        line={"color": BLUE, "width": 2},
-        hovertemplate="odometry<br>x %{x:.3f} m<br>y %{y:.3f} m<extra></extra>",
-    )
-    _mark(figure, drawing.x[0], drawing.y[0], "start", "circle", GREEN)
-    _mark(figure, drawing.x[-1], drawing.y[-1], "end", "square", BLUE)
+    add_path(figure, drawing.x, drawing.y, "odometry", {"color": BLUE, "width": 2})
+    marks = [
+        (complex(drawing.x[0], drawing.y[0]), "start", "circle", GREEN),
+        (complex(drawing.x[-1], drawing.y[-1]), "end", "square", BLUE),
+    ]
     if drawing.reference_x is not None and drawing.reference_y is not None:
-        last_x, last_y = _last_known(drawing.reference_x, drawing.reference_y)
-        _mark(figure, last_x, last_y, "measured end", "x", "black")
+        last = complex(*_last_known(drawing.reference_x, drawing.reference_y))
+        marks.append((last, "measured end", "x", "black"))
+    for at, mark, symbol, colour in marks:
+        look = {"symbol": symbol, "size": 11, "color": colour, "line": {"width": 1}}
+        add_mark(figure, at, mark, look)
     figure.update_xaxes(title="x [m]", zeroline=False)
     figure.update_yaxes(title="y [m]", zeroline=False)
     return styled(figure, drawing.title, drawing.subtitle, width=1000, height=860)
 
 
-def _mark(figure: go.Figure, x: float, y: float, name: str, symbol: str, colour: str) -> None:
+_PLACE = "<br>x %{x:.3f} m<br>y %{y:.3f} m<extra></extra>"
+
+
+def add_path(
+    figure: go.Figure,
+    x: NDArray[Any],
+    y: NDArray[Any],
+    name: str,
+    line: Mapping[str, Any],
+    *,
+    said: str = "",
+    **more: object,
+) -> None:
+    """A way over the floor; under the pointer it says what it is and where."""
     figure.add_scatter(
-        x=[x],
-        y=[y],
-        mode="markers",
-        name=name,
-        marker={"symbol": symbol, "size": 11, "color": colour, "line": {"width": 1}},
-        hovertemplate=f"{name}<br>x %{{x:.3f}} m<br>y %{{y:.3f}} m<extra></extra>",
+        x=x, y=y, mode="lines", name=name, line=line, hovertemplate=(said or name) + _PLACE, **more
+    )
+
+
+def add_mark(
+    figure: go.Figure, at: complex, name: str, marker: Mapping[str, Any], **more: object
+) -> None:
+    """One place (x + iy) on it: a start, an end."""
+    x, y = [float(at.real)], [float(at.imag)]
+    figure.add_scatter(
+        x=x, y=y, mode="markers", name=name, marker=marker, hovertemplate=name + _PLACE, **more
     )
 
 

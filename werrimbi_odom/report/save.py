@@ -13,8 +13,7 @@ from typing import TYPE_CHECKING
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.replacing import replacing
-from werrimbi_odom.report.drawing_program import drawing_program
-from werrimbi_odom.report.page import Page, write_page
+from werrimbi_odom.report.page import Page, drawing_program, write_page
 from werrimbi_odom.report.style import KEPT_HERE
 
 if TYPE_CHECKING:

@@ -1,11 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""How all figures look: colours that the colour-blind tell apart, a heading, a legend below."""
+"""How all figures look: colours that the colour-blind tell apart, a legend, and how many points.
+
+Fewer points are drawn, never fewer counted: what is left out is not seen at any usual size.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -39,6 +45,15 @@ RISING = (
 )
 """From little to much: even steps of lightness, so that it stays a scale in grey; yellow to violet
 is told apart with any kind of colour blindness. Pages turn it round in the dark."""
+
+
+def coloured(figure: go.Figure, most: float, title: str, **bar: object) -> go.Figure:
+    """Colours from nothing to most, with a bar beside the figure that says what they mean."""
+    bar = {"title": {"text": title}, "thickness": 14, **bar}
+    scale = [list(stop) for stop in RISING]
+    return figure.update_layout(
+        coloraxis={"colorscale": scale, "cmin": 0.0, "cmax": most, "colorbar": bar}
+    )
 
 
 def paled(colour: str, share: float) -> str:
@@ -90,3 +105,44 @@ def plain(figure: go.Figure, *, height: int, legend: bool = True) -> go.Figure:
 def escaped(text: str) -> str:
     """A name from a record, safe in a figure's texts, which know some HTML."""
     return text.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;")
+
+
+MOST = 4000
+"""Points of a figure's lines, about."""
+
+MARKS = 1000
+"""Marks of a picture, at the most: each is an element of the page, dear where a point is cheap."""
+
+FEWEST = 20
+"""Points of one line of very many, so that it still has a shape."""
+
+
+def along_path(places: NDArray[np.complex128], most: int = MOST) -> NDArray[np.intp]:
+    """Indices of points of a path (x + iy) at about equal distances; ends and gaps are kept.
+
+    A robot that stands still fills a record with one point; equal times would waste them there.
+    """
+    if places.size <= most:
+        return np.arange(places.size)
+    step = np.abs(np.diff(places))
+    length = np.concatenate([[0.0], np.cumsum(np.nan_to_num(step))])
+    wanted = np.linspace(0.0, length[-1], most)
+    gaps = np.flatnonzero(~np.isfinite(places))
+    edges = gaps[np.concatenate([[True], np.diff(gaps) > 1])] if gaps.size else gaps
+    kept = np.concatenate([[0], np.searchsorted(length, wanted), edges, [places.size - 1]])
+    return np.unique(np.minimum(kept, places.size - 1)).astype(np.intp)
+
+
+def spread_and_extremes(values: NDArray[np.float64], most: int = MARKS) -> NDArray[np.intp]:
+    """Indices of rows to draw as points: the largest of them in size, and of the rest every few."""
+    if values.size <= most:
+        return np.arange(values.size)
+    size = np.nan_to_num(np.abs(values))
+    largest = np.argpartition(size, -most // 4)[-most // 4 :]
+    every = np.linspace(0, values.size - 1, most - largest.size).round().astype(np.intp)
+    return np.unique(np.concatenate([largest, every])).astype(np.intp)
+
+
+def small(values: NDArray[np.float64]) -> NDArray[np.float32]:
+    """As it is drawn: seven digits are more than a screen has, in half the bytes."""
+    return np.asarray(values, dtype=np.float32)

@@ -13,9 +13,9 @@ from typing import Any
 from nicegui import app, ui
 from nicegui.element import Element
 
-from werrimbi_odom.report.drawing_program import drawing_program
+from werrimbi_odom.report.page import drawing_program
+from werrimbi_odom.workbench.drawings import shown
 from werrimbi_odom.workbench.html import box
-from werrimbi_odom.workbench.theme import shown
 
 _DRAWING = "/plotly.min.js"
 

@@ -18,12 +18,41 @@ from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.workbench.begin import begin
-from werrimbi_odom.workbench.tasks import Task
 
 if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
-    from werrimbi_odom.workbench.opened import Given
+    from werrimbi_odom.files.asked import Recordings
+    from werrimbi_odom.model.robot import Robot
+
+
+@dataclass(frozen=True)
+class Diagnose:
+    """Find out what a robot's model is missing."""
+
+    robot: Robot
+
+
+@dataclass(frozen=True)
+class Add:
+    """Fit more effects together, and compare."""
+
+    effects: tuple[str, ...]
+    robot: Robot
+
+
+@dataclass(frozen=True)
+class Open:
+    """Cut the drives into legs, and compare the robot as given."""
+
+
+Task = Diagnose | Add | Open
+
+
+def begin(asked: Connection) -> None:
+    """See `work.work`."""
+    from werrimbi_odom.workbench.work import work
+
+    work(asked)
 
 
 class CancelledError(Exception):
@@ -50,7 +79,7 @@ class Job:
         if self._process is not None:
             self._process.kill()
 
-    async def result(self, given: Given, known: Mapping[str, Any], collection: Collection) -> Any:
+    async def result(self, given: Recordings, known: Mapping[str, Any]) -> Any:
         """Do the work; the event loop goes on meanwhile.
 
         Parameters
@@ -68,7 +97,7 @@ class Job:
         import asyncio
 
         try:
-            return await asyncio.to_thread(self._run, given, known, collection)
+            return await asyncio.to_thread(self._run, given, known)
         finally:
             self.cancel()
 
@@ -92,26 +121,26 @@ class Job:
             process.kill()
         other.close()  # ours; so that its end is seen when the worker ends
 
-    def ask(self, given: Given) -> None:
+    def ask(self, given: Recordings) -> None:
         """Say what is to be done, to a process that was started."""
-        from werrimbi_odom.workbench.crossing import packed
+        from werrimbi_odom.workbench.work import packed
 
         data = packed((self.task, given), {})
         # It may still be importing, and a pipe holds little until it reads.
-        Thread(target=self._send, args=(given.effect_files, data), daemon=True).start()
+        Thread(target=self._send, args=(given.how.effects, data), daemon=True).start()
 
     def _send(self, files: tuple[Path, ...], data: bytes) -> None:
         with suppress(OSError):  # it was stopped; whoever waits for the result is told
             self._pipe.send(files)
             self._pipe.send_bytes(data)
 
-    def _run(self, given: Given, known: Mapping[str, Any], collection: Collection) -> Any:
+    def _run(self, given: Recordings, known: Mapping[str, Any]) -> Any:
         if self._process is None:
             self.start()
             self.ask(given)
         process, receiving = self._process, self._pipe
         try:
-            result = self._received(receiving, known, collection)
+            result = self._received(receiving, known, given.collection)
             process.kill()  # it has nothing left to do, and would take its time to end
             return result
         except (EOFError, OSError):  # what it had not read yet makes it a reset, not an end
@@ -128,7 +157,7 @@ class Job:
     def _received(
         self, receiving: Connection, known: Mapping[str, Any], collection: Collection
     ) -> Any:
-        from werrimbi_odom.workbench.crossing import unpacked
+        from werrimbi_odom.workbench.work import unpacked
 
         while True:
             what, value, words = receiving.recv()

@@ -5,12 +5,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from pathlib import Path
+from dataclasses import dataclass, replace
 
-from werrimbi_odom.files.asked import Judging
-from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.comparison.compare import Comparison, judged
+from werrimbi_odom.api.verbs import compared
+from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.judged_legs import Prepared
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.holdout import judge_of
@@ -18,28 +17,6 @@ from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.model.robot import Robot
 
 Show = Callable[[float, str], None]
-
-
-@dataclass(frozen=True, eq=False)
-class Given:
-    """What was given: enough to open it again in another process, to the same legs."""
-
-    robot: Robot
-    runs: tuple[Run, ...]
-    holdout: tuple[Run, ...]
-    judging: Judging
-    effect_files: tuple[Path, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Drives:
-    """Drives cut into legs, by the travel of the robot as given."""
-
-    prepared: Prepared
-
-    def compared(self, robot: Robot, show: Show = lambda share, words: None) -> Comparison:
-        """How a robot does on these drives."""
-        return judged(self.prepared, robot, show=show)
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,21 +45,26 @@ class Look:
 class Opened:
     """Drives to learn from, drives to judge on, and how they are to be read."""
 
-    given: Given
-    train: Drives
-    holdout: Drives
+    given: Recordings
+    """As they were given: enough to open them again in another process, to the same legs."""
+    train: Prepared
+    """Cut into legs by the travel of the robot as given."""
+    holdout: Prepared
     judged_on: tuple[str, ...]
     """Names of the held-out drives, given or put aside."""
 
     def look(self, robot: Robot, show: Show = lambda share, words: None) -> Look:
         """Compare a robot on all drives."""
-        train = self.train.compared(robot, lambda share, words: show(0.6 * share, words))
+        given = replace(self.given, fitted=robot)
+        train = compared(given, lambda share, words: show(0.6 * share, words), over=self.train)
         show(0.6, "held-out drives")
-        holdout = self.holdout.compared(robot)
-        return Look(robot, train, holdout, verdict_of(train), verdict_of(holdout))
+        holdout = compared(given, over=self.holdout)
+        return Look(
+            robot, train.found, holdout.found, verdict_of(train.found), verdict_of(holdout.found)
+        )
 
 
-def opened(given: Given) -> Opened:
+def opened(given: Recordings) -> Opened:
     """Match and cut everything.
 
     Raises
@@ -90,12 +72,15 @@ def opened(given: Given) -> Opened:
     InputError
         When a run has no usable reference or no ticks.
     """
-    robot, judging = given.robot, given.judging
-    runs, holdout = (given.runs, given.holdout) if given.holdout else set_aside(given.runs)
-    judge = judge_of(runs, holdout, robot, **judging)
-    return Opened(
-        given,
-        Drives(judge.train),
-        Drives(judge.holdout),
-        tuple(run.name for run in judge.kept_back),
-    )
+    both = split(given)
+    judge = judge_of(both.runs, both.holdout, given.robot, **given.judging)
+    names = tuple(run.name for run in judge.kept_back)
+    return Opened(given, judge.train, judge.holdout, names)
+
+
+def split(given: Recordings) -> Recordings:
+    """With runs to judge on: those given, or parts of all runs put aside."""
+    if given.holdout:
+        return given
+    runs, holdout = set_aside(given.runs)
+    return replace(given, runs=runs, holdout=holdout)

@@ -12,10 +12,8 @@ from __future__ import annotations
 import asyncio
 from typing import Any
 
-from werrimbi_odom.effects.collection import Collection
-from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.asked import Recordings
 from werrimbi_odom.workbench.job import Job
-from werrimbi_odom.workbench.opened import Given
 from werrimbi_odom.workbench.saving import Target
 from werrimbi_odom.workbench.tab import Shared
 from werrimbi_odom.workbench.work import NOT_SENT, known_before
@@ -28,7 +26,7 @@ class Opening:
     ----------
     job : Job
         A process that was started, for an `Open`; it is asked at once.
-    given : Given
+    given : Recordings
         What was read.
     target : Target
         Where files may be written.
@@ -39,12 +37,10 @@ class Opening:
         Why it did not work.
     """
 
-    def __init__(
-        self, job: Job, given: Given, source: RobotFile, collection: Collection, target: Target
-    ) -> None:
-        self.job, self.given, self.source = job, given, source
+    def __init__(self, job: Job, given: Recordings, target: Target) -> None:
+        self.job, self.given = job, given
         self.trouble: BaseException | None = None
-        self._collection, self._target = collection, target
+        self._target = target
         self._task: asyncio.Task[Shared] | None = None
         job.ask(given)
 
@@ -70,9 +66,9 @@ class Opening:
     async def _finished(self) -> Shared:
         try:
             known = {**known_before(self.given), **NOT_SENT}
-            made: Any = await self.job.result(self.given, known, self._collection)
+            made: Any = await self.job.result(self.given, known)
         except BaseException as error:
             self.trouble = error
             raise
         opened, look = made
-        return Shared(opened, look, self.source, self._collection, self._target)
+        return Shared(opened, look, self.given.source, self.given.collection, self._target)

@@ -11,8 +11,8 @@ from typing import Any
 from nicegui import Client, app, ui
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.workbench.drawings import empty_floor
 from werrimbi_odom.workbench.figure import ask_for_drawing
-from werrimbi_odom.workbench.floor import empty_floor
 from werrimbi_odom.workbench.html import box, button, listen, text
 from werrimbi_odom.workbench.opening import Opening
 from werrimbi_odom.workbench.tab import Shared, Tab, new_tab
@@ -58,7 +58,7 @@ async def page(opening: Opening) -> None:
     ask_for_drawing(at_once=opening.shared is not None)
     ui.add_css(STYLE.read_text(encoding="utf-8"))
     ui.add_head_html(FOCUS)
-    ui.page_title(f"{opening.source.path.name} · werrimbi workbench")
+    ui.page_title(f"{opening.given.source.path.name} · werrimbi workbench")
     client, theme = ui.context.client, ui.dark_mode(None)  # as the system has it, until known
     first = box("div")
     with first:
@@ -133,7 +133,7 @@ def _work(shared: Shared, kept: Any, dark: bool, theme: Any) -> None:
 
 def _head(tab: Tab, turn_theme: object) -> None:
     shared = tab.shared
-    fitted, held = shared.opened.train.prepared.runs, shared.opened.holdout.prepared.runs
+    fitted, held = shared.opened.train.runs, shared.opened.holdout.runs
     with box("div", "title"):
         text("h1", "werrimbi workbench")
         text(

@@ -13,8 +13,7 @@ from pathlib import Path
 
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
-from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
+from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.workbench.opened import Look
 
 GONE = -1
@@ -23,14 +22,17 @@ GONE = -1
 
 @dataclass(frozen=True, eq=False)
 class Diagnosed:
-    """What is missing, what to drive next, and what these drives could have shown."""
+    """What is missing, what to drive next, what these drives could have shown, and its figures."""
 
-    diagnosis: Diagnosis
-    manoeuvre: Manoeuvre | None
-    sights: tuple[DetectionLimit, ...]
+    told: Told
     figures: Mapping[str, str]
     """Plotly figures as JSON: response (before and after along the effect's variable), set_up,
     manoeuvre; only those that there are."""
+
+    @property
+    def diagnosis(self) -> Diagnosis:
+        """What is missing."""
+        return self.told.diagnosis
 
 
 @dataclass(frozen=True, eq=False)

@@ -4,27 +4,23 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.effects.collection import Collection
-from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.adding.adding import add_effects
-from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.diagnosis.splitting import set_aside
-from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
+from dataclasses import replace
+
+from werrimbi_odom.api.verbs import added as added_by
+from werrimbi_odom.api.verbs import diagnosed as diagnosis_of
+from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.inference.diagnosis.response import before_after
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
-from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, next_manoeuvre
-from werrimbi_odom.report.diagnosis.figures import (
-    before_after,
-    before_after_figure,
-    ideal_of,
-    manoeuvre_figure,
-    set_up_figure,
-)
-from werrimbi_odom.workbench.opened import Given, Opened, Show
+from werrimbi_odom.inference.manoeuvres.told import Told
+from werrimbi_odom.report.diagnosis.figures import set_up_figure
+from werrimbi_odom.report.diagnosis.manoeuvre_figure import ideal_of, manoeuvre_figure
+from werrimbi_odom.report.over_variable import before_after_figure
+from werrimbi_odom.workbench.job import Add, Diagnose
+from werrimbi_odom.workbench.opened import Opened, Show, split
 from werrimbi_odom.workbench.steps import Diagnosed, Step
-from werrimbi_odom.workbench.tasks import Add, Diagnose
 
 
-def diagnosed(task: Diagnose, given: Given, collection: Collection, show: Show) -> Diagnosed:
+def diagnosed(task: Diagnose, given: Recordings, show: Show) -> Diagnosed:
     """Diagnose, on the very drives that the page judges on.
 
     Raises
@@ -32,17 +28,13 @@ def diagnosed(task: Diagnose, given: Given, collection: Collection, show: Show) 
     InputError
         When the drives do not allow it; the message says why.
     """
-    effects = collection.effects
-    runs, holdout = _split(given)
-    found = diagnose(runs, task.robot, effects, holdout=holdout, show=show, **given.judging)
-    show(0.97, "the next step")
-    manoeuvre = next_manoeuvre(found)
-    sights = tuple(detection_limits(found, effects))
+    told = diagnosis_of(split(replace(given, fitted=task.robot)), show).found
     show(0.99, "figures")
-    return Diagnosed(found, manoeuvre, sights, _figures(found, manoeuvre))
+    return Diagnosed(replace(told, held_out=bool(given.holdout)), _figures(told))
 
 
-def _figures(found: Diagnosis, manoeuvre: Manoeuvre | None) -> dict[str, str]:
+def _figures(told: Told) -> dict[str, str]:
+    found, manoeuvre = told.diagnosis, told.manoeuvre
     figures = {}
     if found.set_up.findings:
         figures["set_up"] = set_up_figure(found)
@@ -56,7 +48,7 @@ def _figures(found: Diagnosis, manoeuvre: Manoeuvre | None) -> dict[str, str]:
     return {name: str(figure.to_json()) for name, figure in figures.items()}
 
 
-def added(task: Add, opened: Opened, collection: Collection, show: Show) -> Step:
+def added(task: Add, opened: Opened, show: Show) -> Step:
     """Fit, and compare over the same legs as before.
 
     Raises
@@ -64,19 +56,8 @@ def added(task: Add, opened: Opened, collection: Collection, show: Show) -> Step
     InputError
         When the drives do not allow it; the message says why.
     """
-    runs, holdout = _split(opened.given)
-    fitted = add_effects(
-        [collection.find(name) for name in task.effects],
-        runs,
-        task.robot,
-        holdout=holdout,
-        show=lambda share, words: show(0.8 * share, words),
-        **opened.given.judging,
-    )
+    given = split(replace(opened.given, fitted=task.robot))
+    effects = [given.collection.find(name) for name in task.effects]
+    fitted = added_by(given, effects, lambda share, words: show(0.8 * share, words)).found
     show(0.8, "comparing")
     return Step(opened.look(fitted.robot), fitted)
-
-
-def _split(given: Given) -> tuple[tuple[Run, ...], tuple[Run, ...]]:
-    """Runs to learn from, and runs to judge on."""
-    return (given.runs, given.holdout) if given.holdout else set_aside(given.runs)

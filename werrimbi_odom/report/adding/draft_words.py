@@ -4,14 +4,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.drafting import Draft
 from werrimbi_odom.report.adding.words import json_of
 from werrimbi_odom.report.numbers import error_words
-from werrimbi_odom.report.printed import filled
+from werrimbi_odom.report.text import filled
 
 
 def draft_words(draft: Draft, tried: Added) -> str:
@@ -30,7 +29,7 @@ def draft_words(draft: Draft, tried: Added) -> str:
     return filled(text)
 
 
-def draft_json(draft: Draft, tried: Added, files: Sequence[str]) -> dict[str, Any]:
+def draft_json(draft: Draft, tried: Added) -> dict[str, Any]:
     """The figures of `add` for the draft, and what it was made of."""
     cell = draft.dependence
     return {
@@ -42,7 +41,6 @@ def draft_json(draft: Draft, tried: Added, files: Sequence[str]) -> dict[str, An
             "variable": cell.name,
             "p_value": cell.p_value,
             "form": draft.form,
-            "files": list(files),
             "tried": [
                 {"effect": name, "form": form, "cost_beyond_best": cost}
                 for name, form, cost in draft.tried

@@ -11,8 +11,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from werrimbi_odom.inference.adding.added import Added
-from werrimbi_odom.report.decimate import MARKS, small, spread_and_extremes
-from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, PAPER, escaped, paled, plain
+from werrimbi_odom.report.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    MARKS,
+    ORANGE,
+    PAPER,
+    escaped,
+    paled,
+    plain,
+    small,
+    spread_and_extremes,
+)
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

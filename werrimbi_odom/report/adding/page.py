@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.report.adding.figures import (
@@ -17,27 +16,11 @@ from werrimbi_odom.report.adding.words import words_of
 from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure
 from werrimbi_odom.report.diagnosis.page import effect_card
 from werrimbi_odom.report.numbers import listed
-from werrimbi_odom.report.page import Page, Shown
-from werrimbi_odom.report.save import save_report
+from werrimbi_odom.report.page import NOTHING_SAID, Page, Shown
 
 
-def write_adding_page(
-    added: Added, path: Path, *, made: Mapping[str, str] | None = None
-) -> list[Path]:
-    """Write the report; returns the files, of which there are several where they are pictures.
-
-    Parameters
-    ----------
-    path
-        .html for a page, .pdf or .png for the main figures alone.
-    made
-        How it was made: command, files, options.
-    """
-    return save_report(adding_page(added, made or {}), path)
-
-
-def adding_page(added: Added, made: Mapping[str, str]) -> Page:
-    """The report as a page."""
+def adding_page(added: Added, made: Mapping[str, str] = NOTHING_SAID) -> Page:
+    """The report as a page; `made`: command, files, options."""
     shown = [
         Shown(
             "falling",

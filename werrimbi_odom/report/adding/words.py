@@ -11,10 +11,9 @@ from typing import Any
 from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.values import FittedParameter
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
-from werrimbi_odom.report.left_out import jumps_words, left_out_json, left_out_words
 from werrimbi_odom.report.numbers import listed, quantity, scaled_with_std
-from werrimbi_odom.report.printed import WIDTH, filled, table
-from werrimbi_odom.report.sizes import sizes_words
+from werrimbi_odom.report.phrases import jumps_words, left_out_json, left_out_words, sizes_words
+from werrimbi_odom.report.text import WIDTH, filled, table
 
 
 def words_of(added: Added) -> str:

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from werrimbi_odom.report.decimate import MARKS, small, spread_and_extremes
 from werrimbi_odom.report.path_figure import Floats
-from werrimbi_odom.report.style import BLUE, ORANGE, plain
+from werrimbi_odom.report.style import BLUE, MARKS, ORANGE, plain, small, spread_and_extremes
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

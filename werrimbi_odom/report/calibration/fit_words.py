@@ -8,7 +8,7 @@ from werrimbi_odom.inference.calibration.any_driving import Calibration
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
 from werrimbi_odom.report.numbers import listed, scaled_with_std
-from werrimbi_odom.report.printed import filled, table
+from werrimbi_odom.report.text import filled, table
 
 _MOST = 3  # dependences that are told
 _UNITS = {

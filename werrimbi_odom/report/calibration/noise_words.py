@@ -9,7 +9,7 @@ import numpy as np
 from werrimbi_odom.inference.calibration.out_and_back import NoiseEstimate, NoiseFit, pivot_scatter
 from werrimbi_odom.inference.rules import ADVISED_RUNS, SURE_WHEN_ASKED
 from werrimbi_odom.report.numbers import scaled_with_std
-from werrimbi_odom.report.printed import filled, table
+from werrimbi_odom.report.text import filled, table
 
 PIVOT_TURNS = 10.0
 

@@ -42,7 +42,7 @@ def calibration_page(
 
 def written_table(changes: Mapping[str, tuple[float, float]]) -> str:
     """Parameters before and after, as a plain table."""
-    from werrimbi_odom.report.printed import table
+    from werrimbi_odom.report.text import table
 
     if not changes:
         return ""

@@ -14,13 +14,11 @@ from werrimbi_odom.inference.calibration.squares import (
 )
 from werrimbi_odom.inference.calibration.umbmark import Estimate, Umbmark
 from werrimbi_odom.inference.chances import NORMAL_95
-from werrimbi_odom.inference.rules import ADVISED_SQUARES
+from werrimbi_odom.inference.rules import ADVISED_SQUARES, SURE_WHEN_ASKED
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.numbers import scaled_with_std
-from werrimbi_odom.report.printed import filled, table
-
-DOUBTFUL_P = 0.01
+from werrimbi_odom.report.text import filled, table
 
 
 def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> str:
@@ -115,7 +113,7 @@ def _factors(result: Umbmark, old: Robot) -> str:
 
 def _doubts(squares: Squares, result: Umbmark) -> list[str]:
     lines = []
-    if result.disagreement_p < DOUBTFUL_P:
+    if result.disagreement_p < SURE_WHEN_ASKED:
         of_alpha, of_beta = result.disagreement
         lines.append(
             f"Careful: x and y disagree (by {_mrad(of_alpha)} about alpha and {_mrad(of_beta)} "

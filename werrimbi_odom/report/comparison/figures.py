@@ -5,53 +5,129 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison
-from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.report.comparison.channels import CHANNELS, NAMES, measured_channels
-from werrimbi_odom.report.comparison.nees_figure import nees_figure
-from werrimbi_odom.report.comparison.path_figure import path_figure
-from werrimbi_odom.report.decimate import MARKS, small, spread_and_extremes
-from werrimbi_odom.report.diagnosis.wheel_angle import WHEEL_ANGLES, wheel_angle_figure
-from werrimbi_odom.report.style import BLUE, FAINT, GREY, paled, plain
+from werrimbi_odom.report.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    ORANGE,
+    paled,
+    plain,
+)
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
 
-__all__ = [
-    "NAMES",
-    "error_against_figure",
-    "legs_by_motion_figure",
-    "nees_figure",
-    "path_figure",
-    "variables_of",
-]
+NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
+CHANNELS = (("along", "mm", 1e3), ("sideways", "mm", 1e3), ("heading", "°", float(np.degrees(1.0))))
+"""Name, unit and factor to it of each column of the legs' errors."""
+
+
+def measured_channels(comparison: Comparison) -> list[int]:
+    """Columns of the errors that were measured at all."""
+    return [
+        column for column in range(3) if np.isfinite(comparison.legs.errors.error[:, column]).any()
+    ]
+
+
+def nees_figure(comparison: Comparison) -> go.Figure:
+    """NEES by length of leg and type of motion, with the range that an honest one lies in."""
+    import plotly.graph_objects as go
+    from scipy.stats import chi2
+
+    figure = go.Figure()
+    free = len(measured_channels(comparison))
+    lengths = [f"{item.leg:g} m" for item in comparison.lengths]
+    looks = {
+        "all": (INK, "diamond", None),
+        "line": (BLUE, "circle", -0.24),
+        "arc": (ORANGE, "square", 0.0),
+        "spin": (GREEN, "triangle-up", 0.24),
+    }
+    drawn = False
+    for kind, (colour, symbol, aside) in looks.items():
+        if aside is None:
+            continue
+        at, values, low, high, texts = [], [], [], [], []
+        for number, item in enumerate(comparison.lengths):
+            found = item.by_motion[kind].figures
+            if found.count < 2 or not np.isfinite(found.nees):
+                continue
+            degrees = free * found.count
+            bounds = chi2.ppf([0.025, 0.975], degrees) / degrees
+            at.append(number + aside)
+            values.append(found.nees)
+            low.append(float(bounds[0]))
+            high.append(float(bounds[1]))
+            texts.append(
+                f"{NAMES[kind]}, legs of {item.leg:g} m: {found.count}<br>NEES {found.nees:.2f}, "
+                f"honest within {bounds[0]:.2f} to {bounds[1]:.2f}"
+                f"<br>{100.0 * found.coverage_95:.0f} % inside the 95 % ellipsoid"
+            )
+        if not at:
+            continue
+        x, y = _bars(at, low, high)
+        figure.add_scatter(
+            x=x,
+            y=y,
+            mode="lines",
+            line={"color": paled(GREY, 0.45), "width": 16},
+            name="where an honest covariance lies, 19 times in 20",
+            legendgroup="bounds",
+            showlegend=not drawn,
+            hoverinfo="skip",
+        )
+        drawn = True
+        figure.add_scatter(
+            x=at,
+            y=values,
+            mode="markers",
+            name=NAMES[kind],
+            text=texts,
+            hovertemplate="%{text}<extra></extra>",
+            marker={"color": colour, "symbol": symbol, "size": 12},
+        )
+    figure.add_hline(y=1.0, line={"color": GREY, "width": 1.5, "dash": "dash"})
+    figure.update_xaxes(
+        title="length of the legs", tickvals=list(range(len(lengths))), ticktext=lengths
+    )
+    figure.update_yaxes(title="NEES (1 is honest)")
+    plain(figure, height=430)
+    ticks = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 1e4, 1e5]
+    figure.update_yaxes(type="log", tickvals=ticks, ticktext=[f"{tick:g}" for tick in ticks])
+    figure.update_xaxes(zeroline=False)
+    return figure
+
+
+def _bars(at: Sequence[float], low: Sequence[float], high: Sequence[float]) -> tuple[list, list]:  # type: ignore[type-arg]
+    """Vertical strokes as one line with gaps."""
+    x: list[float | None] = []
+    y: list[float | None] = []
+    for where, bottom, top in zip(at, low, high, strict=True):
+        x += [where, where, None]
+        y += [bottom, top, None]
+    return x, y
+
 
 _TWO_SIGMA = 1.959964
-_BINS = 12
-_FEWEST = 5  # legs in a bin whose mean is drawn
-
-
-def _panels(titles: Sequence[str], *, rows: bool = False, **more: object) -> go.Figure:
-    from plotly.subplots import make_subplots
-
-    count = len(titles)
-    if rows:
-        return make_subplots(rows=count, cols=1, shared_xaxes=True, vertical_spacing=0.06, **more)
-    return make_subplots(rows=1, cols=count, subplot_titles=titles, horizontal_spacing=0.09, **more)
 
 
 def legs_by_motion_figure(comparison: Comparison) -> go.Figure:
     """Errors of the legs by type of motion, beside what the covariance promised for them."""
+    from plotly.subplots import make_subplots
+
     legs = comparison.legs
     kept = ~legs.outlier
     columns = measured_channels(comparison)
-    figure = _panels([f"{CHANNELS[column][0]} [{CHANNELS[column][1]}]" for column in columns])
+    titles = [f"{CHANNELS[column][0]} [{CHANNELS[column][1]}]" for column in columns]
+    figure = make_subplots(
+        rows=1, cols=len(columns), subplot_titles=titles, horizontal_spacing=0.09
+    )
     for place, column in enumerate(columns, start=1):
         name, unit, factor = CHANNELS[column]
         for kind in KINDS:
@@ -129,123 +205,4 @@ def _promise(
         hovertemplate=f"promised ± {promised:.2f} {unit}<extra></extra>",
         row=1,
         col=place,
-    )
-
-
-def variables_of(comparison: Comparison) -> list[str]:
-    """What errors can be drawn against, those that they go with most surely first."""
-    varied = [item.name for item in comparison.variables]
-    sure = {item.name: min(item.p_values.values()) for item in comparison.variables}
-    ordered = sorted(varied, key=lambda name: sure[name] if sure[name] < 1e-4 else 1.0)
-    return [*ordered, *WHEEL_ANGLES]
-
-
-def error_against_figure(comparison: Comparison, variable: str) -> go.Figure:
-    """Errors of the legs over one variable: each leg a dot, means of equal parts with error bars.
-
-    Parameters
-    ----------
-    variable : str
-        One of `variables_of`.
-    """
-    if variable in WHEEL_ANGLES:
-        return wheel_angle_figure(comparison, variable)
-    legs = comparison.legs
-    values = legs.variables[variable]
-    is_angle = variable.startswith("heading")
-    if is_angle:
-        values = np.degrees(np.mod(values + np.pi, 2.0 * np.pi) - np.pi)
-    columns = measured_channels(comparison)
-    figure = _panels(["" for _ in columns], rows=True)
-    known = ~legs.outlier & np.isfinite(values)
-    for place, column in enumerate(columns, start=1):
-        name, unit, factor = CHANNELS[column]
-        error = factor * legs.errors.error[:, column]
-        rows = np.flatnonzero(known & np.isfinite(error))
-        drawn = rows[spread_and_extremes(error[rows], MARKS // 2)]
-        figure.add_scatter(
-            x=small(values[drawn]),
-            y=small(error[drawn]),
-            mode="markers",
-            name="a leg",
-            legendgroup="leg",
-            showlegend=place == 1,
-            marker={"color": paled(GREY, 0.55), "size": 5},
-            hovertemplate=f"%{{x:.3g}}<br>{name} %{{y:.2f}} {unit}<extra></extra>",
-            row=place,
-            col=1,
-        )
-        centre, mean, spread, count = binned(values[rows], error[rows], periodic=is_angle)
-        figure.add_scatter(
-            x=centre,
-            y=mean,
-            mode="lines+markers",
-            name="mean, ± 2 standard errors",
-            legendgroup="mean",
-            showlegend=place == 1,
-            line={"color": BLUE, "width": 2},
-            marker={"color": BLUE, "size": 8},
-            error_y={"array": 2.0 * spread, "color": BLUE, "thickness": 2, "width": 5},
-            customdata=count,
-            hovertemplate=(
-                f"%{{x:.3g}}<br>{name} %{{y:.2f}} ± %{{error_y.array:.2f}} {unit}"
-                "<br>%{customdata} legs<extra></extra>"
-            ),
-            row=place,
-            col=1,
-        )
-        figure.update_yaxes(title=f"{name} [{unit}]", row=place, col=1)
-        _range(figure, error[rows], place)
-    plain(figure, height=150 + 175 * len(columns))
-    label = variable.replace("[rad]", "[°]") if is_angle else variable
-    figure.update_xaxes(title=label, row=len(columns), col=1)
-    if is_angle:
-        figure.update_xaxes(dtick=45, range=[-185, 185])
-    figure.update_xaxes(gridcolor=FAINT)
-    return figure
-
-
-def _range(figure: go.Figure, values: Floats, place: int) -> None:
-    """Most of the points; the few far out may be zoomed to."""
-    if values.size == 0:
-        return
-    low, high = np.quantile(values, [0.005, 0.995]).tolist()
-    room = 0.15 * max(high - low, 1e-9)
-    figure.update_yaxes(range=[min(low, 0.0) - room, max(high, 0.0) + room], row=place, col=1)
-
-
-def binned(
-    values: Floats, error: Floats, *, periodic: bool = False
-) -> tuple[Floats, Floats, Floats, NDArray[np.intp]]:
-    """Centre, mean, its standard error and number of rows of parts that hold as many rows each.
-
-    Parameters
-    ----------
-    periodic : bool
-        Parts of equal width instead, of a whole turn in degrees.
-    """
-    parts = max(2, min(_BINS, values.size // (2 * _FEWEST)))
-    edges = (
-        np.linspace(-180.0, 180.0, _BINS + 1)
-        if periodic
-        else np.unique(np.quantile(values, np.linspace(0.0, 1.0, parts + 1)))
-        if values.size
-        else np.zeros(0)
-    )
-    found = []
-    for low, high in pairwise(edges.tolist()):
-        mine = (values >= low) & ((values < high) | (high == edges[-1]))
-        count = int(mine.sum())
-        if count < _FEWEST:
-            continue
-        part = error[mine]
-        found.append(
-            (float(values[mine].mean()), float(part.mean()), float(part.std(ddof=1)), count)
-        )
-    table = np.array(found).reshape(-1, 4)
-    return (
-        table[:, 0],
-        table[:, 1],
-        table[:, 2] / np.sqrt(np.maximum(table[:, 3], 1.0)),
-        table[:, 3].astype(np.intp),
     )

@@ -5,21 +5,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.inference.comparison.compare import Comparison
-from werrimbi_odom.report.comparison.figures import (
-    error_against_figure,
-    legs_by_motion_figure,
-    nees_figure,
-    path_figure,
-    variables_of,
-)
+from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
+from werrimbi_odom.report.comparison.path_figure import path_figure
 from werrimbi_odom.report.comparison.tables import tables_of
 from werrimbi_odom.report.comparison.words import words_of
-from werrimbi_odom.report.page import Page, Shown
-from werrimbi_odom.report.save import save_report
+from werrimbi_odom.report.over_variable import error_against_figure, variables_of
+from werrimbi_odom.report.page import NOTHING_SAID, Page, Shown
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -27,27 +21,13 @@ if TYPE_CHECKING:
 _RUNS = 40  # that can be chosen one by one: more would make the file too large to mail
 
 
-def write_compare_page(
+def compare_page(
     comparison: Comparison,
-    path: Path,
     *,
     next_step: str = "`werrimbi diagnose`",
-    made: Mapping[str, str] | None = None,
-) -> list[Path]:
-    """Write the report; returns the files, of which there are several where they are pictures.
-
-    Parameters
-    ----------
-    path
-        .html for a page, .pdf or .png for the main figures alone.
-    made
-        How it was made: command, files, options.
-    """
-    return save_report(compare_page(comparison, next_step=next_step, made=made or {}), path)
-
-
-def compare_page(comparison: Comparison, *, next_step: str, made: Mapping[str, str]) -> Page:
-    """The report as a page."""
+    made: Mapping[str, str] = NOTHING_SAID,
+) -> Page:
+    """The report as a page; `made`: command, files, options."""
     against = {name: error_against_figure(comparison, name) for name in variables_of(comparison)}
     shown = [
         Shown(

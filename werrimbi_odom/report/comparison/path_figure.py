@@ -7,25 +7,26 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from numpy.typing import NDArray
 
 from werrimbi_odom.inference.comparison.compare import Comparison
-from werrimbi_odom.model.covariance import PoseCovariance
-from werrimbi_odom.model.effect import view_of
-from werrimbi_odom.model.pose import Floats, Pose
-from werrimbi_odom.model.trajectory import trajectory
-from werrimbi_odom.report.decimate import FEWEST, MOST, along_path, small, spread_and_extremes
-from werrimbi_odom.report.path_figure import ellipse, spread_along_path
+from werrimbi_odom.inference.comparison.dead_reckoning import covariance_along, middles
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.path_figure import add_mark, add_path, ellipse, spread_along_path
 from werrimbi_odom.report.style import (
     BLUE,
+    FEWEST,
     GREEN,
     GREY,
+    MOST,
     ORANGE,
     PAPER,
-    RISING,
+    along_path,
+    coloured,
     escaped,
     paled,
     plain,
+    small,
+    spread_and_extremes,
 )
 
 if TYPE_CHECKING:
@@ -77,28 +78,28 @@ def _paths(
     path = comparison.paths[index]
     name = escaped(comparison.runs[index].run.name)
     measured = path.measured[along_path(path.measured, most)]
-    figure.add_scatter(
-        x=small(measured.real),
-        y=small(measured.imag),
-        mode="lines",
-        name="measured",
+    add_path(
+        figure,
+        small(measured.real),
+        small(measured.imag),
+        "measured",
+        {"color": paled(GREY, 0.5), "width": 7},
+        said=f"{name}, measured",
         legendgroup="measured",
         showlegend=first,
-        line={"color": paled(GREY, 0.5), "width": 7},
-        hovertemplate=f"{name}, measured<br>x %{{x:.3f}} m<br>y %{{y:.3f}} m<extra></extra>",
     )
     if not predicted:
         return
     model = path.predicted[along_path(path.predicted, most)]
-    figure.add_scatter(
-        x=small(model.real),
-        y=small(model.imag),
-        mode="lines",
-        name="model (dead reckoning from the start)",
+    add_path(
+        figure,
+        small(model.real),
+        small(model.imag),
+        "model (dead reckoning from the start)",
+        {"color": BLUE, "width": 2},
+        said=f"{name}, model",
         legendgroup="model",
         showlegend=first,
-        line={"color": BLUE, "width": 2},
-        hovertemplate=f"{name}, model<br>x %{{x:.3f}} m<br>y %{{y:.3f}} m<extra></extra>",
     )
 
 
@@ -113,21 +114,9 @@ def _ends(figure: go.Figure, comparison: Comparison, index: int, *, first: bool)
         (path.measured[end], "end, measured", "x", GREY),
         (path.predicted[end], "end, model", "square", BLUE),
     ):
-        figure.add_scatter(
-            x=[float(at.real)],
-            y=[float(at.imag)],
-            mode="markers",
-            name=name,
-            legendgroup=name,
-            showlegend=first,
-            marker={
-                "symbol": symbol,
-                "size": 12,
-                "color": colour,
-                "line": {"width": 1.5, "color": PAPER},
-            },
-            hovertemplate=f"{name}<br>x %{{x:.3f}} m<br>y %{{y:.3f}} m<extra></extra>",
-        )
+        edge = {"width": 1.5, "color": PAPER}
+        marker = {"symbol": symbol, "size": 12, "color": colour, "line": edge}
+        add_mark(figure, at, name, marker, legendgroup=name, showlegend=first)
 
 
 def leg_errors_to_colour(comparison: Comparison) -> tuple[Floats, str]:
@@ -174,30 +163,7 @@ def _legs(figure: go.Figure, comparison: Comparison, run: int | None) -> None:
         marker={"color": GREY, "size": 12},
         hoverinfo="skip",
     )
-    figure.update_layout(
-        coloraxis={
-            "colorscale": [list(stop) for stop in RISING],
-            "cmin": 0.0,
-            "cmax": max(top, 1e-9),
-            "colorbar": {"title": {"text": f"error of<br>a leg [{unit}]"}, "thickness": 14},
-        }
-    )
-
-
-def middles(comparison: Comparison) -> NDArray[np.complex128]:
-    """Middle of each leg (x + iy), measured; where headings alone are measured, by the model."""
-    legs = comparison.legs
-    found = 0.5 * (legs.x + legs.end_x) + 0.5j * (legs.y + legs.end_y)
-    found = found.astype(np.complex128)
-    for group in comparison.prepared.groups:
-        if group.measure != "heading":
-            continue
-        for index in group.index:
-            mine = legs.run == index
-            time = 0.5 * (legs.start_time + legs.end_time)[mine]
-            path = comparison.paths[index]
-            found[mine] = np.interp(time, path.time, path.predicted)
-    return found
+    coloured(figure, max(top, 1e-9), f"error of<br>a leg [{unit}]")
 
 
 def _told(comparison: Comparison, row: int) -> str:
@@ -245,31 +211,3 @@ def _ellipses(figure: go.Figure, comparison: Comparison, index: int) -> None:
         fillcolor=paled(ORANGE, 0.13),
         hoverinfo="skip",
     )
-
-
-def covariance_along(comparison: Comparison, index: int) -> Floats:
-    """Covariance of the dead-reckoned position at every reference pose of a run, (n, 2, 2) [m²].
-
-    It begins with the noise of the measured pose that dead reckoning starts from. Of the axle's
-    midpoint; the point that the reference measures is near it.
-    """
-    run, path = comparison.prepared.runs[index], comparison.paths[index]
-    robot = comparison.model.of_run(index)
-    group = next(item for item in comparison.prepared.groups if index in item.index)
-    own = group.index.index(index)
-    xy, heading = float(group.sigma_xy[own]), float(group.sigma_yaw[own])
-    yaw = float(path.predicted_yaw[0]) - view_of(robot.effects).yaw
-    begin = int(np.clip(np.searchsorted(run.ticks.time, path.time[0]), 0, run.ticks.time.size - 2))
-    ticks = run.ticks
-    driven = trajectory(
-        robot,
-        ticks.time[begin:],
-        ticks.left[begin:],
-        ticks.right[begin:],
-        start=Pose(0.0, 0.0, yaw),
-        covariance=PoseCovariance(xy**2, 0.0, 0.0, xy**2, 0.0, heading**2),
-        channels={name: values[begin:] for name, values in ticks.channels.items()},
-    )
-    every = driven.covariance.matrix()[:, :2, :2]
-    rows = np.clip(np.searchsorted(driven.time, path.time), 0, driven.time.size - 1)
-    return np.asarray(every[rows])

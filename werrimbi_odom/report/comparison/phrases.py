@@ -1,12 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A systematic error as a phrase: what the robot did, against what the model says."""
+"""Parts of a comparison as phrases: a systematic error, and what is said of the covariance."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
+from werrimbi_odom.inference.comparison.consistency import AtLength, trend_of
 from werrimbi_odom.inference.comparison.systematic import Systematic
+from werrimbi_odom.inference.comparison.verdict import Verdict
+from werrimbi_odom.report.numbers import listed
+
+NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
 
 
 def systematic_told(part: Systematic) -> str:
@@ -66,3 +72,91 @@ def _rounded(value: float, std: float) -> str:
         return f"{value:.3g}"
     digits = min(max(-math.floor(math.log10(std)), 0), 6)
     return f"{value:.{digits}f} ± {std:.{digits}f}"
+
+
+def covariance_words(verdict: Verdict, nees: float) -> list[str]:
+    """What is said of the covariance, true to the table of lengths.
+
+    Parameters
+    ----------
+    nees : float
+        Of all legs of the length asked for.
+    """
+    if verdict.covariance == "unknown":
+        return [f"- NEES is {nees:.3g} (1 is right); legs are too few to judge by it."]
+    if verdict.covariance == "honest":
+        return [_honest(verdict, nees)]
+    small = verdict.covariance == "too small"
+    at = next((item for item in verdict.lengths if item.leg == verdict.judged_at), None)
+    by_noise = verdict.mean_is_right and verdict.noise == verdict.covariance
+    if by_noise and at is not None and at.says == verdict.noise and verdict.factor.told:
+        return [_by_noise(verdict, at)]
+    size = "small" if small else "large"
+    text = f"The covariance is too {size}, {_where(verdict.lengths, small=small)}"
+    if not verdict.mean_is_right:
+        return [
+            f"- {text}. Whether the wheels' noise is stated rightly can be told when what goes "
+            "wrong is mended."
+        ]
+    if verdict.noise == "grows":
+        return [f"- {text}: that is no noise of the wheels, something systematic is missing."]
+    if small:
+        return [
+            f"- {text}: something comes and goes along the way, which no noise of the wheels does."
+        ]
+    return [f"- {text}."]
+
+
+def _honest(verdict: Verdict, nees: float) -> str:
+    if verdict.mean_is_right and verdict.off:
+        where = listed([NAMES[kind] for kind in verdict.off])
+        return (
+            f"- Over all legs together the covariance is honest (NEES {nees:.2f}, 1 is right); in "
+            f"{where} it is too small: something comes and goes there, which no noise of the "
+            "wheels does."
+        )
+    so_far = "" if verdict.mean_is_right else " so far"
+    return f"- The covariance is honest{so_far} (NEES {nees:.2f}, 1 is right)."
+
+
+def _by_noise(verdict: Verdict, at: AtLength) -> str:
+    """Where one factor on the wheels' noise explains it."""
+    factor = verdict.factor
+    times, low, high = (math.sqrt(part) for part in factor)
+    between = f"{low:.2g} to {high:.2g}" if math.isfinite(high) else f"at least {low:.2g}"
+    leg, errors = f"{at.leg:g} m", math.sqrt(at.nees)
+    if at.says == "too small":
+        text = f"{_times(at.nees)} times too small over legs of {leg} (NEES {at.nees:.3g}, 1 is "
+        text += f"right: errors are {errors:.2g} times what it promises)"
+    else:
+        text = f"too large (NEES {at.nees:.3g} over legs of {leg}, 1 is right)"
+    return (
+        f"- The covariance is {text}. Beside the reference's own noise they scatter as if the "
+        f"wheels' noise k were {times:.2g} times what the robot file says ({between})."
+    )
+
+
+def _where(lengths: Sequence[AtLength], *, small: bool) -> str:
+    """Over which legs NEES is off, and how it goes with their length."""
+    first, last = lengths[0], lengths[-1]
+    worst = (max if small else min)(lengths, key=lambda item: item.nees)
+    if len(lengths) == 1:
+        return f"NEES {worst.nees:.3g} over legs of {worst.leg:g} m (1 is right)"
+    trend = trend_of(lengths)
+    if trend == ("longer" if small else "shorter"):
+        how = "and the more so the longer the leg"
+    elif trend != "between":
+        how = "and the more so the shorter the leg"
+    else:
+        how = f"most over legs of {worst.leg:g} m"
+        others = [item for item in (first, last) if item is not worst]
+        beside = " and ".join(f"{item.nees:.3g} over {item.leg:g} m" for item in others)
+        return f"{how} (NEES {worst.nees:.3g}, where 1 is right; {beside})"
+    return (
+        f"{how} (NEES {first.nees:.3g} over {first.leg:g} m, {last.nees:.3g} over "
+        f"{last.leg:g} m, where 1 is right)"
+    )
+
+
+def _times(value: float) -> str:
+    return f"{value:.1f}" if value < 10.0 else f"{value:.0f}" if value < 1e4 else f"{value:.0e}"

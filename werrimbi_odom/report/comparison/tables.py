@@ -10,7 +10,7 @@ from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFig
 from werrimbi_odom.inference.comparison.groups import ByVariable
 from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.inference.rules import SURE_OF_LEGS
-from werrimbi_odom.report.printed import filled, table
+from werrimbi_odom.report.text import filled, table
 
 _MOST = 3  # variables with a table of their own
 _NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}

@@ -5,18 +5,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
-from werrimbi_odom.inference.comparison.consistency import AtLength, trend_of
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
-from werrimbi_odom.inference.rules import FEWEST_LEGS
-from werrimbi_odom.report.comparison.phrases import systematic_told
-from werrimbi_odom.report.left_out import left_out_words
-from werrimbi_odom.report.printed import filled
+from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
+from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
+from werrimbi_odom.report.numbers import counted, listed
+from werrimbi_odom.report.phrases import left_out_words
+from werrimbi_odom.report.text import filled
 
-NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
-_FEW = 0.6  # of the squared errors, held by a twentieth of the legs
 _AGREES = {"line": "is", "arc": "are", "spin": "are"}
 _CHANNELS = {
     "along": "the error along the way",
@@ -57,15 +54,15 @@ def _headline(comparison: Comparison, verdict: Verdict) -> str:
     count = comparison.main.all.figures.count
     if not verdict.enough:
         return (
-            f"Too little to judge: {_counted(count, 'leg')} of "
-            f"{_metres(comparison.prepared.leg)}, {FEWEST_LEGS} are the least. "
+            f"Too little to judge: {counted(count, 'leg')} of "
+            f"{comparison.prepared.leg:g} m, {FEWEST_LEGS} are the least. "
             "Drive more, or try a shorter --leg."
         )
     if verdict.good:
         shortest, longest = comparison.lengths[0].leg, comparison.lengths[-1].leg
-        over = f"over legs of {_metres(shortest)} to {_metres(longest)}"
+        over = f"over legs of {shortest:g} m to {longest:g} m"
         if shortest == longest:
-            over = f"over legs of {_metres(longest)}"
+            over = f"over legs of {longest:g} m"
         return (
             f"The model explains these drives: {over} its errors are what its covariance "
             "promises, and nothing systematic is left in them."
@@ -80,13 +77,13 @@ def _headline(comparison: Comparison, verdict: Verdict) -> str:
     if verdict.mean_is_right and verdict.noise == "too small":
         return "On average the model is right, but its errors are larger than it promises."
     if verdict.mean_is_right and verdict.covariance == "honest" and verdict.off_at_all:
-        where = _listed([NAMES[kind] for kind in KINDS if kind in verdict.off_at_all])
+        where = listed([NAMES[kind] for kind in KINDS if kind in verdict.off_at_all])
         return f"The model's errors are larger than it promises in {where}."
     if verdict.mean_is_right:
         return "The model's errors are larger than it promises."
     failing = [kind for kind in KINDS if any(part.kind == kind for part in verdict.systematic)]
     if failing:
-        return f"The model goes wrong in {_listed([NAMES[kind] for kind in failing])}."
+        return f"The model goes wrong in {listed([NAMES[kind] for kind in failing])}."
     return "The model goes wrong, in a way that travel and turn alone do not show."
 
 
@@ -100,7 +97,7 @@ def _by_motion(comparison: Comparison, verdict: Verdict) -> list[str]:
         figures = comparison.main.by_motion[kind]
         if figures.figures.count < FEWEST_LEGS:
             if kind in verdict.few_and_bad:
-                number = _counted(figures.figures.count, "leg")
+                number = counted(figures.figures.count, "leg")
                 times = math.sqrt(figures.figures.nees)
                 lines.append(
                     f"- {NAMES[kind].capitalize()} ({number} only): errors of a leg "
@@ -112,7 +109,7 @@ def _by_motion(comparison: Comparison, verdict: Verdict) -> list[str]:
         name = NAMES[kind].capitalize()
         errors = _errors(figures)
         if said:
-            lines.append(f"- {name}: {_listed(said)}. Errors of a leg: {errors}.")
+            lines.append(f"- {name}: {listed(said)}. Errors of a leg: {errors}.")
         elif kind in verdict.off:
             times = math.sqrt(figures.scatter_nees)
             lines.append(
@@ -135,8 +132,8 @@ def _errors(figures: LegFigures) -> str:
 
 def _elsewhere(comparison: Comparison, verdict: Verdict) -> list[str]:
     lines = []
-    count = comparison.main.all.figures.count // 20
-    if verdict.few > _FEW and count > 1 and not verdict.good:
+    count = comparison.main.all.figures.count // WORST_OF
+    if verdict.few > FEW_HOLD and count > 1 and not verdict.good:
         lines.append(
             f"- A few legs are far worse than all others: the worst {count} hold "
             f"{100.0 * verdict.few:.0f} % of the squared errors. Look what happened there."
@@ -158,14 +155,14 @@ def _elsewhere(comparison: Comparison, verdict: Verdict) -> list[str]:
         lines.append(
             f"- Errors are larger on the floor about x {cell.x:.1f} m, y {cell.y:.1f} m (a square "
             f"of {cell.side:.1f} m): {_millimetres(cell.figures.rmse_position_m)} over "
-            f"{_counted(cell.figures.count, 'leg')}."
+            f"{counted(cell.figures.count, 'leg')}."
         )
     return lines
 
 
 def _dependence(item: Depends, others: list[str]) -> str:
     variable = item.variable.split(" [")[0]
-    channels = _listed([_CHANNELS[channel] for channel in (item.channel, *others)])
+    channels = listed([_CHANNELS[channel] for channel in (item.channel, *others)])
     verb = "go" if others or item.channel == "size" else "goes"
     verb = "goes" if item.channel == "size" and not others else verb
     return (
@@ -184,96 +181,8 @@ def _run_told(comparison: Comparison, index: int) -> str:
     figures = item.legs.figures
     return (
         f"- Run {item.run.name} stands out: NEES {figures.nees:.3g} over its "
-        f"{_counted(figures.count, 'leg')}."
+        f"{counted(figures.count, 'leg')}."
     )
-
-
-def covariance_words(verdict: Verdict, nees: float) -> list[str]:
-    """What is said of the covariance, true to the table of lengths.
-
-    Parameters
-    ----------
-    nees : float
-        Of all legs of the length asked for.
-    """
-    if verdict.covariance == "unknown":
-        return [f"- NEES is {nees:.3g} (1 is right); legs are too few to judge by it."]
-    if verdict.covariance == "honest":
-        return [_honest(verdict, nees)]
-    small = verdict.covariance == "too small"
-    at = next((item for item in verdict.lengths if item.leg == verdict.judged_at), None)
-    by_noise = verdict.mean_is_right and verdict.noise == verdict.covariance
-    if by_noise and at is not None and at.says == verdict.noise and verdict.factor.told:
-        return [_by_noise(verdict, at)]
-    size = "small" if small else "large"
-    text = f"The covariance is too {size}, {_where(verdict.lengths, small=small)}"
-    if not verdict.mean_is_right:
-        return [
-            f"- {text}. Whether the wheels' noise is stated rightly can be told when what goes "
-            "wrong is mended."
-        ]
-    if verdict.noise == "grows":
-        return [f"- {text}: that is no noise of the wheels, something systematic is missing."]
-    if small:
-        return [
-            f"- {text}: something comes and goes along the way, which no noise of the wheels does."
-        ]
-    return [f"- {text}."]
-
-
-def _honest(verdict: Verdict, nees: float) -> str:
-    if verdict.mean_is_right and verdict.off:
-        where = _listed([NAMES[kind] for kind in verdict.off])
-        return (
-            f"- Over all legs together the covariance is honest (NEES {nees:.2f}, 1 is right); in "
-            f"{where} it is too small: something comes and goes there, which no noise of the "
-            "wheels does."
-        )
-    so_far = "" if verdict.mean_is_right else " so far"
-    return f"- The covariance is honest{so_far} (NEES {nees:.2f}, 1 is right)."
-
-
-def _by_noise(verdict: Verdict, at: AtLength) -> str:
-    """Where one factor on the wheels' noise explains it."""
-    factor = verdict.factor
-    times, low, high = (math.sqrt(part) for part in factor)
-    between = f"{low:.2g} to {high:.2g}" if math.isfinite(high) else f"at least {low:.2g}"
-    leg, errors = _metres(at.leg), math.sqrt(at.nees)
-    if at.says == "too small":
-        text = f"{_times(at.nees)} times too small over legs of {leg} (NEES {at.nees:.3g}, 1 is "
-        text += f"right: errors are {errors:.2g} times what it promises)"
-    else:
-        text = f"too large (NEES {at.nees:.3g} over legs of {leg}, 1 is right)"
-    return (
-        f"- The covariance is {text}. Beside the reference's own noise they scatter as if the "
-        f"wheels' noise k were {times:.2g} times what the robot file says ({between})."
-    )
-
-
-def _where(lengths: Sequence[AtLength], *, small: bool) -> str:
-    """Over which legs NEES is off, and how it goes with their length."""
-    first, last = lengths[0], lengths[-1]
-    worst = (max if small else min)(lengths, key=lambda item: item.nees)
-    if len(lengths) == 1:
-        return f"NEES {worst.nees:.3g} over legs of {_metres(worst.leg)} (1 is right)"
-    trend = trend_of(lengths)
-    if trend == ("longer" if small else "shorter"):
-        how = "and the more so the longer the leg"
-    elif trend != "between":
-        how = "and the more so the shorter the leg"
-    else:
-        how = f"most over legs of {_metres(worst.leg)}"
-        others = [item for item in (first, last) if item is not worst]
-        beside = " and ".join(f"{item.nees:.3g} over {_metres(item.leg)}" for item in others)
-        return f"{how} (NEES {worst.nees:.3g}, where 1 is right; {beside})"
-    return (
-        f"{how} (NEES {first.nees:.3g} over {_metres(first.leg)}, {last.nees:.3g} over "
-        f"{_metres(last.leg)}, where 1 is right)"
-    )
-
-
-def _times(value: float) -> str:
-    return f"{value:.1f}" if value < 10.0 else f"{value:.0f}" if value < 1e4 else f"{value:.0e}"
 
 
 def _reference(comparison: Comparison) -> list[str]:
@@ -286,9 +195,7 @@ def _reference(comparison: Comparison) -> list[str]:
         if measure != "position":
             parts.append((f"{math.degrees(noise.sigma_yaw):.2g}°", noise.yaw_told))
         values = " and ".join(value for value, _ in parts)
-        told = (
-            parts[0][1] if len({how for _, how in parts}) == 1 else _listed([h for _, h in parts])
-        )
+        told = parts[0][1] if len({how for _, how in parts}) == 1 else listed([h for _, h in parts])
         how = {
             "estimated": "estimated from its own small differences",
             "assumed": "assumed, for its poses are too few to tell; --reference-sigma-xy says it",
@@ -323,20 +230,8 @@ def _next(verdict: Verdict, next_step: str) -> str:
     return f"Next: {next_step} says which physical effect explains it."
 
 
-def _metres(value: float) -> str:
-    return f"{value:g} m"
-
-
 def _millimetres(value: float) -> str:
     millimetres = 1e3 * value
     if millimetres >= 1e4:
         return f"{value:.1f} m"
     return f"{millimetres:.1f} mm" if millimetres < 100.0 else f"{millimetres:.0f} mm"
-
-
-def _counted(number: int, word: str) -> str:
-    return f"{number} {word}" if number == 1 else f"{number} {word}s"
-
-
-def _listed(words: list[str]) -> str:
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} and {words[-1]}"

@@ -4,20 +4,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.diagnosis.values import values_of
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
-from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, strongest
+from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
+from werrimbi_odom.inference.manoeuvres.told import beyond_chance, one_each, significant
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
-from werrimbi_odom.report.diagnosis.values import values_of
-from werrimbi_odom.report.left_out import left_out_json
+from werrimbi_odom.report.phrases import left_out_json
 
 
 def json_of(
@@ -65,7 +66,7 @@ def json_of(
         "train": _sides(diagnosis.train),
         "holdout": _sides(diagnosis.holdout, diagnosis.headings),
         "left_out": left_out_json(diagnosis.left_out),
-        "remaining": [_cell(cell) for cell in _once(_sure(diagnosis.remaining))],
+        "remaining": [_cell(cell) for cell in one_each(beyond_chance(diagnosis.remaining))],
         "misfit": None
         if diagnosis.misfit is None
         else {
@@ -75,30 +76,6 @@ def json_of(
         },
         "could_have_been_seen": [_limit(sight) for sight in sights],
     }
-
-
-def significant(diagnosis: Diagnosis) -> list[Dependence]:
-    """Cells of the evidence map that chance does not make, one for each channel and variable.
-
-    The best first; where no effect is what it is, first the one that explains most.
-    """
-    cells = _once(_sure(diagnosis.depends_on))
-    first = strongest(diagnosis) if diagnosis.verdict == "unknown" else None
-    if first is None:
-        return cells
-    others = [cell for cell in cells if (cell.channel, cell.name) != (first.channel, first.name)]
-    return [first, *others]
-
-
-def _sure(cells: Iterable[Dependence]) -> Iterator[Dependence]:
-    return (cell for cell in cells if cell.p_value < SURE)
-
-
-def _once(cells: Iterable[Dependence]) -> list[Dependence]:
-    found: dict[tuple[str, str], Dependence] = {}
-    for cell in cells:
-        found.setdefault((cell.channel, cell.name), cell)
-    return list(found.values())
 
 
 def _cell(cell: Dependence) -> dict[str, Any]:

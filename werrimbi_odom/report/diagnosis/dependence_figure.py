@@ -11,10 +11,20 @@ import numpy as np
 
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
-from werrimbi_odom.report.decimate import MARKS, small
-from werrimbi_odom.report.diagnosis.evidence_figures import amount_words, variable_words
-from werrimbi_odom.report.diagnosis.response import unit_of
-from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, RISING, escaped, plain
+from werrimbi_odom.report.diagnosis.evidence_figures import amount_words, unit_of
+from werrimbi_odom.report.over_variable import labelled, over
+from werrimbi_odom.report.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    MARKS,
+    ORANGE,
+    coloured,
+    escaped,
+    plain,
+    small,
+)
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -26,17 +36,19 @@ def dependence_figure(cell: Dependence, run_names: Sequence[str] = ()) -> go.Fig
     """The error of a cell over its variable, as the evidence map has fitted it."""
     import plotly.graph_objects as go
 
+    if cell.form == "place":
+        return _floor(cell)
     figure = go.Figure()
     unit, factor = unit_of(cell.amount)
-    if cell.form == "place":
-        return _floor(cell, unit, factor)
     if cell.form == "turns":
         _turns(figure, cell, unit, factor, run_names)
     else:
         _curve(figure, cell, unit, factor)
-    figure.add_hline(y=0.0, line={"color": GREY, "width": 1})
-    figure.update_yaxes(title=f"{amount_words(cell.amount)}<br>[{unit}]")
-    return plain(figure, height=360)
+    error = f"{amount_words(cell.amount)}<br>[{unit}]"
+    over(figure, labelled(cell), error, 360, turn=cell.form == "turns")
+    if cell.variable.name == CONSTANT:
+        figure.update_xaxes(showticklabels=False, title="whatever is driven")
+    return figure
 
 
 def _curve(figure: go.Figure, cell: Dependence, unit: str, factor: float) -> None:
@@ -60,8 +72,6 @@ def _curve(figure: go.Figure, cell: Dependence, unit: str, factor: float) -> Non
         hovertemplate=f"%{{x:.3g}}: %{{y:+.3g}} {unit}<extra></extra>",
         showlegend=False,
     )
-    name = variable_words(cell.variable.name)
-    figure.update_xaxes(title=f"{name} [{cell.variable.unit}]" if cell.variable.unit else name)
     if cell.variable.name == CONSTANT:
         level = factor * float(cell.coefficients[0])
         figure.add_hline(y=level, line={"color": BLUE, "width": 3})
@@ -73,7 +83,6 @@ def _curve(figure: go.Figure, cell: Dependence, unit: str, factor: float) -> Non
             yanchor="bottom" if level > 0.0 else "top",
             showarrow=False,
         )
-        figure.update_xaxes(showticklabels=False, ticks="", title="whatever is driven")
 
 
 def _turns(
@@ -103,13 +112,13 @@ def _turns(
             showlegend=bool(name),
             hovertemplate=f"%{{x:.0f}}°: %{{y:+.3g}} {unit}<extra></extra>",
         )
-    figure.update_xaxes(title=f"{variable_words(cell.variable.name)} [°]", dtick=45, range=[0, 360])
 
 
-def _floor(cell: Dependence, unit: str, factor: float) -> go.Figure:
-    """The error by place: larger where it is darker, signs by shape."""
+def _floor(cell: Dependence) -> go.Figure:
+    """The error of a cell by place: larger where it is darker, signs by shape."""
     import plotly.graph_objects as go
 
+    unit, factor = unit_of(cell.amount)
     cells, _ = functions_of(cell.variable)["place"]
     values = factor * (cells @ cell.coefficients)
     rows = np.linspace(0, values.size - 1, min(values.size, MARKS)).astype(int)
@@ -136,17 +145,7 @@ def _floor(cell: Dependence, unit: str, factor: float) -> go.Figure:
             hovertemplate=f"x %{{x:.2f}} m, y %{{y:.2f}} m<br>%{{customdata:+.3g}} {unit}"
             "<extra></extra>",
         )
-    figure.update_layout(
-        coloraxis={
-            "colorscale": [list(stop) for stop in RISING],
-            "cmin": 0.0,
-            "cmax": largest,
-            "colorbar": {
-                "title": {"text": f"{amount_words(cell.amount)}<br>[{unit}]"},
-                "thickness": 14,
-            },
-        }
-    )
+    coloured(figure, largest, f"{amount_words(cell.amount)}<br>[{unit}]")
     figure.update_xaxes(title="x [m]")
     figure.update_yaxes(title="y [m]", scaleanchor="x", scaleratio=1)
     return plain(figure, height=480)

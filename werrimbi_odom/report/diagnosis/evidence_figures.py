@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
@@ -13,7 +14,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import VERY_SURE
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Amount, Dependence
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
 from werrimbi_odom.report.diagnosis.dependence import short_name
-from werrimbi_odom.report.style import RISING, escaped, plain
+from werrimbi_odom.report.style import coloured, escaped, plain
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -39,6 +40,17 @@ def amount_words(amount: Amount) -> str:
         "heading": "heading error",
     }[amount.channel]
     return what
+
+
+def unit_of(amount: Amount) -> tuple[str, float]:
+    """Unit in which an error for each unit of its amount is told, and the factor to it."""
+    degree = math.degrees(1.0)
+    if amount.channel == "heading":
+        return {
+            "turn": ("% of the turn", 100.0),
+            "duration": ("° per s", degree),
+        }.get(amount.per, ("° per m", degree))
+    return ("mm per radian turned", 1e3) if amount.per == "turn" else ("mm per m", 1e3)
 
 
 def best_cells(cells: Sequence[Dependence]) -> dict[tuple[str, str], Dependence]:
@@ -126,18 +138,12 @@ def evidence_map_figure(
         showlegend=False,
     )
     shown = _ticks(max(top, FAINTEST))
-    figure.update_layout(
-        coloraxis={
-            "colorscale": [list(stop) for stop in RISING],
-            "cmin": 0.0,
-            "cmax": full,
-            "colorbar": {
-                "title": {"text": "explained<br>(fall of χ²)"},
-                "tickvals": np.sqrt(shown).tolist(),
-                "ticktext": [f"{value:g}" for value in shown],
-                "thickness": 14,
-            },
-        }
+    coloured(
+        figure,
+        full,
+        "explained<br>(fall of χ²)",
+        tickvals=np.sqrt(shown).tolist(),
+        ticktext=[f"{value:g}" for value in shown],
     )
     figure.update_yaxes(
         autorange="reversed",

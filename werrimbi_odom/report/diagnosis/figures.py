@@ -15,30 +15,21 @@ from werrimbi_odom.inference.fitting.prediction import legs_shown, right_handed
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.decimate import MARKS, small
-from werrimbi_odom.report.diagnosis.before_after_figure import before_after, before_after_figure
-from werrimbi_odom.report.diagnosis.dependence_figure import dependence_figure
-from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure, ordered_cells
-from werrimbi_odom.report.diagnosis.manoeuvre_figure import ideal_of, manoeuvre_figure
 from werrimbi_odom.report.numbers import error_words, p_words
-from werrimbi_odom.report.sketches.library import effect_sketch
-from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, escaped, paled, plain
+from werrimbi_odom.report.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    MARKS,
+    ORANGE,
+    escaped,
+    paled,
+    plain,
+    small,
+)
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
-
-__all__ = [
-    "before_after",
-    "before_after_figure",
-    "dependence_figure",
-    "effect_sketch",
-    "evidence_map_figure",
-    "ideal_of",
-    "manoeuvre_figure",
-    "ordered_cells",
-    "ranking_figure",
-    "set_up_figure",
-]
 
 _MOST_BARS = 10
 _PER_EFFECT = 52  # height of its two bars and the gap [pixels]

@@ -12,8 +12,7 @@ import numpy as np
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, Pace, ideal_run
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.decimate import small
-from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, paled, plain
+from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, paled, plain, small
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

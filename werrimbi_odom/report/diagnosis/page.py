@@ -6,62 +6,37 @@ from __future__ import annotations
 
 import html
 from collections.abc import Mapping
-from pathlib import Path
 
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.named import effect_named
+from werrimbi_odom.inference.diagnosis.response import before_after
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
+from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.report.diagnosis.evidence_figures import variable_words
-from werrimbi_odom.report.diagnosis.figures import (
-    before_after,
-    before_after_figure,
-    dependence_figure,
-    effect_sketch,
+from werrimbi_odom.report.diagnosis.dependence_figure import dependence_figure
+from werrimbi_odom.report.diagnosis.evidence_figures import (
     evidence_map_figure,
-    ideal_of,
-    manoeuvre_figure,
     ordered_cells,
-    ranking_figure,
-    set_up_figure,
+    variable_words,
 )
+from werrimbi_odom.report.diagnosis.figures import ranking_figure, set_up_figure
+from werrimbi_odom.report.diagnosis.manoeuvre_figure import ideal_of, manoeuvre_figure
 from werrimbi_odom.report.diagnosis.tables import tables_of
-from werrimbi_odom.report.diagnosis.told import Told
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
-from werrimbi_odom.report.page import Page, Shown
-from werrimbi_odom.report.save import save_report
+from werrimbi_odom.report.over_variable import before_after_figure
+from werrimbi_odom.report.page import NOTHING_SAID, Page, Shown
+from werrimbi_odom.report.sketches.library import effect_sketch
 
 _LISTED = 8
 
 
-def write_diagnosis_page(
-    diagnosis: Diagnosis,
-    path: Path,
-    *,
-    told: Told | None = None,
-    steps: NextSteps | None = None,
-    made: Mapping[str, str] | None = None,
-) -> list[Path]:
-    """Write the report; returns the files, of which there are several where they are pictures.
-
-    Parameters
-    ----------
-    path
-        .html for a page, .pdf or .png for the main figures alone.
-    told
-        The diagnosis with the next manoeuvre; without it none is drawn.
-    made
-        How it was made: command, files, options.
-    """
-    told = told or Told(diagnosis, None, ())
-    return save_report(diagnosis_page(told, steps or NextSteps(), made or {}), path)
-
-
-def diagnosis_page(told: Told, steps: NextSteps, made: Mapping[str, str]) -> Page:
-    """The report as a page."""
+def diagnosis_page(
+    told: Told, steps: NextSteps | None = None, made: Mapping[str, str] = NOTHING_SAID
+) -> Page:
+    """The report as a page; `made`: command, files, options."""
     diagnosis = told.diagnosis
     shown = [
         *_effects(diagnosis),
@@ -80,7 +55,9 @@ def diagnosis_page(told: Told, steps: NextSteps, made: Mapping[str, str]) -> Pag
     if diagnosis.set_up.findings:
         mistakes = ", ".join(item.effect for item in diagnosis.set_up.findings)
         title = f"What is set up wrongly: {mistakes}"
-    return Page(title, words_of(told, steps), shown, tables_of(diagnosis, told.sights), made)
+    return Page(
+        title, words_of(told, steps or NextSteps()), shown, tables_of(diagnosis, told.sights), made
+    )
 
 
 def _effects(diagnosis: Diagnosis) -> list[Shown]:

@@ -7,25 +7,23 @@ from __future__ import annotations
 import math
 
 from werrimbi_odom.effects.page import page_of
-from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, chance
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.diagnosis.named import effect_named
-from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
-from werrimbi_odom.inference.rules import ONE_WHEEL, SIGNIFICANT
-from werrimbi_odom.inference.set_up.mistakes import SetUpFinding
+from werrimbi_odom.inference.diagnosis.values import (
+    Value,
+    at_bounds,
+    best_sizes,
+    mistakes,
+    ranked_of,
+    values_of,
+)
+from werrimbi_odom.inference.manoeuvres.told import Told
+from werrimbi_odom.inference.rules import SIGNIFICANT
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.expected import expected_words
-from werrimbi_odom.report.diagnosis.told import Told
-from werrimbi_odom.report.diagnosis.values import Value, ranked_of, values_of
 from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity
-from werrimbi_odom.report.sizes import sizes_words
-
-
-def mistakes(diagnosis: Diagnosis) -> dict[str, SetUpFinding]:
-    """What is set up wrongly, by name."""
-    return {finding.effect: finding for finding in diagnosis.set_up.findings}
+from werrimbi_odom.report.phrases import sizes_words
 
 
 def about(told: Told, name: str) -> list[str]:
@@ -148,36 +146,8 @@ def judged(told: Told) -> str:
 
 
 def sizes_found(diagnosis: Diagnosis) -> str:
-    """Base and radii of the best model as one measures them on the robot; "" where none is off.
-
-    Where set-up mistakes were found, sizes are told with them.
-    """
-    if mistakes(diagnosis):
-        return ""
-    given, final = diagnosis.given, diagnosis.final
-    sizes = sizes_needed(final, given, set(diagnosis.found) & set(CALIBRATED))
-    return sizes_words(given, dict(sizes_at(final, given, sizes)))
-
-
-def one_wheel(diagnosis: Diagnosis) -> str | None:
-    """The wheel that is off alone, where its size is what two effects of calibration are found of.
-
-    A ratio and a scale are then one thing on the robot.
-    """
-    found = set(diagnosis.found) & set(CALIBRATED)
-    if mistakes(diagnosis) or not {"unequal_wheel_radii", "wheel_radius_scale"} <= found:
-        return None
-    sizes = sizes_at(
-        diagnosis.final,
-        diagnosis.given,
-        sizes_needed(diagnosis.final, diagnosis.given, found),
-    )
-    left, right = (
-        abs(math.log(sizes[name][0] / getattr(diagnosis.given, name))) for name in MULTIPLIERS[1:]
-    )
-    if min(left, right) > ONE_WHEEL * max(left, right):
-        return None
-    return "left" if left > right else "right"
+    """Base and radii of the best model as one measures them on the robot; "" where none is off."""
+    return sizes_words(diagnosis.given, best_sizes(diagnosis))
 
 
 def whole(told: Told) -> list[str]:
@@ -205,18 +175,9 @@ def ruler(diagnosis: Diagnosis, effect: Effect | None, head: str) -> list[str]:
     return [f"{head}: {' '.join(text.split())}{ending}."]
 
 
-def at_bounds(diagnosis: Diagnosis) -> dict[str, str]:
+def at_bounds_words(diagnosis: Diagnosis) -> dict[str, str]:
     """Effects that would help, but only at a value that physics does not allow, and that value."""
-    said: dict[str, str] = {}
-    for this in diagnosis.rounds:
-        for fit in this.tried:
-            name = fit.names[-1]
-            helps = fit.total < this.before.total and chance(fit, this.before, this.number) < SURE
-            wild = [knob for knob in fit.at_bound if knob.startswith(f"{name}.")]
-            if helps and wild and name not in diagnosis.found:
-                parameter = wild[0].rpartition(".")[2]
-                applied = fit.point.model.robot.effects[-1]
-                unit = applied.effect.parameters[parameter].unit
-                value = quantity(applied.values[parameter], math.nan, unit)
-                said.setdefault(name, f"{parameter} = {value}")
-    return said
+    return {
+        name: f"{parameter} = {quantity(value, math.nan, unit)}"
+        for name, (parameter, value, unit) in at_bounds(diagnosis).items()
+    }

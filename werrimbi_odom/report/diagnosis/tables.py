@@ -9,11 +9,11 @@ from collections.abc import Iterable, Sequence
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
 from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.diagnosis.values import values_of
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.report.diagnosis.dependence import short_words
-from werrimbi_odom.report.diagnosis.values import values_of
 from werrimbi_odom.report.numbers import error_words, in_unit, p_words
-from werrimbi_odom.report.printed import table
+from werrimbi_odom.report.text import table
 
 _RANKED = 8
 _MAPPED = 10

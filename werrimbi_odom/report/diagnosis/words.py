@@ -8,30 +8,28 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from werrimbi_odom.inference.diagnosis.diagnosis import VERY_SURE, Diagnosis
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
+from werrimbi_odom.inference.diagnosis.values import mistakes, one_wheel, reference_wanders
+from werrimbi_odom.inference.manoeuvres.told import Told, significant
 from werrimbi_odom.model.effect import always_twins
-from werrimbi_odom.report.diagnosis.as_json import significant
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import (
     about,
     also,
-    at_bounds,
+    at_bounds_words,
     cost,
     judged,
-    mistakes,
-    one_wheel,
     ruler,
     sizes,
     sizes_found,
     whole,
 )
-from werrimbi_odom.report.diagnosis.told import Told
-from werrimbi_odom.report.left_out import jumps_words, left_out_words
 from werrimbi_odom.report.numbers import chance_words, error_words, listed
-from werrimbi_odom.report.printed import filled
+from werrimbi_odom.report.phrases import jumps_words, left_out_words
+from werrimbi_odom.report.text import filled
 
 
 @dataclass(frozen=True)
@@ -89,7 +87,7 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     hidden = [sight for sight in told.sights if sight.hidden]
     misfit = diagnosis.misfit is not None
-    wanders = not misfit and any(cell.p_value < VERY_SURE for cell in diagnosis.depends_on)
+    wanders = reference_wanders(diagnosis)
     lines = [
         "Nothing is missing that these drives could show"
         + ("." if wanders or misfit else ": the model explains them to their noise."),
@@ -292,7 +290,7 @@ def _at_bounds(diagnosis: Diagnosis) -> list[str]:
     return [
         f"But: {name} would lower the error too, only with {value}, the limit of what physics "
         "allows: it is not that effect."
-        for name, value in at_bounds(diagnosis).items()
+        for name, value in at_bounds_words(diagnosis).items()
     ]
 
 

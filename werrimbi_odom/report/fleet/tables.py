@@ -9,7 +9,7 @@ from io import StringIO
 
 from werrimbi_odom.report.fleet.rows import ERROR, Fleet, Row
 from werrimbi_odom.report.fleet.words import error_words, missing_words, next_words
-from werrimbi_odom.report.printed import table
+from werrimbi_odom.report.text import table
 
 HEADS = ("robot", "runs", "verdict", "what is missing", "held-out error [mm]", "next step")
 _ROBOT, _RUNS, _VERDICT, _MISSING, _ERROR, _NEXT = range(len(HEADS))

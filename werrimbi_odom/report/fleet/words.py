@@ -10,7 +10,7 @@ from typing import Any
 
 from werrimbi_odom.report.fleet.rows import ERROR, Fleet, Row, believed
 from werrimbi_odom.report.numbers import listed, with_std
-from werrimbi_odom.report.printed import filled
+from werrimbi_odom.report.text import filled
 
 _GROUPS = 6
 """Different things missing that are counted in the first sentence."""

@@ -12,7 +12,7 @@ from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.consistency import consistency
 from werrimbi_odom.inference.comparison.legs import LegStatistics
 from werrimbi_odom.report.comparison.words import words_of
-from werrimbi_odom.report.page_text import unwrapped
+from werrimbi_odom.report.text import unwrapped
 from werrimbi_odom.workbench.html import box, button, paragraphs, rows, text
 from werrimbi_odom.workbench.parts import (
     Part,

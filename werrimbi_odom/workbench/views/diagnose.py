@@ -8,13 +8,13 @@ from functools import partial
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
+from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
-from werrimbi_odom.report.diagnosis.phrases import at_bounds
-from werrimbi_odom.report.diagnosis.told import Told
+from werrimbi_odom.report.diagnosis.phrases import at_bounds_words
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.numbers import chance_words, error_words, listed
-from werrimbi_odom.report.page_text import unwrapped
+from werrimbi_odom.report.text import unwrapped
 from werrimbi_odom.workbench.figure import figure
 from werrimbi_odom.workbench.html import box, button, paragraphs, text
 from werrimbi_odom.workbench.parts import CellPart
@@ -45,7 +45,7 @@ def diagnose_view(tab: Tab) -> None:
         return
     with box("div", "columns"):
         with box("div", "left"):
-            _verdict(tab, found)
+            _verdict(found.told)
             _add_all(tab, found.diagnosis)
             _ranking(tab, found.diagnosis)
             _response(tab, found)
@@ -86,15 +86,7 @@ def _ask(tab: Tab) -> None:
                 why(tab, tab.why)
 
 
-def _verdict(tab: Tab, found: Diagnosed) -> None:
-    given = tab.shared.opened.given
-    told = Told(
-        found.diagnosis,
-        found.manoeuvre,
-        found.sights,
-        given.judging["leg"],
-        bool(given.holdout),
-    )
+def _verdict(told: Told) -> None:
     lines = unwrapped(words_of(told, STEPS))
     with box("div", "verdict"):
         text("p", lines[0], "headline", data_key="verdict")
@@ -182,7 +174,7 @@ def _response(tab: Tab, found: Diagnosed) -> None:
 
 def _following(tab: Tab, found: Diagnosed) -> None:
     """What to drive next."""
-    manoeuvre = found.manoeuvre
+    manoeuvre = found.told.manoeuvre
     if manoeuvre is None:
         return
     text("h3", "What to do next")
@@ -198,7 +190,7 @@ def _following(tab: Tab, found: Diagnosed) -> None:
 
 
 def _by_chance(item: Ranked, diagnosis: Diagnosis) -> str:
-    wild = at_bounds(diagnosis).get(item.effect)
+    wild = at_bounds_words(diagnosis).get(item.effect)
     if wild is not None:
         return f"only with {wild}, the limit of what physics allows"
     if item.p_value is not None and item.p_value > SURE:

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from werrimbi_odom.workbench.drawings import floor_figure
 from werrimbi_odom.workbench.figure import figure
-from werrimbi_odom.workbench.floor import floor_figure
 from werrimbi_odom.workbench.html import box, button, rows, text
 from werrimbi_odom.workbench.parts import figures_of, worst
 from werrimbi_odom.workbench.tab import Tab, millimetres

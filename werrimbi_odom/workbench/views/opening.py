@@ -8,8 +8,8 @@ from typing import Any
 
 from nicegui import ui
 
+from werrimbi_odom.workbench.drawings import measured_drawing
 from werrimbi_odom.workbench.html import box, text
-from werrimbi_odom.workbench.measured import measured_drawing
 from werrimbi_odom.workbench.opening import Opening
 
 
@@ -18,7 +18,7 @@ def opening_view(opening: Opening) -> None:
     with box("header"), box("div", "title"):
         text("h1", "werrimbi workbench")
         runs = (*opening.given.runs, *opening.given.holdout)
-        text("p", f"{opening.source.path.name}: {len(runs)} drives.")
+        text("p", f"{opening.given.source.path.name}: {len(runs)} drives.")
     with box("section", "work", aria_label="Work under way"):
         words = text("p", "Comparing …")
         bar: Any = box("progress", max="1", value="0", aria_label="Comparing, share done")

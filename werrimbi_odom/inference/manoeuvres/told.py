@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.files.asked import Recordings
-from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, diagnose
+from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit, detection_limits
-from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, next_manoeuvre
+from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, next_manoeuvre, strongest
 
 
 @dataclass(frozen=True)
@@ -39,7 +40,7 @@ def told_of(
     effects = given.collection.effects
     diagnosis = diagnose(
         given.runs,
-        given.source.robot,
+        given.robot,
         effects,
         holdout=given.holdout,
         **given.judging,
@@ -49,3 +50,29 @@ def told_of(
     manoeuvre = next_manoeuvre(diagnosis)
     sights = detection_limits(diagnosis, effects)
     return Told(diagnosis, manoeuvre, sights, given.how.leg, bool(given.holdout))
+
+
+def significant(diagnosis: Diagnosis) -> list[Dependence]:
+    """Cells of the evidence map that chance does not make, one for each channel and variable.
+
+    The best first; where no effect is what it is, first the one that explains most.
+    """
+    cells = one_each(beyond_chance(diagnosis.depends_on))
+    first = strongest(diagnosis) if diagnosis.verdict == "unknown" else None
+    if first is None:
+        return cells
+    others = [cell for cell in cells if (cell.channel, cell.name) != (first.channel, first.name)]
+    return [first, *others]
+
+
+def beyond_chance(cells: Iterable[Dependence]) -> Iterator[Dependence]:
+    """Cells of the evidence map that chance does not make."""
+    return (cell for cell in cells if cell.p_value < SURE)
+
+
+def one_each(cells: Iterable[Dependence]) -> list[Dependence]:
+    """The first cell of each channel and variable."""
+    found: dict[tuple[str, str], Dependence] = {}
+    for cell in cells:
+        found.setdefault((cell.channel, cell.name), cell)
+    return list(found.values())

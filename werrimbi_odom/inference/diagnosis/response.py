@@ -1,28 +1,114 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The first candidate's own variable: what the error does along it before, and after."""
+"""What is left of an error in each part of a variable's range, with error bars.
+
+A leg of a quarter of a metre runs through most of a wheel's turn, so an error that goes with the
+wheel's angle averages out in it. As the evidence map does, this asks which error of the single
+steps, constant in each part of the range, explains the legs' innovations best, beside all that
+calibration can explain; but it asks for parts, not for a law, so that it shows any law as it is.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 
+from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence, legs_pushed, pushes_of
 from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.design import Point
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED, unexplained
+from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, Model
+from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.linear import SILENT
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.report.diagnosis.evidence_figures import amount_words, variable_words
-from werrimbi_odom.report.diagnosis.response import Response, parts_of, response, unit_of
-from werrimbi_odom.report.style import BLUE, GREY, ORANGE, plain
 
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
+PARTS = 12
+_UNTOLD = 10.0  # times the usual error bar: a part in which next to nothing was driven
+_BLURRED = 3e-3  # of the best told pattern of parts: one told worse swings the curve for nothing
+_SAME = 1e-9  # of the range: values nearer than this are one
+
+
+@dataclass(frozen=True, slots=True)
+class Response:
+    """Error for each unit of its amount, over a variable; arrays of shape (parts,)."""
+
+    centre: Floats
+    value: Floats
+    """Measured minus predicted."""
+    std: Floats
+
+
+def parts_of(left: Floats, right: Floats, *, turns: bool) -> Floats:
+    """Edges of the parts: equal ones of a turn, else such that each holds as many steps."""
+    if turns:
+        return np.linspace(0.0, 2.0 * np.pi, PARTS + 1)
+    pooled = left if left is right else np.concatenate([left, right])
+    edges = np.quantile(pooled, np.linspace(0.0, 1.0, PARTS + 1))
+    wide = np.diff(edges) > _SAME * max(float(np.ptp(pooled)), 1e-300)
+    return np.asarray(edges[np.concatenate([[True], wide])])
+
+
+def response(
+    runs: Together,
+    point: Point,
+    kind: ReferenceKind,
+    knobs: Sequence[Knob],
+    amount: Amount,
+    values: tuple[Floats, Floats],
+    edges: Floats,
+) -> Response:
+    """What is left of an error over a variable.
+
+    Parameters
+    ----------
+    knobs
+        What the model could turn: what they can explain is taken off.
+    values : (ndarray, ndarray), shape (n,) each
+        The variable at every step, for left and right wheel.
+    edges : ndarray, shape (parts + 1,)
+    """
+    prediction = predict_all(point.model, runs)
+    frame, rest = unexplained(runs, point, kind, knobs, prediction)
+    path = path_of(point.model, runs)
+    of_left, of_right = pushes_of(runs, path, amount, point)
+    left, right = (_marks(side, edges) for side in values)
+    change = legs_pushed(runs, left, of_left)
+    if values[0] is not values[1] or amount.channel in ("left", "right", "along"):
+        change = change + legs_pushed(runs, right, of_right)
+    marks = unexpected(runs, point, kind, prediction).marks(change)
+    flat = marks[..., : change.shape[-1]].reshape(rest.size, -1)
+    length = np.sqrt(np.sum(flat**2, axis=0))
+    heard = length > SILENT
+    scale, free = length[heard], frame.residual(flat[:, heard])
+    normal = (free / scale).T @ (free / scale)
+    # What the knobs explain as well (a constant, mostly) is no part of it: left out, not blown up.
+    inverse = np.linalg.pinv(normal, rcond=_BLURRED, hermitian=True)
+    solution = -(inverse @ ((free / scale).T @ rest)) / scale
+    excess = max(float(np.mean(rest**2)), 1.0)  # errors larger than promised: wider bars
+    spread = np.sqrt(np.maximum(np.diag(inverse), 0.0) * excess) / scale
+    centre = np.array([_centre(values, edges, part) for part in range(edges.size - 1)])
+    told = spread <= _UNTOLD * np.median(spread)
+    return Response(centre[heard][told], solution[told], spread[told])
+
+
+def _marks(values: Floats, edges: Floats) -> Floats:
+    """In which part each step is, (n, parts)."""
+    part = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
+    return np.asarray(part[:, None] == np.arange(edges.size - 1), dtype=np.float64)
+
+
+def _centre(values: tuple[Floats, Floats], edges: Floats, part: int) -> float:
+    low, high = edges[part], edges[part + 1]
+    inside = [side[(side >= low) & (side <= high)] for side in values]
+    every = np.concatenate(inside)
+    return float(every.mean()) if every.size else 0.5 * float(low + high)
+
 
 _FOR_CALIBRATION = {
     "track_width": ("heading", "turn", ("yaw_rate", "yaw_rate_size")),
@@ -151,52 +237,3 @@ def _values(
         shift, aligned = -peaks[run], True
     angle = np.mod(variable.left + shift, 2.0 * np.pi)
     return (angle, angle), aligned
-
-
-def before_after_figure(found: BeforeAfter) -> go.Figure:
-    """Error along the variable with error bars, before (and after)."""
-    import plotly.graph_objects as go
-
-    unit, factor = unit_of(found.cell.amount)
-    scale = float(np.degrees(1.0)) if found.turns else 1.0
-    figure = go.Figure()
-    words = f"with {found.effect}" if found.effect else ""
-    for name, item, colour, symbol, dash in (
-        (
-            "before: calibrated alone" if found.effect not in CALIBRATED else "before: as given",
-            found.before,
-            ORANGE,
-            "square",
-            "dot",
-        ),
-        (f"after: {words}", found.after, BLUE, "circle", "solid"),
-    ):
-        if item is None:
-            continue
-        figure.add_scatter(
-            x=scale * item.centre,
-            y=factor * item.value,
-            mode="lines+markers",
-            name=name if found.effect else "what the error goes with",
-            line={"color": colour, "width": 2, "dash": dash},
-            marker={"color": colour, "symbol": symbol, "size": 9},
-            error_y={
-                "array": 2.0 * factor * item.std,
-                "color": colour,
-                "thickness": 1.5,
-                "width": 5,
-            },
-            hovertemplate=(
-                f"%{{x:.3g}}: %{{y:+.3g}} ± %{{error_y.array:.2g}} {unit}<extra>{name}</extra>"
-            ),
-        )
-    figure.add_hline(y=0.0, line={"color": GREY, "width": 1})
-    label = variable_words(found.cell.variable.name)
-    if found.turns:
-        label += ", from where the fit puts its zero [°]" if found.aligned else " [°]"
-        figure.update_xaxes(dtick=45, range=[0, 360])
-    elif found.cell.variable.unit:
-        label += f" [{found.cell.variable.unit}]"
-    figure.update_xaxes(title=label)
-    figure.update_yaxes(title=f"{amount_words(found.cell.amount)}<br>[{unit}]")
-    return plain(figure, height=430)

@@ -4,19 +4,17 @@
 
 from __future__ import annotations
 
-import argparse
 import shlex
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-_JUDGED_BY = {"leg": 1.0, "reference_kind": "absolute"}
-"""Options that change what is found, and their defaults; those below have none."""
-_READ_BY = ("ticks_topic", "reference_topic", "reference_sigma_xy", "reference_sigma_yaw")
+from werrimbi_odom.files.asked import How, Recordings
+from werrimbi_odom.files.run import Run
 
 
 def next_command(
     verb: Sequence[str],
-    arguments: argparse.Namespace,
+    given: Recordings,
     *,
     robot: Path | None = None,
     effects: Sequence[Path] = (),
@@ -30,6 +28,8 @@ def next_command(
     ----------
     verb
         The words behind `werrimbi`.
+    given
+        What this verb was given.
     robot, effects
         The robot file, if it is another one than was given, and effects beside those given.
     out
@@ -39,17 +39,12 @@ def next_command(
     one_line
         For the middle of a sentence.
     """
-    words = ["werrimbi", *verb, "--robot", str(robot or arguments.robot)]
-    for name in (*_JUDGED_BY, *_READ_BY):
-        value = getattr(arguments, name, None)
-        if value is not None and value != _JUDGED_BY.get(name):
-            said = f"{value:g}" if isinstance(value, float) else str(value)
-            words += [f"--{name.replace('_', '-')}", said]
-    for file in dict.fromkeys((*arguments.effects, *effects)):
+    words = ["werrimbi", *verb, "--robot", str(robot or given.source.path), *_options(given.how)]
+    for file in dict.fromkeys((*given.how.effects, *effects)):
         words += ["--effects", str(file)]
-    lines = [shlex.join(words), _paths(arguments.runs)]
-    if holdout and getattr(arguments, "holdout", None):
-        lines.append(f"--holdout {_paths(arguments.holdout)}")
+    lines = [shlex.join(words), _paths(given.runs)]
+    if holdout and given.holdout:
+        lines.append(f"--holdout {_paths(given.holdout)}")
     if out:
         lines.append(shlex.join(["--out", out]))
     return " ".join(lines) if one_line else "    " + " \\\n      ".join(lines)
@@ -60,13 +55,29 @@ def beside(robot: Path, word: str) -> str:
     return str(robot.with_name(f"{robot.stem}_{word}{robot.suffix}"))
 
 
-def _paths(paths: Sequence[Path]) -> str:
+def _options(how: How) -> Iterator[str]:
+    """Those that differ from their defaults."""
+    plain = How()
+    for option, value, default in (
+        ("leg", how.leg, plain.leg),
+        ("reference-kind", how.kind, plain.kind),
+        ("ticks-topic", how.ticks_topic, plain.ticks_topic),
+        ("reference-topic", how.reference_topic, plain.reference_topic),
+        ("reference-sigma-xy", how.sigma_xy, plain.sigma_xy),
+        ("reference-sigma-yaw", how.sigma_yaw, plain.sigma_yaw),
+    ):
+        if value != default:
+            yield f"--{option}"
+            yield f"{value:g}" if isinstance(value, float) else str(value)
+
+
+def _paths(runs: Sequence[Run]) -> str:
     """Paths as given; all of one folder as FOLDER/*."""
-    whole = shlex.join(map(str, paths))
+    paths = [run.path for run in runs]
     folders = {path.parent for path in paths}
     if len(paths) > 1 and len(folders) == 1:
         (folder,) = folders
         there = {path.name for path in folder.iterdir() if not path.name.startswith(".")}
         if there == {path.name for path in paths}:
             return f"{shlex.quote(str(folder))}/*"
-    return whole
+    return shlex.join(map(str, paths))

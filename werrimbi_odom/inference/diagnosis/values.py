@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Values of the effects that a diagnosis found, with standard deviations."""
+"""What follows from a diagnosis: values with standard deviations, sizes, what physics rules out."""
 
 from __future__ import annotations
 
@@ -12,11 +12,13 @@ import numpy as np
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import sizes_of, std_as_effect
-from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
+from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, Ranked, chance
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
-from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES
+from werrimbi_odom.inference.rules import ONE_WHEEL
+from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUpFinding
 
 
 @dataclass(frozen=True, slots=True)
@@ -105,3 +107,69 @@ def _spreads(fit: Fitted) -> dict[str, float]:
         for index, (knob, run) in enumerate(fit.design.columns)
         if run < 0
     }
+
+
+def mistakes(diagnosis: Diagnosis) -> dict[str, SetUpFinding]:
+    """What is set up wrongly, by name."""
+    return {finding.effect: finding for finding in diagnosis.set_up.findings}
+
+
+def best_sizes(diagnosis: Diagnosis) -> Mapping[str, tuple[float, float | None]]:
+    """Base and radii of the best model, as multipliers with standard deviations.
+
+    The given ones where set-up mistakes were found: sizes are told with them.
+    """
+    given, final = diagnosis.given, diagnosis.final
+    if mistakes(diagnosis):
+        return {name: (getattr(given, name), None) for name in MULTIPLIERS}
+    needed = sizes_needed(final, given, set(diagnosis.found) & set(CALIBRATED))
+    return dict(sizes_at(final, given, needed))
+
+
+def one_wheel(diagnosis: Diagnosis) -> str | None:
+    """The wheel that is off alone, where its size is what two effects of calibration are found of.
+
+    A ratio and a scale are then one thing on the robot.
+    """
+    found = set(diagnosis.found) & set(CALIBRATED)
+    if mistakes(diagnosis) or not {"unequal_wheel_radii", "wheel_radius_scale"} <= found:
+        return None
+    sizes = sizes_at(
+        diagnosis.final,
+        diagnosis.given,
+        sizes_needed(diagnosis.final, diagnosis.given, found),
+    )
+    left, right = (
+        abs(math.log(sizes[name][0] / getattr(diagnosis.given, name))) for name in MULTIPLIERS[1:]
+    )
+    if min(left, right) > ONE_WHEEL * max(left, right):
+        return None
+    return "left" if left > right else "right"
+
+
+def at_bounds(diagnosis: Diagnosis) -> dict[str, tuple[str, float, str]]:
+    """Effects that would help, but only at a value that physics does not allow.
+
+    By name: the parameter at its bound, its value, its unit.
+    """
+    found: dict[str, tuple[str, float, str]] = {}
+    for this in diagnosis.rounds:
+        for fit in this.tried:
+            name = fit.names[-1]
+            helps = fit.total < this.before.total and chance(fit, this.before, this.number) < SURE
+            wild = [knob for knob in fit.at_bound if knob.startswith(f"{name}.")]
+            if helps and wild and name not in diagnosis.found:
+                parameter = wild[0].rpartition(".")[2]
+                applied = fit.point.model.robot.effects[-1]
+                unit = applied.effect.parameters[parameter].unit
+                found.setdefault(name, (parameter, applied.values[parameter], unit))
+    return found
+
+
+def reference_wanders(diagnosis: Diagnosis) -> bool:
+    """Whether errors go with something beyond chance though nothing is missing.
+
+    Errors that are alike for seconds together, and no law that all parts of the drives agree on.
+    """
+    sure = any(cell.p_value < VERY_SURE for cell in diagnosis.depends_on)
+    return sure and diagnosis.verdict == "none" and diagnosis.misfit is None

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the calibrations have in common on the command line: options, and the files they write."""
+"""The files that a verb writes of its result, and the options that name them."""
 
 from __future__ import annotations
 
 import argparse
-from dataclasses import replace
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def add_file_arguments(parser: argparse.ArgumentParser) -> None:
-    """--robot, --out, --json, --report and --force."""
+    """--robot, --out, --json, --report and --force of a calibration."""
     parser.add_argument(
         "--robot", metavar="R", type=Path, required=True, help="robot file to start from"
     )
@@ -33,16 +33,23 @@ def add_file_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--force", action="store_true", help="overwrite --out if it exists")
 
 
-def write_all(arguments: argparse.Namespace, result: Result[Any]) -> None:
-    """The new robot file, then the JSON and the page that were asked for; says what it wrote."""
-    result.write_robot(arguments.out, force=arguments.force)
-    written = [arguments.out]
+def write_asked(arguments: argparse.Namespace, result: Result[Any]) -> list[Path]:
+    """The new robot file, if there is one, then JSON and page that were asked for; returns them."""
+    written = []
+    if result.new_robot is not None:
+        result.write_robot(arguments.out, force=arguments.force)
+        written.append(arguments.out)
     if arguments.json is not None:
         write_json(arguments.json, result.to_dict())
         written.append(arguments.json)
     if arguments.report is not None:
         from werrimbi_odom.cli.report_made import made_of
-        from werrimbi_odom.report.save import save_report
 
-        written += save_report(replace(result.page(), made=made_of(arguments)), arguments.report)
-    print(f"\nwritten: {', '.join(str(path) for path in written)}")
+        written += result.write_report(arguments.report, made_of(arguments))
+    return written
+
+
+def tell_written(written: Sequence[Path]) -> None:
+    """A line of what was written; none where nothing was."""
+    if written:
+        print(f"\nwritten: {', '.join(map(str, written))}")

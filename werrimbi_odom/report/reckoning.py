@@ -41,8 +41,8 @@ class EndError:
 
 
 @dataclass(frozen=True)
-class Figures:
-    """Everything that is printed, and written with --json."""
+class Reckoning:
+    """A run, dead reckoned, and everything that is told of it."""
 
     run: Run
     start: Start
@@ -141,9 +141,9 @@ class Figures:
             yield "note", note
 
 
-def figures_of(
+def reckoning_of(
     run: Run, start: Start, driven: Trajectory, shown: ShownPath, learnt: tuple[str, ...] = ()
-) -> Figures:
+) -> Reckoning:
     """Work out the figures of a run that was dead reckoned from `start`.
 
     Parameters
@@ -155,21 +155,21 @@ def figures_of(
     """
     reference = run.reference
     if reference is None:
-        return Figures(run, start, driven, shown, None, learnt)
+        return Reckoning(run, start, driven, shown, None, learnt)
     known = np.flatnonzero(reference.has_position | reference.has_yaw)
     if known.size == 0:
         remarks = (*learnt, "the reference measured nothing")
-        return Figures(run, start, driven, shown, None, remarks)
+        return Reckoning(run, start, driven, shown, None, remarks)
     first, last = known[0], _last_row(reference, known, driven)
     found = [*learnt, *_late_or_early(reference, known, driven)]
     if driven.tally.clock_jumps:
         found.append("the ticks' clock was set back, so poses of one time cannot be compared")
-        return Figures(run, start, driven, shown, None, tuple(found))
+        return Reckoning(run, start, driven, shown, None, tuple(found))
     if last is None:
         found.append("reference and ticks have no time in common; are both clocks the same?")
-        return Figures(run, start, driven, shown, None, tuple(found))
+        return Reckoning(run, start, driven, shown, None, tuple(found))
     end = _end_error(reference, start.shown, shown, int(first), int(last))
-    return Figures(run, start, driven, shown, end, tuple(found))
+    return Reckoning(run, start, driven, shown, end, tuple(found))
 
 
 def _last_row(reference: Reference, known: Any, driven: Trajectory) -> int | None:

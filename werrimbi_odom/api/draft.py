@@ -1,0 +1,141 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where no known effect explains the errors: one written from what they depend on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from werrimbi_odom.api.drives import Drives, Options, recordings_of
+from werrimbi_odom.api.next_command import beside, next_command
+from werrimbi_odom.api.result import Result
+from werrimbi_odom.api.verbs import Show, silent
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.files.robot_file import RobotFile
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+    from werrimbi_odom.inference.adding.drafting import Draft
+    from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+
+
+@dataclass(frozen=True, repr=False, kw_only=True)
+class Drafted(Result[Any]):
+    """A draft, and what it does to the error."""
+
+    found: Draft
+
+    def write_package(self, folder: str | Path) -> list[Path]:
+        """Write a small package that `pip install` takes; returns its files.
+
+        Raises
+        ------
+        InputError
+            When it cannot be written.
+        """
+        from werrimbi_odom.files.replacing import replacing
+        from werrimbi_odom.inference.adding.draft_package import package_of
+
+        folder = Path(folder)
+        try:
+            folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError(f"{folder} cannot be made: {error.strerror}") from error
+        written = []
+        for name, text in package_of(self.found).items():
+            with replacing(folder / name) as file:
+                file.write(text)
+            written.append(folder / name)
+        return written
+
+
+def draft(
+    robot: RobotFile,
+    runs: Drives,
+    *,
+    holdout: Drives = (),
+    force: bool = False,
+    show: Show = silent,
+    **options: Unpack[Options],
+) -> Drafted:
+    """Where the verdict is unknown: an effect whose law is the dependence that the drives show.
+
+    Parameters
+    ----------
+    force
+        Draft whatever the verdict is.
+
+    Returns
+    -------
+    Drafted
+        `found.source` is the effect's file, `found.effect` the effect, to be read, and given to
+        `add`; `write_package(folder)` writes it.
+    """
+    given = recordings_of(robot, runs, holdout, **options)
+    return drafted(given, "" if force else "force=True drafts", show)
+
+
+def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted:
+    """`draft` for what was read already.
+
+    Parameters
+    ----------
+    insist
+        What drafts whatever the verdict is, in words; "": that was asked for.
+    """
+    from werrimbi_odom.inference.adding.adding import add_effects
+    from werrimbi_odom.inference.adding.drafting import draft_effect
+    from werrimbi_odom.inference.diagnosis.diagnosis import diagnose as search
+    from werrimbi_odom.report.adding.draft_words import draft_json, draft_words
+    from werrimbi_odom.report.adding.page import adding_page
+
+    robot = given.robot
+    diagnosis = search(
+        given.runs,
+        robot,
+        given.collection.effects,
+        holdout=given.holdout,
+        show=show,
+        **given.judging,
+    )
+    if diagnosis.verdict != "unknown" and insist:
+        raise InputError(_known(diagnosis, given, insist))
+    found = draft_effect(diagnosis, show)
+    tried = add_effects(
+        (found.effect,),
+        given.runs,
+        diagnosis.robot,
+        given=robot,
+        holdout=given.holdout,
+        show=show,
+        **given.judging,
+    )
+    law = found.source.partition("\n\n\n")[2].rstrip()
+    return Drafted(
+        found=found,
+        words=lambda: f"{draft_words(found, tried)}\n\n{law}",
+        figures_of_json=lambda: draft_json(found, tried),
+        page=lambda: adding_page(tried, {}),
+    )
+
+
+def _known(diagnosis: Diagnosis, given: Recordings, insist: str) -> str:
+    """Why nothing is drafted, and what to do instead."""
+    force = f"; {insist} the strongest dependence all the same"
+    if diagnosis.verdict == "none":
+        return f"the verdict is none: the model explains these drives to their noise{force}"
+    if diagnosis.verdict == "ambiguous":
+        names = ", ".join(diagnosis.rivals)
+        return f"the verdict is ambiguous between effects of the library ({names}){force}"
+    better = beside(given.source.path, "better")
+    names = ",".join(diagnosis.found)
+    add = next_command(["add", names], given, out=better, one_line=True)
+    return (
+        f"the verdict is named: {names}, which the library holds; add it, and draft "
+        f"with the new robot file what then remains: {add}"
+        f"{force}"
+    )

@@ -1,0 +1,58 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where a comparison's legs lie, and how sure dead reckoning is along the way to them."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.model.covariance import PoseCovariance
+from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.model.trajectory import trajectory
+
+
+def middles(comparison: Comparison) -> NDArray[np.complex128]:
+    """Middle of each leg (x + iy), measured; where headings alone are measured, by the model."""
+    legs = comparison.legs
+    found = 0.5 * (legs.x + legs.end_x) + 0.5j * (legs.y + legs.end_y)
+    found = found.astype(np.complex128)
+    for group in comparison.prepared.groups:
+        if group.measure != "heading":
+            continue
+        for index in group.index:
+            mine = legs.run == index
+            time = 0.5 * (legs.start_time + legs.end_time)[mine]
+            path = comparison.paths[index]
+            found[mine] = np.interp(time, path.time, path.predicted)
+    return found
+
+
+def covariance_along(comparison: Comparison, index: int) -> Floats:
+    """Covariance of the dead-reckoned position at every reference pose of a run, (n, 2, 2) [m²].
+
+    It begins with the noise of the measured pose that dead reckoning starts from. Of the axle's
+    midpoint; the point that the reference measures is near it.
+    """
+    run, path = comparison.prepared.runs[index], comparison.paths[index]
+    robot = comparison.model.of_run(index)
+    group = next(item for item in comparison.prepared.groups if index in item.index)
+    own = group.index.index(index)
+    xy, heading = float(group.sigma_xy[own]), float(group.sigma_yaw[own])
+    yaw = float(path.predicted_yaw[0]) - view_of(robot.effects).yaw
+    begin = int(np.clip(np.searchsorted(run.ticks.time, path.time[0]), 0, run.ticks.time.size - 2))
+    ticks = run.ticks
+    driven = trajectory(
+        robot,
+        ticks.time[begin:],
+        ticks.left[begin:],
+        ticks.right[begin:],
+        start=Pose(0.0, 0.0, yaw),
+        covariance=PoseCovariance(xy**2, 0.0, 0.0, xy**2, 0.0, heading**2),
+        channels={name: values[begin:] for name, values in ticks.channels.items()},
+    )
+    every = driven.covariance.matrix()[:, :2, :2]
+    rows = np.clip(np.searchsorted(driven.time, path.time), 0, driven.time.size - 1)
+    return np.asarray(every[rows])

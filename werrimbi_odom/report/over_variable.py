@@ -1,0 +1,254 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""An error over one variable, as measured: of legs, over a wheel's turn, before and after."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.comparison.over_variable import (
+    FINE,
+    binned,
+    once_a_turn,
+    over_a_turn,
+    wheel_errors,
+)
+from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.response import BeforeAfter
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.comparison.figures import CHANNELS, measured_channels
+from werrimbi_odom.report.diagnosis.evidence_figures import (
+    amount_words,
+    unit_of,
+    variable_words,
+)
+from werrimbi_odom.report.style import (
+    BLUE,
+    FAINT,
+    GREEN,
+    GREY,
+    MARKS,
+    ORANGE,
+    escaped,
+    paled,
+    plain,
+    small,
+    spread_and_extremes,
+)
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+WHEEL_ANGLES = ("left wheel's angle [°]", "right wheel's angle [°]")
+
+_MOST_RUNS = 6
+"""Of which a wheel's angle is drawn."""
+
+_FEWEST = 6  # parts of a turn, that a wave is laid through
+
+_LOOKS = (
+    (BLUE, "solid", "circle"),
+    (ORANGE, "solid", "square"),
+    (GREEN, "solid", "triangle-up"),
+    (GREY, "solid", "diamond"),
+    (BLUE, "dash", "x"),
+    (ORANGE, "dash", "cross"),
+)
+
+
+def _bars(std: Floats, colour: str, thickness: float = 2, width: float = 5) -> dict[str, object]:
+    """Error bars of two standard errors."""
+    return {"array": 2.0 * std, "color": colour, "thickness": thickness, "width": width}
+
+
+def over(figure: go.Figure, variable: str, error: str, height: int, *, turn: bool) -> go.Figure:
+    """Zero is a line; `turn`: over one turn, in degrees."""
+    figure.add_hline(y=0.0, line={"color": GREY, "width": 1})
+    figure.update_xaxes(title=variable, **({"dtick": 45, "range": [0, 360]} if turn else {}))
+    figure.update_yaxes(title=error)
+    return plain(figure, height=height)
+
+
+def wheel_angle_figure(comparison: Comparison, variable: str) -> go.Figure:
+    """Error of a wheel's travel, in mm for each metre rolled, over its turn; a wave a run."""
+    import plotly.graph_objects as go
+
+    side = -1 if variable == WHEEL_ANGLES[0] else 1
+    word = "left" if side < 0 else "right"
+    figure = go.Figure()
+    longest = sorted(
+        range(len(comparison.runs)), key=lambda index: -comparison.runs[index].distance_m
+    )[:_MOST_RUNS]
+    for index, (colour, dash, symbol) in zip(sorted(longest), _LOOKS, strict=False):
+        centre, mean, spread = over_a_turn(*wheel_errors(comparison, index, side))
+        if np.isfinite(mean).sum() < _FEWEST:
+            continue
+        amplitude, std, wave = once_a_turn(centre, mean, spread)
+        name = escaped(comparison.runs[index].run.name)
+        figure.add_scatter(
+            x=centre,
+            y=mean,
+            mode="markers",
+            legendgroup=name,
+            showlegend=False,
+            marker={"symbol": symbol, "size": 8, "color": paled(colour, 0.6)},
+            error_y=_bars(spread, paled(colour, 0.3), 1, 0),
+            hovertemplate=(
+                f"{name}<br>%{{x:.0f}}°: %{{y:+.2f}} ± %{{error_y.array:.2f}} mm per m"
+                "<extra></extra>"
+            ),
+        )
+        figure.add_scatter(
+            x=small(FINE),
+            y=small(wave),
+            mode="lines",
+            name=f"{name}: once a turn {amplitude:.1f} ± {std:.1f}",
+            legendgroup=name,
+            line={"color": colour, "dash": dash, "width": 2.5},
+            hoverinfo="skip",
+        )
+    if not figure.data:
+        figure.add_annotation(
+            text="The reference measures no headings and positions this often.",
+            showarrow=False,
+            x=0.5,
+            y=0.5,
+            xref="paper",
+            yref="paper",
+        )
+    error = f"error of the {word} wheel's travel [mm per m]"
+    return over(figure, f"angle of the {word} wheel [°]", error, 480, turn=True)
+
+
+def variables_of(comparison: Comparison) -> list[str]:
+    """What errors can be drawn against, those that they go with most surely first."""
+    varied = [item.name for item in comparison.variables]
+    sure = {item.name: min(item.p_values.values()) for item in comparison.variables}
+    ordered = sorted(varied, key=lambda name: sure[name] if sure[name] < 1e-4 else 1.0)
+    return [*ordered, *WHEEL_ANGLES]
+
+
+def error_against_figure(comparison: Comparison, variable: str) -> go.Figure:
+    """Errors of the legs over one variable: each leg a dot, means of equal parts with error bars.
+
+    Parameters
+    ----------
+    variable : str
+        One of `variables_of`.
+    """
+    from plotly.subplots import make_subplots
+
+    if variable in WHEEL_ANGLES:
+        return wheel_angle_figure(comparison, variable)
+    legs = comparison.legs
+    values = legs.variables[variable]
+    is_angle = variable.startswith("heading")
+    if is_angle:
+        values = np.degrees(np.mod(values + np.pi, 2.0 * np.pi) - np.pi)
+    columns = measured_channels(comparison)
+    figure = make_subplots(rows=len(columns), cols=1, shared_xaxes=True, vertical_spacing=0.06)
+    known = ~legs.outlier & np.isfinite(values)
+    for place, column in enumerate(columns, start=1):
+        name, unit, factor = CHANNELS[column]
+        error = factor * legs.errors.error[:, column]
+        rows = np.flatnonzero(known & np.isfinite(error))
+        drawn = rows[spread_and_extremes(error[rows], MARKS // 2)]
+        figure.add_scatter(
+            x=small(values[drawn]),
+            y=small(error[drawn]),
+            mode="markers",
+            name="a leg",
+            legendgroup="leg",
+            showlegend=place == 1,
+            marker={"color": paled(GREY, 0.55), "size": 5},
+            hovertemplate=f"%{{x:.3g}}<br>{name} %{{y:.2f}} {unit}<extra></extra>",
+            row=place,
+            col=1,
+        )
+        centre, mean, spread, count = binned(values[rows], error[rows], periodic=is_angle)
+        figure.add_scatter(
+            x=centre,
+            y=mean,
+            mode="lines+markers",
+            name="mean, ± 2 standard errors",
+            legendgroup="mean",
+            showlegend=place == 1,
+            line={"color": BLUE, "width": 2},
+            marker={"color": BLUE, "size": 8},
+            error_y=_bars(spread, BLUE),
+            customdata=count,
+            hovertemplate=(
+                f"%{{x:.3g}}<br>{name} %{{y:.2f}} ± %{{error_y.array:.2f}} {unit}"
+                "<br>%{customdata} legs<extra></extra>"
+            ),
+            row=place,
+            col=1,
+        )
+        figure.update_yaxes(title=f"{name} [{unit}]", row=place, col=1)
+        _range(figure, error[rows], place)
+    plain(figure, height=150 + 175 * len(columns))
+    label = variable.replace("[rad]", "[°]") if is_angle else variable
+    figure.update_xaxes(title=label, row=len(columns), col=1)
+    if is_angle:
+        figure.update_xaxes(dtick=45, range=[-185, 185])
+    figure.update_xaxes(gridcolor=FAINT)
+    return figure
+
+
+def _range(figure: go.Figure, values: Floats, place: int) -> None:
+    """Most of the points; the few far out may be zoomed to."""
+    if values.size == 0:
+        return
+    low, high = np.quantile(values, [0.005, 0.995]).tolist()
+    room = 0.15 * max(high - low, 1e-9)
+    figure.update_yaxes(range=[min(low, 0.0) - room, max(high, 0.0) + room], row=place, col=1)
+
+
+def before_after_figure(found: BeforeAfter) -> go.Figure:
+    """Error along the variable with error bars, before (and after)."""
+    import plotly.graph_objects as go
+
+    unit, factor = unit_of(found.cell.amount)
+    scale = float(np.degrees(1.0)) if found.turns else 1.0
+    figure = go.Figure()
+    words = f"with {found.effect}" if found.effect else ""
+    for name, item, colour, symbol, dash in (
+        (
+            "before: calibrated alone" if found.effect not in CALIBRATED else "before: as given",
+            found.before,
+            ORANGE,
+            "square",
+            "dot",
+        ),
+        (f"after: {words}", found.after, BLUE, "circle", "solid"),
+    ):
+        if item is None:
+            continue
+        figure.add_scatter(
+            x=scale * item.centre,
+            y=factor * item.value,
+            mode="lines+markers",
+            name=name if found.effect else "what the error goes with",
+            line={"color": colour, "width": 2, "dash": dash},
+            marker={"color": colour, "symbol": symbol, "size": 9},
+            error_y=_bars(factor * item.std, colour, 1.5),
+            hovertemplate=(
+                f"%{{x:.3g}}: %{{y:+.3g}} ± %{{error_y.array:.2g}} {unit}<extra>{name}</extra>"
+            ),
+        )
+    label = labelled(found.cell)
+    if found.turns and found.aligned:
+        label = label.replace(" [°]", ", from where the fit puts its zero [°]")
+    error = f"{amount_words(found.cell.amount)}<br>[{unit}]"
+    return over(figure, label, error, 430, turn=found.turns)
+
+
+def labelled(cell: Dependence) -> str:
+    """The variable with its unit."""
+    unit = "°" if cell.form == "turns" else cell.variable.unit
+    name = variable_words(cell.variable.name)
+    return f"{name} [{unit}]" if unit else name

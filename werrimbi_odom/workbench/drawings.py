@@ -1,0 +1,314 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the page draws: the measured paths, the legs on the floor, the error falling; light, dark.
+
+Values in, figures out: no page is needed to try them. A long drive is drawn with fewer points;
+every figure is counted with all.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.comparison.legs import CHI2_95
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.style import (
+    BLUE,
+    FEWEST,
+    GREY,
+    IN_THE_DARK,
+    KEPT_HERE,
+    MARKS,
+    ORANGE,
+    PAPER,
+    along_path,
+    plain,
+    small,
+)
+from werrimbi_odom.workbench.steps import Step
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+BUTTONS = ["select2d", "lasso2d", "autoScale2d", "toImage"]
+"""Of plotly's tool bar, that nobody needs here."""
+
+_COLOURS = re.compile("|".join(IN_THE_DARK), re.IGNORECASE)
+WIDTH, HEIGHT, EDGE = 720.0, 400.0, 24.0
+"""Of the drawing of the measured paths [pixels]."""
+
+YELLOW = "#E69F00"
+CHI2_9999 = np.array([np.inf, 15.136705226623606, 18.420680743952367, 21.107513466160785])
+"""99.99 % quantiles of chi-squared by its degrees of freedom."""
+
+CLASSES = (
+    ("as promised", BLUE, 2.0, "solid"),
+    ("more than promised (outside 95 %)", YELLOW, 4.0, "solid"),
+    ("far more (outside 99.99 %)", ORANGE, 6.5, "solid"),
+    ("left out: the reference jumped", GREY, 2.0, "dot"),
+)
+
+_POINTS = 6000
+"""Of all paths, that are drawn."""
+
+_LEGS = 2000
+"""Of each class, that are drawn; beyond (some hours of driving) every few."""
+
+_TEXTS = MARKS
+"""Legs, beyond which only those that err tell their figures under the pointer."""
+
+
+def classes_of(comparison: Comparison) -> NDArray[np.intp]:
+    """Index into `CLASSES` of every leg, shape (m,)."""
+    errors = comparison.legs.errors
+    deviation = np.nan_to_num(errors.deviation)
+    grade = (deviation > CHI2_95[errors.freedom]).astype(np.intp)
+    grade += deviation > CHI2_9999[errors.freedom]
+    return np.asarray(np.where(comparison.legs.outlier, 3, grade))
+
+
+def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None) -> go.Figure:
+    """The legs where they were driven, told apart by how far they err from what was promised.
+
+    Where `which` is given, those stand out and the rest is faint. Colour, width and dash tell the
+    same, so that no eye needs the colour.
+    """
+    figure = empty_floor()
+    lines = _lines(comparison)
+    grade = classes_of(comparison)
+    if which is not None:
+        x, y = _joined(lines, np.flatnonzero(~which))
+        figure.add_scatter(
+            x=x,
+            y=y,
+            mode="lines",
+            name="other legs",
+            line={"color": "rgba(128, 128, 128, 0.35)", "width": 1.5},
+            hoverinfo="skip",
+        )
+    chosen = np.ones(grade.size, dtype=np.bool_) if which is None else which
+    for index, (name, colour, width, dash) in enumerate(CLASSES):
+        members = np.flatnonzero(chosen & (grade == index))
+        if members.size == 0:
+            continue
+        x, y = _joined(lines, members)
+        figure.add_scatter(
+            x=x,
+            y=y,
+            mode="lines",
+            name=f"{name}: {members.size}",
+            line={"color": colour, "width": width, "dash": dash},
+            hoverinfo="skip",
+        )
+    _add_texts(figure, comparison, chosen, grade)
+    return figure
+
+
+def empty_floor() -> go.Figure:
+    """Nothing on it yet: seen from above, equal scales, to be moved about."""
+    import plotly.graph_objects as go
+
+    figure = go.Figure()
+    figure.update_xaxes(title="x [m]")
+    figure.update_yaxes(title="y [m]", scaleanchor="x", scaleratio=1)
+    plain(figure, height=480).update_xaxes(zeroline=False).update_yaxes(zeroline=False)
+    figure.update_layout(dragmode="pan", margin={"l": 60, "r": 10, "t": 10, "b": 50})
+    return figure
+
+
+def _add_texts(
+    figure: Any, comparison: Comparison, chosen: NDArray[np.bool_], grade: NDArray[np.intp]
+) -> None:
+    """The middle of the legs, unseen, which tells their figures under the pointer.
+
+    An unseen line and no marks: it is one element of the page, however many corners it has.
+    """
+    legs = comparison.legs
+    told = np.flatnonzero(chosen & np.isfinite(legs.x) & np.isfinite(legs.end_x))
+    if told.size > _TEXTS:
+        told = told[np.argsort(-grade[told], kind="stable")[:_TEXTS]]
+    figure.add_scatter(
+        x=small(0.5 * (legs.x + legs.end_x)[told]),
+        y=small(0.5 * (legs.y + legs.end_y)[told]),
+        mode="lines",
+        showlegend=False,
+        line={"width": 0, "color": "rgba(0, 0, 0, 0)"},
+        text=[leg_told(comparison, int(index)) for index in told],
+        hovertemplate="%{text}<extra></extra>",
+    )
+
+
+def leg_told(comparison: Comparison, index: int) -> str:
+    """One leg in two lines."""
+    legs = comparison.legs
+    run = comparison.runs[legs.run[index]].run.name
+    along, sideways, heading = legs.errors.error[index]
+    return (
+        f"{run}, {legs.start_time[index]:.1f} to {legs.end_time[index]:.1f} s, "
+        f"{legs.errors.kind[index]}<br>measured − predicted: along {1e3 * along:+.1f} mm, "
+        f"sideways {1e3 * sideways:+.1f} mm, heading {np.degrees(heading):+.2f}°"
+    )
+
+
+def _lines(comparison: Comparison) -> list[tuple[Floats, Floats]]:
+    """The measured path of every leg, thinned."""
+    legs, paths = comparison.legs, comparison.paths
+    total = sum(path.measured.size for path in paths)
+    every = max(1, total // _POINTS)
+    lines = []
+    for run, begin, end in zip(legs.run, legs.start_time, legs.end_time, strict=True):
+        measured = paths[int(run)].measured
+        first, last = np.searchsorted(paths[int(run)].time, [begin, end])
+        places = np.unique(np.append(np.arange(first, last + 1, every), last))
+        points = measured[places[places < measured.size]]
+        points = points[np.isfinite(points)]
+        lines.append((points.real, points.imag))
+    return lines
+
+
+def _joined(
+    lines: list[tuple[Floats, Floats]], which: NDArray[np.intp]
+) -> tuple[NDArray[np.float32], NDArray[np.float32]]:
+    """Lines behind each other, parted by NaN."""
+    gap = np.array([np.nan])
+    if which.size > _LEGS:
+        which = which[np.linspace(0, which.size - 1, _LEGS).astype(np.intp)]
+    parts = [lines[int(index)] for index in which]
+    if not parts:
+        return small(np.empty(0)), small(np.empty(0))
+    return (
+        small(np.concatenate([piece for x, _ in parts for piece in (x, gap)])),
+        small(np.concatenate([piece for _, y in parts for piece in (y, gap)])),
+    )
+
+
+def gain_figure(steps: Sequence[Step]) -> go.Figure:
+    """Held-out and fitted drives apart, and what noise alone would leave of the held-out ones."""
+    import plotly.graph_objects as go
+
+    figure = go.Figure()
+    names = [step.name if step.added is None else f"+ {step.name}" for step in steps]
+    sides = (
+        ("held-out drives", BLUE, "", [step.look.holdout_error for step in steps]),
+        ("fitted drives", GREY, "/", [step.look.train_error for step in steps]),
+    )
+    for name, colour, shape, errors in sides:
+        values = [1e3 * error for error in errors]
+        figure.add_bar(
+            x=list(range(len(names))),
+            y=values,
+            name=name,
+            marker={
+                "color": colour,
+                "pattern": {"shape": shape, "fillmode": "overlay", "fgopacity": 0.25},
+            },
+            text=[f"{value:.2f}" for value in values],
+            textposition="inside",
+            insidetextanchor="start",
+            textangle=0,
+            textfont={"color": PAPER, "size": 15},
+            hovertemplate=f"{name}: %{{y:.2f}} mm<extra></extra>",
+        )
+    added = steps[-1].added
+    last = max(len(names), 3) - 0.4  # room for the next bar
+    if added is not None and added.explained:
+        floor = 1e3 * added.noise_alone(added.holdout)
+        figure.add_scatter(
+            x=[-0.6, last],
+            y=[floor, floor],
+            mode="lines",
+            name=f"what noise alone would leave: {floor:.2f} mm",
+            line={"color": ORANGE, "width": 3, "dash": "dash"},
+            hoverinfo="skip",
+        )
+    plain(figure, height=380)
+    figure.update_layout(barmode="group", bargap=0.35, dragmode=False)
+    places = list(range(len(names)))
+    figure.update_xaxes(
+        tickvals=places, ticktext=names, range=[-0.6, last], showgrid=False, zeroline=False
+    )
+    measured = [error for *_, errors in sides for error in errors if error == error]
+    top = 1e3 * max(measured, default=1e-3)
+    figure.update_yaxes(title="position error [mm]", range=[0.0, 1.08 * top])
+    return figure
+
+
+def measured_drawing(runs: Sequence[Run]) -> str | None:
+    """The paths from above (SVG) with a bar for the scale; None where no position was measured.
+
+    It needs no program: plotly.js takes a while to begin, and comes while this is looked at.
+    """
+    paths = [places for run in runs if (places := _places(run)).size]
+    if not paths:
+        return None
+    every = np.concatenate(paths)
+    low = complex(every.real.min(), every.imag.min())
+    size = complex(every.real.max(), every.imag.max()) - low
+    scale = min(
+        (WIDTH - 2 * EDGE) / max(size.real, 1e-9), (HEIGHT - 3 * EDGE) / max(size.imag, 1e-9), 1e6
+    )
+    left = 0.5 * (WIDTH - scale * size.real)
+    most = max(FEWEST, _POINTS // 2 // len(paths))
+    lines = "".join(
+        f"M{' '.join(f'{x:.1f} {y:.1f}' for x, y in _drawn(places, most, low, scale, left))}"
+        for places in paths
+    )
+    bar = _round(0.25 * WIDTH / scale)
+    end = EDGE + bar * scale
+    return (
+        f'<svg class="measured" viewBox="0 0 {WIDTH:g} {HEIGHT:g}" role="img" '
+        'aria-label="The measured paths from above" fill="none" stroke-linejoin="round" '
+        f'font-size="14"><path d="{lines}" stroke="var(--grey)" stroke-width="1.5"/>'
+        f'<path d="M{EDGE:g} {HEIGHT - 10:g}H{end:.1f}" stroke="currentColor" stroke-width="3"/>'
+        f'<text x="{end + 8:.1f}" y="{HEIGHT - 5:g}" fill="currentColor">{bar:g} m</text></svg>'
+    )
+
+
+def _places(run: Run) -> NDArray[np.complex128]:
+    if run.reference is None:
+        return np.empty(0, dtype=np.complex128)
+    places = run.reference.x + 1j * run.reference.y
+    return np.asarray(places[np.isfinite(places)], dtype=np.complex128)
+
+
+def _drawn(
+    places: NDArray[np.complex128], most: int, low: complex, scale: float, left: float
+) -> list[tuple[float, float]]:
+    at = scale * (places[along_path(places, most)] - low)
+    y = HEIGHT - 2 * EDGE - at.imag
+    return list(zip((left + at.real).tolist(), y.tolist(), strict=True))
+
+
+def _round(length: float) -> float:
+    """1, 2 or 5 times a power of ten, not longer."""
+    ten = 10.0 ** math.floor(math.log10(length))
+    return next(step * ten for step in (5.0, 2.0, 1.0) if step * ten <= length * (1.0 + 1e-9))
+
+
+def shown(figure: go.Figure | str, dark: bool) -> dict[str, Any]:
+    """A figure (or its JSON) as the page draws it; in the dark every colour has its twin."""
+    words = figure if isinstance(figure, str) else str(figure.to_json())
+    if dark:
+        words = _COLOURS.sub(lambda found: IN_THE_DARK[found.group().upper()], words)
+    drawn: dict[str, Any] = json.loads(words)
+    if dark:
+        for name, axis in drawn["layout"].items():
+            if name.startswith("coloraxis") and not axis.get("meta"):
+                axis["reversescale"] = True  # much stands out from the page
+    drawn["config"] = {
+        "displaylogo": False,
+        **KEPT_HERE,
+        "responsive": True,
+        "modeBarButtonsToRemove": BUTTONS,
+        "scrollZoom": True,
+    }
+    return drawn
