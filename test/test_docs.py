@@ -14,8 +14,9 @@ from typing import Any
 
 import pytest
 
+from test.recorded_robots import with_recordings
+
 ROOT = Path(__file__).parents[1]
-DATA = Path(os.environ.get("WERRIMBI_DATA", ROOT.parent / "shared" / "data"))
 README = (ROOT / "README.md").read_text()
 
 
@@ -40,7 +41,7 @@ def test_every_link_of_the_docs_leads_somewhere() -> None:
             assert (page.parent / link).exists(), f"{page.name}: {link}"
 
 
-@pytest.mark.skipif(not DATA.exists(), reason=f"no recorded robots at {DATA} (WERRIMBI_DATA)")
+@with_recordings
 def test_the_table_of_real_robots_is_what_its_command_prints() -> None:
     module = script("real_robots")
     shown = (ROOT / "docs" / "real_robots.md").read_text()

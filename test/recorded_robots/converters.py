@@ -15,11 +15,12 @@ from numpy.typing import NDArray
 from test.recorded_robots.runs import Drive, Floats, Read, integrated, yaw_alone
 
 COUNTS_A_TURN = 1_000_000  # for robots that publish speeds of wheels, and no counters
+SIDES = ("left", "right")
 MARGIN = 0.020  # s, of the reference before and after a piece of a drive
 
 
 def optitrack(read: Read, drives: tuple[str, ...]) -> Iterator[Drive]:
-    """Rows of time, pose by motion capture, and counts of right and left wheel since the last row."""
+    """Rows of time, pose by motion capture, and counts since the last row, right then left."""
     for name in drives:
         kind, session, number = name.split("_")
         path = f"data/diff/{kind}/{session}/{session}_run-{number}.csv"
@@ -94,7 +95,9 @@ def kobuki(read: Read, bag: str, bias: float, cuts: tuple[int, ...]) -> Iterator
         yield Drive(
             name=f"part_{part}",
             t=t,
-            counts=np.array([[int(row[f"field.{side}_encoder"]) for side in SIDES] for row in rows]),
+            counts=np.array(
+                [[int(row[f"field.{side}_encoder"]) for side in SIDES] for row in rows]
+            ),
             t_pose=t_pose[within],
             pose=yaw_alone(integrated(t_pose[within], rate[within])),
             decimals=(6, 6, 6),
@@ -105,9 +108,6 @@ def kobuki(read: Read, bag: str, bias: float, cuts: tuple[int, ...]) -> Iterator
                 "right_current_a": [f"{int(row['field.current1']) / 100:g}" for row in rows],
             },
         )
-
-
-SIDES = ("left", "right")
 
 
 def upenn_gyro(read: Read, biases: dict[int, float]) -> Iterator[Drive]:

@@ -132,7 +132,7 @@ ROBOTS = (
     Robot(
         folder="labyrinth",
         source=LIBRSF,
-        remarks=("Small robot of the Labyrinth Dataset; travel from wheel speeds, positions alone",),
+        remarks=("Small robot; travel from wheel speeds, positions alone",),
         separation=0.0785,
         radius=0.016,
         counts=1000000.0,
