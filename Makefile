@@ -9,10 +9,10 @@ READY := $(VENV)/.ready
 # An environment of ROS wheels exports these to its children; ours must find its own.
 unexport PYTHONPATH LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 
-.PHONY: help setup demo test lint bench evidence pictures lock clean
+.PHONY: help setup demo test lint bench evidence recordings docs pictures lock clean
 
 help:  ## this list
-	@awk -F ':.*## ' '/^[a-z]+:.*## /{printf "make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z]+:.*## /{printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 setup: $(READY)  ## the environment .venv with everything in it
 
@@ -48,6 +48,14 @@ evidence: setup  ## the long tests: fresh hidden effects (to docs/evidence.md; A
 	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m test.hidden
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[evidence]' || echo "no atheris for this Python: tests that need it will skip"
 	$(BIN)/python -m pytest -m evidence
+
+recordings: setup  ## run folders of real robots, from public repositories (docs/real_robots.md), to recordings/
+	$(BIN)/python -m test.recorded_robots.make_runs
+
+docs: setup  ## the site of docs/ and of the docstrings, to build/site/index.html
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt --editable '.[docs]'
+	$(BIN)/python -m sphinx -W --keep-going -q -b html docs build/site
+	@echo "build/site/index.html"
 
 pictures: setup  ## the pictures of the README, made anew (needs Chrome or Chromium)
 	$(BIN)/python docs/make_pictures.py

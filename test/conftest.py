@@ -15,9 +15,13 @@ from typing import Any
 import pytest
 from hypothesis import settings
 
+from test.recorded_robots import RECORDINGS
+
 # A shell has what it runs in the background ignore Ctrl-C, and so would all that tests interrupt.
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+os.environ.setdefault("WERRIMBI_DATA", str(RECORDINGS))  # for the scripts of docs/ that tests run
 
 settings.register_profile("here", deadline=None)
 settings.register_profile("ci", deadline=None, derandomize=True)

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import subprocess
 import sys
@@ -12,9 +11,10 @@ from pathlib import Path
 
 import pytest
 
+from test.recorded_robots import ROBOTS, with_recordings
+
 ROOT = Path(__file__).parents[1]
-DATA = Path(os.environ.get("WERRIMBI_DATA", ROOT.parent / "shared" / "data"))
-OPTITRACK = DATA / "robots" / "optitrack_robot"
+OPTITRACK = ROBOTS / "optitrack_robot"
 DRIVES = sorted(path.name for path in OPTITRACK.glob("*") if path.is_dir())
 
 
@@ -69,14 +69,14 @@ def of_optitrack(tmp_path: Path, name: str) -> None:
     assert ("not calibrated" in said) == (float(sigmas.group(1)) >= 3.4)
 
 
-@pytest.mark.skipif(not DRIVES, reason=f"no recorded robots at {DATA} (WERRIMBI_DATA)")
+@with_recordings
 @pytest.mark.parametrize("name", DRIVES[:1])
 def test_real_drives_play_through_the_live_node(tmp_path: Path, name: str) -> None:
     of_optitrack(tmp_path, name)
 
 
 @pytest.mark.evidence
-@pytest.mark.skipif(not DRIVES, reason=f"no recorded robots at {DATA} (WERRIMBI_DATA)")
+@with_recordings
 @pytest.mark.parametrize("name", DRIVES)
 def test_every_real_drive_plays_through_the_live_node(tmp_path: Path, name: str) -> None:
     of_optitrack(tmp_path, name)

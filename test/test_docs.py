@@ -14,9 +14,15 @@ from typing import Any
 
 import pytest
 
+from test.recorded_robots import with_recordings
+
 ROOT = Path(__file__).parents[1]
-DATA = Path(os.environ.get("WERRIMBI_DATA", ROOT.parent / "shared" / "data"))
 README = (ROOT / "README.md").read_text()
+PAGES = [
+    *(ROOT / name for name in ("README.md", "CONTRIBUTING.md", "CHANGELOG.md")),
+    *sorted((ROOT / "docs").glob("*.md")),
+    *sorted((ROOT / "example").rglob("*.md")),
+]
 
 
 def script(name: str) -> Any:
@@ -34,13 +40,41 @@ def test_the_readme_is_short() -> None:
     assert len(README.splitlines()) < 200
 
 
-def test_every_link_of_the_docs_leads_somewhere() -> None:
-    for page in (ROOT / "README.md", *(ROOT / "docs").glob("*.md")):
-        for link in re.findall(r"\]\(([^)#:]+?)(?:#[^)]*)?\)", page.read_text()):
-            assert (page.parent / link).exists(), f"{page.name}: {link}"
+def anchors(page: Path) -> set[str]:
+    """What its headings are called in links, as GitHub and `make docs` make it of their words."""
+    text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.M | re.S)
+    found: dict[str, int] = {}
+    for heading in re.findall(r"^#+ +(.+?) *$", text, flags=re.M):
+        slug = re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")
+        found[slug] = found.get(slug, -1) + 1
+        if found[slug]:
+            found[f"{slug}-{found[slug]}"] = 0
+    return set(found)
 
 
-@pytest.mark.skipif(not DATA.exists(), reason=f"no recorded robots at {DATA} (WERRIMBI_DATA)")
+@pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
+def test_every_link_leads_somewhere(page: Path) -> None:
+    text = re.sub(r"^```.*?^```", "", page.read_text(), flags=re.M | re.S)
+    for link, anchor in re.findall(r"\]\(([^)#:\s]*)(?:#([^)\s]*))?\)", text):
+        target = page.parent / link if link else page
+        assert target.exists(), link
+        if anchor:
+            assert anchor in anchors(target), f"{link}#{anchor}"
+
+
+def test_the_index_holds_every_page() -> None:
+    index = (ROOT / "docs" / "index.md").read_text()
+    listed = re.findall(r"^(\w+)$", "".join(re.findall(r"```{toctree}(.*?)```", index, re.S)), re.M)
+    pages = {page.stem for page in (ROOT / "docs").glob("*.md")} - {"index"}
+    assert sorted(listed) == sorted(pages)
+
+
+def test_pages_name_no_place_that_a_stranger_lacks() -> None:
+    for page in PAGES:
+        assert not re.search(r"\.\./shared|/work\b", page.read_text()), page
+
+
+@with_recordings
 def test_the_table_of_real_robots_is_what_its_command_prints() -> None:
     module = script("real_robots")
     shown = (ROOT / "docs" / "real_robots.md").read_text()

@@ -5,17 +5,16 @@
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
 
 import pytest
 
+from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.robot_file import read_robot_file
 
 ROOT = Path(__file__).parents[2]
 RECORDING = ROOT / "werrimbi_odom" / "recordings" / "square"
-ROBOTS = Path(os.environ.get("WERRIMBI_DATA", ROOT.parent / "shared" / "data")) / "robots"
 
 
 def fit(tmp_path: Path, *arguments: str) -> dict[str, object]:
@@ -59,7 +58,7 @@ def test_a_wrong_base_and_radius_are_found_in_one_drive_of_the_engine(tmp_path: 
     assert page.stat().st_size > 1_000_000
 
 
-@pytest.mark.skipif(not ROBOTS.exists(), reason=f"no recorded robots at {ROBOTS} (WERRIMBI_DATA)")
+@with_recordings
 @pytest.mark.parametrize(
     ("robot", "runs", "kind"),
     [

@@ -6,11 +6,11 @@ from __future__ import annotations
 
 import argparse
 import json
-import os
 from pathlib import Path
 
 import pytest
 
+from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli import calibrate
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -40,7 +40,7 @@ cw,0.017,0.009
 ccw,-0.028,0.014
 ccw,-0.024,0.018
 """
-DATA = Path(os.environ.get("WERRIMBI_DATA", "../shared/data")) / "robots" / "optitrack_robot"
+DATA = ROBOTS / "optitrack_robot"
 
 
 def werrimbi_calibrate(*words: object) -> int:
@@ -200,7 +200,7 @@ def test_recorded_runs_before_and_after(desk: Path, capsys: pytest.CaptureFixtur
         werrimbi_calibrate("umbmark", *arguments, "--force")
 
 
-@pytest.mark.skipif(not DATA.exists(), reason=f"the real robots are not at {DATA}")
+@with_recordings
 def test_a_real_robots_squares(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     runs = sorted(DATA.glob("square_*"))
     words = ["--side", 1.7, "--robot", DATA / "robot.yaml", "--out", tmp_path / "new.yaml"]

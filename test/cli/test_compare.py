@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import json
-import os
 import re
 import shutil
 import subprocess
@@ -15,13 +14,13 @@ from typing import Any
 
 import pytest
 
+from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.main import main
 
 ROOT = Path(__file__).parents[2]
 RECORDING = ROOT / "werrimbi_odom" / "recordings" / "square"
 ROBOT = RECORDING / "robot.yaml"
-DATA = Path(os.environ.get("WERRIMBI_DATA", ROOT / ".." / "shared" / "data")) / "robots"
-ROBOTS = {
+OPTIONS = {
     "optitrack_robot": ("--leg", "0.5"),
     "khepera_laser_to_the_side": ("--leg", "0.1", "--reference-kind", "incremental"),
     "khepera_laser_moved": ("--leg", "0.1", "--reference-kind", "incremental"),
@@ -116,15 +115,14 @@ def test_a_wrong_base_makes_it_worse_and_is_said(
     assert page.stat().st_size > 1_000_000
 
 
-@pytest.mark.parametrize("name", ROBOTS)
+@with_recordings
+@pytest.mark.parametrize("name", OPTIONS)
 def test_every_recorded_robot(
     name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    folder = DATA / name
-    if not folder.exists():
-        pytest.skip(f"no recorded robots in {DATA} (WERRIMBI_DATA)")
+    folder = ROBOTS / name
     runs = sorted(path.parent for path in folder.glob("*/ticks.csv"))
-    found = compared(tmp_path, "--robot", folder / "robot.yaml", *runs, *ROBOTS[name])
+    found = compared(tmp_path, "--robot", folder / "robot.yaml", *runs, *OPTIONS[name])
     assert len(found["runs"]) == len(runs)
     assert found["legs"]["count"] > 10
     assert found["legs"]["nees"] > 3.0  # each of these robot files is wrong

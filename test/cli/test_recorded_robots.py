@@ -6,19 +6,18 @@ from __future__ import annotations
 
 import csv
 import json
-import os
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.model.covariance import path_noise
 
 ROOT = Path(__file__).parents[2]
-DATA = Path(os.environ.get("WERRIMBI_DATA", ROOT / ".." / "shared" / "data"))
-RUNS = sorted(path.parent for path in DATA.glob("robots/*/*/ticks.csv"))
+RUNS = sorted(path.parent for path in ROBOTS.glob("*/*/ticks.csv"))
 
 
 def columns(path: Path) -> dict[str, np.ndarray]:
@@ -28,7 +27,7 @@ def columns(path: Path) -> dict[str, np.ndarray]:
     return dict(zip(header, table.T, strict=True))
 
 
-@pytest.mark.skipif(not RUNS, reason=f"no recorded robots in {DATA}/robots (WERRIMBI_DATA)")
+@with_recordings
 @pytest.mark.parametrize("run", RUNS, ids=[f"{run.parent.name}/{run.name}" for run in RUNS])
 def test_every_recorded_drive(
     run: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
@@ -75,7 +74,7 @@ def test_every_recorded_drive(
     assert found["distance_m"] > 0.0
 
 
-@pytest.mark.skipif(not RUNS, reason=f"no recorded robots in {DATA}/robots (WERRIMBI_DATA)")
+@with_recordings
 def test_there_are_four_robots() -> None:
     """So that a glob that finds nothing does not pass for a test of all."""
     assert len({run.parent.name for run in RUNS}) >= 4

@@ -5,15 +5,15 @@
 from __future__ import annotations
 
 import importlib.util
-import os
 import sys
 from pathlib import Path
 from types import ModuleType
 
 import pytest
 
+from test.recorded_robots import with_recordings
+
 ROOT = Path(__file__).parents[2]
-DATA = Path(os.environ.get("WERRIMBI_DATA", ROOT.parent / "shared" / "data"))
 
 ATTAINABLE = {
     "optitrack_robot": 1.9e-3,
@@ -35,7 +35,7 @@ def _advice() -> ModuleType:
 
 
 @pytest.mark.evidence
-@pytest.mark.skipif(not DATA.exists(), reason=f"no recorded robots at {DATA} (WERRIMBI_DATA)")
+@with_recordings
 @pytest.mark.parametrize("robot", ATTAINABLE)
 def test_the_tools_advice_comes_within_a_fifth_of_what_can_be_had(
     robot: str, tmp_path: Path

@@ -4,13 +4,12 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from test.recorded_robots import ROBOTS, with_recordings
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.files.robot_file import read_robot_file
@@ -25,9 +24,6 @@ from werrimbi_odom.inference.rules import STRANGE_NOISE
 from werrimbi_odom.model.robot import Robot
 
 NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=5e-4, right_wheel_noise=5e-4)
-ROBOTS = (
-    Path(os.environ.get("WERRIMBI_DATA", Path(__file__).parents[3] / "shared" / "data")) / "robots"
-)
 
 
 def short_drive(seed: int) -> Run:
@@ -128,7 +124,7 @@ def test_a_noise_that_no_wheel_has_is_not_written() -> None:
         assert getattr(result.robot, name) == getattr(NOMINAL, name)
 
 
-@pytest.mark.skipif(not ROBOTS.exists(), reason=f"no recorded robots at {ROBOTS} (WERRIMBI_DATA)")
+@with_recordings
 @pytest.mark.parametrize("kind", ["absolute", "incremental"])
 @pytest.mark.parametrize("every", [1, 2, 10])
 def test_the_kobuki_has_a_late_gyro_and_a_wide_base_at_any_rate(

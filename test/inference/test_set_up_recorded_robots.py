@@ -5,33 +5,28 @@
 from __future__ import annotations
 
 import math
-import os
 from functools import lru_cache
-from pathlib import Path
 
 import pytest
 
 from test.inference.set_up_mistakes import DELAYS, FACTORS, ONE_SIDE, REFERENCE, SIZES, WIRING
+from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.set_up.mistakes import SetUp, look_for_mistakes
 from werrimbi_odom.model.robot import Robot
 
-ROOT = Path(__file__).parents[2]
-DATA = Path(os.environ.get("WERRIMBI_DATA", ROOT / ".." / "shared" / "data")) / "robots"
 WITH_POSES = ("optitrack_robot", "khepera_laser_to_the_side", "khepera_laser_moved")
 MOUNTS = {"optitrack_robot": 0.0, "khepera_laser_to_the_side": -89.0, "khepera_laser_moved": -107.0}
 
-pytestmark = pytest.mark.skipif(
-    not DATA.is_dir(), reason=f"no recorded robots in {DATA} (WERRIMBI_DATA)"
-)
+pytestmark = with_recordings
 
 
 @lru_cache
 def robot_and_runs(name: str) -> tuple[Robot, list[Run]]:
-    runs = [read_run_folder(path.parent) for path in sorted(DATA.glob(f"{name}/*/ticks.csv"))]
-    return read_robot_file(DATA / name / "robot.yaml").robot, runs
+    runs = [read_run_folder(path.parent) for path in sorted(ROBOTS.glob(f"{name}/*/ticks.csv"))]
+    return read_robot_file(ROBOTS / name / "robot.yaml").robot, runs
 
 
 def looked_at(name: str, mistake_name: str = "") -> SetUp:

@@ -4,14 +4,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pytest
 
+from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.calibration.recorded_square import Record, recorded_square, squares_of
@@ -24,7 +23,7 @@ from werrimbi_odom.simulation import TrueRobot, figure_eight, record, square
 ROBOT = Robot(0.35, 0.05, 2000.0, 2000.0)
 TRUE = TrueRobot(0.35 * 1.02, 0.05 * 1.005, 0.05 * 0.995)
 SIDE = 1.0
-DATA = Path(os.environ.get("WERRIMBI_DATA", "../shared/data")) / "robots" / "optitrack_robot"
+DATA = ROBOTS / "optitrack_robot"
 
 
 def driven(sense: str, seed: int, true: TrueRobot = TRUE, **options: float) -> Record:
@@ -194,7 +193,7 @@ def optitrack(name: str) -> Record:
     return Record(name, *ticks.T[:3], *seen.T[:4])
 
 
-@pytest.mark.skipif(not DATA.exists(), reason=f"the real robots are not at {DATA}")
+@with_recordings
 def test_a_real_robot() -> None:
     """The OptiTrack robot's six squares of 1.7 m: 104 mm, of which its scatter is left."""
     robot = Robot(0.2, 0.042, 2796.8, 2796.8)
