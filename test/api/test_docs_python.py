@@ -5,12 +5,28 @@
 from __future__ import annotations
 
 import re
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
-PAGE = Path(__file__).parents[2] / "docs" / "python.md"
+ROOT = Path(__file__).parents[2]
+PAGE = ROOT / "docs" / "python.md"
+
+
+def test_the_five_lines_run_in_a_shell() -> None:
+    """Odometry with its covariance from arrays."""
+    (shown,) = re.findall(r"```bash\n(python -c '.*?')\n```", PAGE.read_text(), re.DOTALL)
+    assert len(shown.splitlines()) == 7, "five lines of Python between the two of the shell"
+    command = shown.replace("python", sys.executable, 1)
+    run = subprocess.run(["sh", "-c", command], cwd=ROOT, capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    lines = run.stdout.splitlines()
+    assert len(lines) == 4
+    sigmas = [float(line.strip("[] ").split()[row]) for row, line in enumerate(lines[1:])]
+    assert min(sigmas) > 0.0, "variances on the diagonal"
 
 
 def test_the_blocks_run(
