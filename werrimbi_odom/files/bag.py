@@ -63,9 +63,18 @@ class Bag:
         """
         try:
             for raw in self._raw(topics):
-                yield Message(raw.topic, raw.received, self._types.read(raw.data, raw.kind))
+                yield Message(raw.topic, raw.received, self._read(raw))
         except Exception as error:  # a damaged bag raises anything, from struct to zstd
             raise _unreadable(self.path, error) from error
+
+    def _read(self, raw: Raw) -> Any:
+        try:
+            return self._types.read(raw.data, raw.kind)
+        except Exception as error:  # as above
+            problem = _in_a_line(error)
+            raise InputError(
+                f"{self.path}: a message of {raw.topic} ({raw.kind}) cannot be read: {problem}"
+            ) from error
 
     def firsts(self, topics: Sequence[str]) -> dict[str, Any]:
         """First message of each of some topics, by its name; of those that can be read."""
@@ -192,8 +201,23 @@ def _refuse_repeated(folder: Path) -> None:
 def _unreadable(path: Path, error: Exception) -> InputError:
     if isinstance(error, InputError):
         return error
-    problem = " ".join(str(error).split())[:300] or type(error).__name__
     return InputError(
-        f"{path} cannot be read as a bag: {problem} (a recording cut off in mid-file: "
+        f"{path} cannot be read as a bag: {_in_a_line(error)} (a recording cut off in mid-file: "
         "`mcap recover`, or `ros2 bag reindex`)"
     )
+
+
+def _in_a_line(error: Exception) -> str:
+    return " ".join(str(error).split())[:300] or type(error).__name__
+
+
+def stamp_of(message: Message, header: Any = None) -> float:
+    """Stamp of the header [s]; where that is zero, when the message was received."""
+    stamp = (message.content if header is None else header).header.stamp
+    nanoseconds = stamp.sec * 10**9 + stamp.nanosec
+    return float((nanoseconds or message.received) / 1e9)
+
+
+def left_out_words(left_out: Counter[str]) -> list[str]:
+    """How many messages were left out, and why."""
+    return [f"left out: {count} messages {why}" for why, count in left_out.items() if count]

@@ -13,8 +13,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import Message, Topic, topic_in_words
-from werrimbi_odom.files.bag_ticks import stamp_of
+from werrimbi_odom.files.bag import Message, Topic, stamp_of, topic_in_words
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.model.pose import Floats
@@ -137,7 +136,8 @@ def _yaw(q: Any) -> float:
     return math.atan2(2.0 * (q.w * q.z + q.x * q.y), squared - 2.0 * (q.y * q.y + q.z * q.z))
 
 
-def _planar(point: Any, orientation: Any) -> tuple[float, float, float]:
+def planar(point: Any, orientation: Any) -> tuple[float, float, float]:
+    """Pose on the floor; NaN where a part of it is not finite."""
     x, y = float(point.x), float(point.y)
     if not (math.isfinite(x) and math.isfinite(y)):
         x = y = NAN
@@ -146,7 +146,7 @@ def _planar(point: Any, orientation: Any) -> tuple[float, float, float]:
 
 def _of_pose(message: Message) -> Iterator[_Row]:
     pose, frame = message.content.pose, message.content.header.frame_id
-    measured = _planar(pose.position, pose.orientation)
+    measured = planar(pose.position, pose.orientation)
     yield _Row((frame.strip("/"), ""), (stamp_of(message), *measured, NAN, NAN))
 
 
@@ -154,13 +154,13 @@ def _of_odometry(message: Message) -> Iterator[_Row]:
     """Its covariance is left alone: it grows along the way, and says nothing of a single pose."""
     content = message.content
     frames = (content.header.frame_id.strip("/"), content.child_frame_id.strip("/"))
-    measured = _planar(content.pose.pose.position, content.pose.pose.orientation)
+    measured = planar(content.pose.pose.position, content.pose.pose.orientation)
     yield _Row(frames, (stamp_of(message), *measured, NAN, NAN))
 
 
 def _of_pose_with_covariance(message: Message) -> Iterator[_Row]:
     stamped = message.content.pose
-    measured = _planar(stamped.pose.position, stamped.pose.orientation)
+    measured = planar(stamped.pose.position, stamped.pose.orientation)
     xx, yy, yawyaw = (float(stamped.covariance[place]) for place in (0, 7, 35))
     sigmas = _deviation(0.5 * (xx + yy)), _deviation(yawyaw)
     frame = message.content.header.frame_id.strip("/")
@@ -183,7 +183,7 @@ def _of_transforms(message: Message) -> Iterator[_Row]:
 
 def _transform(message: Message, content: Any) -> _Row:
     frames = (content.header.frame_id.strip("/"), content.child_frame_id.strip("/"))
-    measured = _planar(content.transform.translation, content.transform.rotation)
+    measured = planar(content.transform.translation, content.transform.rotation)
     return _Row(frames, (stamp_of(message, content), *measured, NAN, NAN))
 
 

@@ -168,6 +168,8 @@ def _exactly(stream: IO[bytes], length: int, cut: bool = False) -> bytes:
 def _sqlite(file: Path) -> Iterator[Raw]:
     database = sqlite3.connect(f"{file.resolve().as_uri()}?immutable=1", uri=True)
     try:
+        # Without it a file that is shorter than its header says is not read at all.
+        database.execute("PRAGMA writable_schema=ON")
         topics = {key: (name, kind) for key, name, kind in database.execute(
             "SELECT id, name, type FROM topics"
         )}  # fmt: skip

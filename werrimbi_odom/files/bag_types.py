@@ -79,7 +79,8 @@ class Types:
     def _register(self, kind: str) -> None:
         from rosbags.typesys import get_types_from_idl, get_types_from_msg
 
-        for text in (self._definitions.get(kind, ""), ROS2_DEFINITIONS.get(kind, "")):
+        texts = (self._definitions.get(kind), ROS2_DEFINITIONS.get(kind))
+        for text in filter(None, texts):
             with suppress(Exception):  # a definition that is broken raises anything
                 parse = get_types_from_idl if "module " in text else get_types_from_msg
                 found = parse(text) if parse is get_types_from_idl else parse(text, kind)

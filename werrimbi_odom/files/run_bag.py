@@ -14,6 +14,7 @@ from werrimbi_odom.files.bag_reference import (
     kinds_in_words,
 )
 from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
+from werrimbi_odom.files.contents import contents_of_bag
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.text import readable
@@ -56,22 +57,24 @@ def read_run_bag(
     """
     path = Path(path)
     with opened_bag(path) as bag:
-        source = choose_ticks(path, bag.topics, ticks_topic, robot_file)
-        others = [topic for topic in bag.topics if topic.name not in source.topics]
+        held = contents_of_bag(bag, str(robot_file.values["base_frame_id"]))
+        source = choose_ticks(held, ticks_topic, robot_file)
+        topics = source.name.split(",")
+        others = [topic for topic in bag.topics if topic.name not in topics]
         measured = choose_reference(path, others, reference_topic)
         ticks_of = ticks_collector(path, source, robot_file)
         reference_of = measured and ReferenceCollector(path, measured, robot_file)
-        wanted = (*source.topics, *([measured.topic] if measured else []))
+        wanted = (*topics, *([measured.topic] if measured else []))
         total = sum(topic.messages for topic in bag.topics if topic.name in wanted)
         for number, message in enumerate(bag.messages(wanted)):
-            if message.topic in source.topics:
+            if message.topic in topics:
                 ticks_of.take(message)
             elif reference_of:
                 reference_of.take(message)
             if progress is not None and number % 1000 == 0:
                 progress(min(number / total, 1.0))
     ticks, notes = ticks_of.ticks()
-    notes = [f"ticks from {','.join(source.topics)} ({source.kind})", *notes]
+    notes = [f"ticks from {source.name} ({source.kind})", *notes]
     reference = None
     if measured and reference_of:
         reference, frames = reference_of.reference()
@@ -80,5 +83,11 @@ def read_run_bag(
     if reference is None:
         lacking = f"({kinds_in_words()}); the bag has {', '.join(map(topic_in_words, bag.topics))}"
     return Run(
-        readable(path.resolve().name), path, ticks, reference, tuple(notes), no_reference=lacking
+        readable(path.resolve().name),
+        path,
+        ticks,
+        reference,
+        tuple(notes),
+        damage=bag.damage,
+        no_reference=lacking,
     )
