@@ -162,7 +162,7 @@ def _scanned(path: Path, ros1: bool) -> Bag | None:
     def raw(names: Sequence[str]) -> Iterator[Raw]:
         return (each for each in raw_messages(files) if each.topic in names)
 
-    told = f"the bag is cut off or was never finished; read up to t_s {last / 1e9:.10g}"
+    told = f"the bag is cut off or was never finished; read up to t_s {last / 1e9:.1f}"
     topics = _topics((name, kind, number) for (name, kind), number in counts.items())
     return Bag(path, topics, (told,), raw, Types(ros1, definitions))
 

@@ -13,9 +13,10 @@ import io
 import sqlite3
 import struct
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import suppress
 from pathlib import Path
 from typing import IO, NamedTuple
+
+from werrimbi_odom.files.bag_scan_sqlite import described, rows_of
 
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 ROS1_MAGIC = b"#ROSBAG V2.0\n"
@@ -45,7 +46,7 @@ def raw_messages(files: Sequence[Path]) -> Iterator[Raw]:
         scan = _SCANS[file.suffix]
         try:
             yield from scan(file)
-        except (SpoiltError, sqlite3.Error, struct.error, OSError, ValueError, KeyError):
+        except (SpoiltError, sqlite3.Error, struct.error, OSError, ValueError, LookupError):
             continue
 
 
@@ -166,27 +167,11 @@ def _exactly(stream: IO[bytes], length: int, cut: bool = False) -> bytes:
 
 
 def _sqlite(file: Path) -> Iterator[Raw]:
-    database = sqlite3.connect(f"{file.resolve().as_uri()}?immutable=1", uri=True)
-    try:
-        # Without it a file that is shorter than its header says is not read at all.
-        database.execute("PRAGMA writable_schema=ON")
-        topics = {key: (name, kind) for key, name, kind in database.execute(
-            "SELECT id, name, type FROM topics"
-        )}  # fmt: skip
-        definitions: dict[str, str] = {}
-        with suppress(sqlite3.Error):  # before ROS 2 Iron there are none
-            definitions.update(
-                database.execute(
-                    "SELECT topic_type, encoded_message_definition FROM message_definitions"
-                )
-            )
-        for key, received, data in database.execute(
-            "SELECT topic_id, timestamp, data FROM messages"
-        ):
+    topics, definitions = described(file)
+    for key, received, data in rows_of(file):
+        if key in topics:
             topic, kind = topics[key]
             yield Raw(topic, kind, received, data, definitions.get(kind, ""))
-    finally:
-        database.close()
 
 
 _SCANS: dict[str, Callable[[Path], Iterator[Raw]]] = {
