@@ -128,6 +128,13 @@ class Messages:
         fields = (header, self._turn(np.nan), covariance, turning, of_rate, none, covariance)
         return kind, self.make(kind, *fields)
 
+    def fix(self, nanoseconds: int, degrees: tuple[float, float], fixed: bool = True) -> Any:
+        """A fix of satellites, with a standard deviation of 0.2 m."""
+        kind, covariance = "sensor_msgs/msg/NavSatFix", np.diag([0.04, 0.04, 1.0]).ravel()
+        status = self.make("sensor_msgs/msg/NavSatStatus", 0 if fixed else -1, 1)
+        header = self.header(nanoseconds, "gps")
+        return kind, self.make(kind, header, status, *degrees, 50.0, covariance, 2)
+
     def of_driver(self, kind: str, nanoseconds: int, **fields: Any) -> tuple[str, Any]:
         """A driver's message with counters; what is not named is zero, or empty."""
         filled = []

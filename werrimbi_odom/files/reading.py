@@ -20,6 +20,7 @@ def read_run(
     *,
     ticks_topic: str | None = None,
     reference_topic: str | None = None,
+    force: bool = False,
     progress: Progress | None = None,
 ) -> Run:
     """Read a run; see `read_run_folder` and `read_run_bag`. Topics matter to bags alone.
@@ -48,6 +49,7 @@ def read_run(
         robot_file,
         ticks_topic=ticks_topic,
         reference_topic=reference_topic,
+        force=force,
         progress=progress,
     )
 
