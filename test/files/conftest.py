@@ -42,9 +42,15 @@ class Messages:
     """Messages of ROS 2 Jazzy, as rosbags makes them."""
 
     def __init__(self) -> None:
-        from rosbags.typesys import Stores, get_typestore
+        from rosbags.typesys import Stores, get_types_from_msg, get_typestore
+
+        from werrimbi_odom.files.bag_types import ROS2_DEFINITIONS
 
         self.store = get_typestore(Stores.ROS2_JAZZY)
+        self.noetic = get_typestore(Stores.ROS1_NOETIC)
+        for kind, text in ROS2_DEFINITIONS.items():
+            for store in (self.store, self.noetic):
+                store.register(get_types_from_msg(text, kind))
 
     def make(self, kind: str, *fields: Any) -> Any:
         return self.store.types[kind](*fields)
@@ -121,6 +127,51 @@ class Messages:
         header = self.header(nanoseconds, "imu_link")
         fields = (header, self._turn(np.nan), covariance, turning, of_rate, none, covariance)
         return kind, self.make(kind, *fields)
+
+    def fix(self, nanoseconds: int, degrees: tuple[float, float], fixed: bool = True) -> Any:
+        """A fix of satellites, with a standard deviation of 0.2 m."""
+        kind, covariance = "sensor_msgs/msg/NavSatFix", np.diag([0.04, 0.04, 1.0]).ravel()
+        status = self.make("sensor_msgs/msg/NavSatStatus", 0 if fixed else -1, 1)
+        header = self.header(nanoseconds, "gps")
+        return kind, self.make(kind, header, status, *degrees, 50.0, covariance, 2)
+
+    def of_driver(self, kind: str, nanoseconds: int, **fields: Any) -> tuple[str, Any]:
+        """A driver's message with counters; what is not named is zero, or empty."""
+        filled = []
+        for name, (form, of) in self.store.fielddefs[kind][1]:
+            if name == "header":
+                filled.append(self.header(nanoseconds))
+            else:
+                empty = np.zeros(0, dtype=of[0][1][0]) if form.name == "SEQUENCE" else 0
+                filled.append(fields.get(name, empty))
+        return kind, self.make(kind, *filled)
+
+    def write_ros1(self, path: Path, entries: Sequence[tuple[str, int, tuple[str, Any]]]) -> Path:
+        """A ROS 1 bag of (topic, received [ns], (type, message)), uncompressed, three chunks."""
+        from rosbags.rosbag1 import Writer
+
+        writer = Writer(path)
+        writer.chunk_threshold = 1 + sum(100 for _ in entries) // 2
+        with writer:
+            connections: dict[str, Any] = {}
+            for topic, received, (kind, message) in entries:
+                if topic not in connections:
+                    connections[topic] = writer.add_connection(topic, kind, typestore=self.noetic)
+                data = self.noetic.serialize_ros1(self._of_noetic(message), kind)
+                writer.write(connections[topic], received, data)
+        return path
+
+    def _of_noetic(self, message: Any) -> Any:
+        """The same message in ROS 1, whose headers have a number too."""
+        if isinstance(message, list):
+            return [self._of_noetic(each) for each in message]
+        kind = getattr(message, "__msgtype__", None)
+        if kind is None:
+            return message
+        names = [name for name, _ in self.noetic.fielddefs[kind][1]]
+        return self.noetic.types[kind](
+            *(0 if name == "seq" else self._of_noetic(getattr(message, name)) for name in names)
+        )
 
     def write(
         self,

@@ -108,22 +108,36 @@ def transforms(ros: Any, *pairs: tuple[str, str]) -> list[Any]:
     ]
 
 
-def test_among_transforms_the_base_or_the_one_that_is_named(
+def test_among_transforms_the_chain_to_the_base_or_the_frame_that_is_named(
     tmp_path: Path, ros: Any, robot: Any
 ) -> None:
     bag = written(ros, tmp_path, transforms(ros, ("map", "odom"), ("/odom", "/base_link")))
     run = read_run(bag, robot())
     assert run.reference is not None
     assert run.reference.x.tolist() == [1.0, 1.0]
+    assert run.reference.y.tolist() == [4.0, 6.0]
+    assert run.notes[-1] == (
+        "reference from /tf (tf2_msgs/msg/TFMessage), map -> odom -> base_link, composed at each "
+        "change of map -> odom"
+    )
+    assert run.circle == ""
+    run = read_run(bag, robot(), reference_topic="/tf:base_link")
     assert run.notes[-1] == "reference from /tf (tf2_msgs/msg/TFMessage), odom -> base_link"
-    run = read_run(bag, robot(), reference_topic="/tf:odom")
+    assert run.circle.startswith("/tf:odom:base_link: odom -> base_link is the robot's own odometr")
+    assert "independent references in the bag: /tf:map:base_link (tf2_msgs" in run.circle
+    said = "/tf:odom is where the odometry starts, as a localiser corrects it, and no pose of the"
+    with pytest.raises(InputError, match=re.escape(said)) as caught:
+        read_run(bag, robot(), reference_topic="/tf:odom")
+    assert "--reference-topic /tf:map:base_link" in str(caught.value)
+    run = read_run(bag, robot(), reference_topic="/tf:odom", force=True)
     assert run.reference is not None
     assert run.reference.x.tolist() == [0.0, 0.0]
-    said = "/tf: name the frame with --reference-topic /tf:CHILD_FRAME; it has: map -> odom, odom"
+    said = "/tf: name the frames with --reference-topic /tf:PARENT:CHILD; it has: map -> odom, odom"
     with pytest.raises(InputError, match=re.escape(said)):
-        read_run(bag, robot("base_frame_id: base_footprint"))
-    with pytest.raises(InputError, match="name the frame"):
         read_run(bag, robot(), reference_topic="/tf:tracker")
+    said = "/tf: no transforms lead from map to tracker; it has: map -> odom, odom -> base_link"
+    with pytest.raises(InputError, match=re.escape(said)):
+        read_run(bag, robot(), reference_topic="/tf:map:tracker")
 
 
 def test_several_candidates_are_listed_and_none_may_be_wished(
@@ -135,11 +149,15 @@ def test_several_candidates_are_listed_and_none_may_be_wished(
         ("/tf_static", 4, ros.transforms(ros.transform(1, BASE, *POSES[2]))),
     ]
     bag = written(ros, tmp_path, entries)
+    run = read_run(bag, robot())
+    assert run.notes[-1] == "reference from /mocap (geometry_msgs/msg/PoseStamped), frame map"
+    other = written(ros, tmp_path / "two", [*entries, ("/imu", 5, ros.imu(1 * MS, 0.0))])
     with pytest.raises(InputError) as caught:
-        read_run(bag, robot())
+        read_run(other, robot())
     assert str(caught.value) == (
-        f"{bag}: choose with --reference-topic (none for no reference); candidates are: /mocap "
-        "(geometry_msgs/msg/PoseStamped), /odom (nav_msgs/msg/Odometry)"
+        f"{other}: choose with --reference-topic (none for no reference); candidates are: /mocap "
+        "(geometry_msgs/msg/PoseStamped), /imu (sensor_msgs/msg/Imu); made from the wheels, and so "
+        "no reference: /odom"
     )
     assert read_run(bag, robot(), reference_topic="none").reference is None
     run = read_run(bag, robot(), reference_topic="odom")

@@ -276,8 +276,8 @@ def test_paths_that_are_no_run(tmp_path: Path, robot: Any) -> None:
         (tmp_path / "none", "there is no such run"),
         (day, f"neither ticks.csv nor a bag (metadata.yaml); did you mean {day}/square?"),
         (day / "square" / "ticks.csv", f"give the folder that holds it, {day}/square"),
-        (tmp_path / "old.bag", "a ROS 1 bag: convert it with rosbags-convert"),
-        (file.path, "is neither a run folder nor a ROS 2 bag"),
+        (tmp_path / "old.bag", "cannot be read as a bag: File"),
+        (file.path, "is neither a run folder nor a bag (.mcap, .db3, .bag)"),
         (Path("a\0b"), "there is no such run"),
     ):
         with pytest.raises(InputError, match=re.escape(said)):

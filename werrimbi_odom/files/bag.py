@@ -1,18 +1,22 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A ROS 2 bag (a rosbag2 folder, a single .mcap or .db3) opened for reading, without ROS."""
+"""A bag (a rosbag2 folder, a single .mcap, .db3 or ROS 1 .bag) opened for reading, without ROS."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.bag_scan import Raw, raw_messages
+from werrimbi_odom.files.bag_types import Types
 
-SUFFIXES = (".mcap", ".db3")
+ROS1 = ".bag"
+SUFFIXES = (".mcap", ".db3", ROS1)
 
 
 class Topic(NamedTuple):
@@ -44,8 +48,10 @@ class Bag:
 
     path: Path
     topics: tuple[Topic, ...]
-    _reader: Any
-    _types: Any
+    damage: tuple[str, ...]
+    """What of it is spoilt and was got over, in words for the user."""
+    _raw: Callable[[Sequence[str]], Iterator[Raw]]
+    _types: Types
 
     def messages(self, topics: Sequence[str]) -> Iterator[Message]:
         """Messages of some topics, in the order in which they were received.
@@ -55,21 +61,37 @@ class Bag:
         InputError
             When a message cannot be read.
         """
-        chosen = [each for each in self._reader.connections if each.topic in topics]
         try:
-            for connection, received, data in self._reader.messages(connections=chosen):
-                content = self._types.deserialize_cdr(data, connection.msgtype)
-                yield Message(connection.topic, received, content)
+            for raw in self._raw(topics):
+                yield Message(raw.topic, raw.received, self._read(raw))
         except Exception as error:  # a damaged bag raises anything, from struct to zstd
             raise _unreadable(self.path, error) from error
+
+    def _read(self, raw: Raw) -> Any:
+        try:
+            return self._types.read(raw.data, raw.kind)
+        except Exception as error:  # as above
+            problem = _in_a_line(error)
+            raise InputError(
+                f"{self.path}: a message of {raw.topic} ({raw.kind}) cannot be read: {problem}"
+            ) from error
+
+    def firsts(self, topics: Sequence[str]) -> dict[str, Any]:
+        """First message of each of some topics, by its name; of those that can be read."""
+        found = {}
+        for topic in topics:
+            with suppress(InputError):
+                for message in self.messages([topic]):
+                    found[topic] = message.content
+                    break
+        return found
 
 
 @contextmanager
 def opened_bag(path: Path) -> Iterator[Bag]:
     """Open a bag, and close it at the end.
 
-    Message types are the standard ones of ROS 2 Jazzy; those that odometry needs have been the same
-    in every distribution, so definitions in the bag, which may be broken, are not looked at.
+    One that was cut off is read up to there, which its `damage` says.
 
     Raises
     ------
@@ -77,31 +99,80 @@ def opened_bag(path: Path) -> Iterator[Bag]:
         When rosbags is not installed, or the bag cannot be opened.
     """
     try:
-        from rosbags.rosbag2 import Reader
-        from rosbags.typesys import Stores, get_typestore
+        from rosbags.rosbag1 import Reader as Reader1
+        from rosbags.rosbag2 import Reader as Reader2
     except ModuleNotFoundError as missing:
         raise InputError(
             f"{path}: bags are read by the Python package {missing.name}: "
             'pip install "werrimbi_odom[tools]"'
         ) from missing
-    reader = None
+    reader: Any = None
+    ros1 = path.suffix == ROS1
     try:
         if path.is_dir():
             _refuse_repeated(path)
-        reader = Reader(path)
+        reader = (Reader1 if ros1 else Reader2)(path)
         reader.open()
-        found = reader.topics.items()
-        topics = tuple(
-            Topic(name, info.msgtype, info.msgcount)
-            for name, info in found
-            if info.msgtype is not None and info.msgcount > 0
-        )
+        topics = _topics((each.topic, each.msgtype, each.msgcount) for each in reader.connections)
+        definitions = {each.msgtype: each.msgdef.data for each in reader.connections}
     except Exception as error:  # as above
-        raise _unreadable(path, error) from error
+        scanned = None if isinstance(error, InputError) else _scanned(path, ros1)
+        if scanned is None:
+            raise _unreadable(path, error) from error
+        yield scanned
+        return
+
+    def raw(names: Sequence[str]) -> Iterator[Raw]:
+        chosen = [each for each in reader.connections if each.topic in names]
+        for connection, received, data in reader.messages(connections=chosen) if chosen else ():
+            yield Raw(connection.topic, connection.msgtype, received, data, "")
+
     try:
-        yield Bag(path, topics, reader, get_typestore(Stores.ROS2_JAZZY))
+        yield Bag(path, topics, (), raw, Types(ros1, definitions))
     finally:
         reader.close()
+
+
+def _topics(found: Iterable[tuple[str, str, int]]) -> tuple[Topic, ...]:
+    """Topics with messages; those with messages of several types are nobody's."""
+    kinds: dict[str, set[str]] = {}
+    counts: Counter[str] = Counter()
+    for name, kind, messages in found:
+        if messages:
+            kinds.setdefault(name, set()).add(kind)
+            counts[name] += messages
+    return tuple(
+        Topic(name, kind, counts[name]) for name, (kind, *more) in kinds.items() if not more
+    )
+
+
+def _scanned(path: Path, ros1: bool) -> Bag | None:
+    """A bag that was cut off, read up to there; None where nothing of it can be read."""
+    files = _files(path)
+    counts: Counter[tuple[str, str]] = Counter()
+    definitions: dict[str, str] = {}
+    last = 0
+    for each in raw_messages(files):
+        counts[each.topic, each.kind] += 1
+        definitions[each.kind] = each.definition
+        last = max(last, each.received)
+    if not counts:
+        return None
+
+    def raw(names: Sequence[str]) -> Iterator[Raw]:
+        return (each for each in raw_messages(files) if each.topic in names)
+
+    told = f"the bag is cut off or was never finished; read up to t_s {last / 1e9:.1f}"
+    topics = _topics((name, kind, number) for (name, kind), number in counts.items())
+    return Bag(path, topics, (told,), raw, Types(ros1, definitions))
+
+
+def _files(path: Path) -> list[Path]:
+    """Files of a bag, in the order in which they were recorded."""
+    if not path.is_dir():
+        return [path]
+    found = [each for each in path.iterdir() if each.suffix in SUFFIXES]
+    return sorted(found, key=lambda each: (len(each.name), each.name))  # bag_9 before bag_10
 
 
 def _refuse_repeated(folder: Path) -> None:
@@ -130,8 +201,23 @@ def _refuse_repeated(folder: Path) -> None:
 def _unreadable(path: Path, error: Exception) -> InputError:
     if isinstance(error, InputError):
         return error
-    problem = " ".join(str(error).split())[:300] or type(error).__name__
     return InputError(
-        f"{path} cannot be read as a bag: {problem} (a recording cut off in mid-file: "
+        f"{path} cannot be read as a bag: {_in_a_line(error)} (a recording cut off in mid-file: "
         "`mcap recover`, or `ros2 bag reindex`)"
     )
+
+
+def _in_a_line(error: Exception) -> str:
+    return " ".join(str(error).split())[:300] or type(error).__name__
+
+
+def stamp_of(message: Message, header: Any = None) -> float:
+    """Stamp of the header [s]; where that is zero, when the message was received."""
+    stamp = (message.content if header is None else header).header.stamp
+    nanoseconds = stamp.sec * 10**9 + stamp.nanosec
+    return float((nanoseconds or message.received) / 1e9)
+
+
+def left_out_words(left_out: Counter[str]) -> list[str]:
+    """How many messages were left out, and why."""
+    return [f"left out: {count} messages {why}" for why, count in left_out.items() if count]

@@ -20,6 +20,7 @@ def read_run(
     *,
     ticks_topic: str | None = None,
     reference_topic: str | None = None,
+    force: bool = False,
     progress: Progress | None = None,
 ) -> Run:
     """Read a run; see `read_run_folder` and `read_run_bag`. Topics matter to bags alone.
@@ -48,6 +49,7 @@ def read_run(
         robot_file,
         ticks_topic=ticks_topic,
         reference_topic=reference_topic,
+        force=force,
         progress=progress,
     )
 
@@ -56,8 +58,8 @@ def _bag_in(folder: Path) -> Path:
     if (folder / "metadata.yaml").exists():
         return folder
     files = sorted(each for each in folder.iterdir() if each.suffix in SUFFIXES)
-    if len(files) == 1:  # its recorder was killed before it wrote the metadata
-        return files[0]
+    if files:  # its recorder was killed before it wrote the metadata
+        return files[0] if len(files) == 1 else folder
     hint = ""
     for below in (*sorted(folder.glob(f"*/{TICKS}")), *sorted(folder.glob("*/metadata.yaml"))):
         hint = f"; did you mean {below.parent}?"
@@ -70,5 +72,4 @@ def _bag_file(path: Path) -> Path:
         return path
     if path.name == TICKS:
         raise InputError(f"{path}: give the folder that holds it, {path.parent}")
-    hint = " (a ROS 1 bag: convert it with rosbags-convert)" if path.suffix == ".bag" else ""
-    raise InputError(f"{path} is neither a run folder nor a ROS 2 bag{hint}")
+    raise InputError(f"{path} is neither a run folder nor a bag ({', '.join(SUFFIXES)})")

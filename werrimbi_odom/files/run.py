@@ -95,6 +95,9 @@ class Run:
     """What of the record is spoilt and was got over, in words for the user."""
     no_reference: str = ""
     """Where nothing was measured: what would be a reference, and what is there."""
+    circle: str = ""
+    """Where the reference's name and frames say that it is made from the wheels: what it is, why,
+    and what else there is."""
     held_poses: int = 0
     """Poses of the reference that were left out, see `held.without_held_poses`."""
     taken_out: tuple[tuple[float, float], ...] = ()

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs recorded as a ROS 2 bag."""
+"""Runs recorded as a bag."""
 
 from __future__ import annotations
 
@@ -8,12 +8,11 @@ from collections.abc import Callable
 from pathlib import Path
 
 from werrimbi_odom.files.bag import opened_bag, topic_in_words
-from werrimbi_odom.files.bag_reference import (
-    ReferenceCollector,
-    choose_reference,
-    kinds_in_words,
-)
+from werrimbi_odom.files.bag_chain import ChainCollector
+from werrimbi_odom.files.bag_reference import ReferenceCollector, kinds_in_words
 from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
+from werrimbi_odom.files.choosing import Chosen, choose_reference, listed
+from werrimbi_odom.files.contents import contents_of_bag
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.text import readable
@@ -28,6 +27,7 @@ def read_run_bag(
     *,
     ticks_topic: str | None = None,
     reference_topic: str | None = None,
+    force: bool = False,
     progress: Progress | None = None,
 ) -> Run:
     """Read a run from a bag.
@@ -35,14 +35,16 @@ def read_run_bag(
     Parameters
     ----------
     path : path
-        A rosbag2 folder (sqlite3 or MCAP), a .mcap or a .db3 file.
+        A rosbag2 folder (sqlite3 or MCAP), a .mcap or .db3 file, or a ROS 1 .bag.
     robot_file : RobotFile
         Says the joints' names, the unit of their positions, and how two topics are paired.
     ticks_topic : str, optional
         Where the ticks are, LEFT,RIGHT for two topics; needed where there are several.
     reference_topic : str, optional
-        Where the reference is, TOPIC:CHILD_FRAME among several transforms, `none` for no
-        reference; needed where there are several.
+        Where the reference is, /tf:PARENT:CHILD among transforms, `none` for no reference; needed
+        where there are several.
+    force : bool
+        Take for a reference what is none.
 
     Returns
     -------
@@ -56,29 +58,49 @@ def read_run_bag(
     """
     path = Path(path)
     with opened_bag(path) as bag:
-        source = choose_ticks(path, bag.topics, ticks_topic, robot_file)
-        others = [topic for topic in bag.topics if topic.name not in source.topics]
-        measured = choose_reference(path, others, reference_topic)
+        held = contents_of_bag(bag, str(robot_file.values["base_frame_id"]))
+        source = choose_ticks(held, ticks_topic, robot_file)
+        measured = choose_reference(held, source, reference_topic, force)
         ticks_of = ticks_collector(path, source, robot_file)
-        reference_of = measured and ReferenceCollector(path, measured, robot_file)
-        wanted = (*source.topics, *([measured.topic] if measured else []))
+        reference_of = measured and _collector(path, measured, robot_file)
+        topics = source.name.split(",")
+        wanted = (*topics, *(reference_of.topics if reference_of else ()))
         total = sum(topic.messages for topic in bag.topics if topic.name in wanted)
         for number, message in enumerate(bag.messages(wanted)):
-            if message.topic in source.topics:
+            if message.topic in topics:
                 ticks_of.take(message)
-            elif reference_of:
+            if reference_of and message.topic in reference_of.topics:
                 reference_of.take(message)
             if progress is not None and number % 1000 == 0:
                 progress(min(number / total, 1.0))
     ticks, notes = ticks_of.ticks()
-    notes = [f"ticks from {','.join(source.topics)} ({source.kind})", *notes]
-    reference = None
+    notes = [f"ticks from {source.name} ({source.kind})", *notes]
+    reference, circle = None, ""
     if measured and reference_of:
         reference, frames = reference_of.reference()
-        notes.append(f"reference from {measured.topic} ({measured.kind}), {frames}")
+        named = measured.source
+        notes.append(f"reference from {reference_of.topics[0]} ({named.kind}), {frames}")
+        if not named.independent:
+            others = listed([each for each in held.independent if each.name not in topics])
+            circle = f"{named.name}: {named.why}; independent references in the bag: {others}"
     lacking = ""
     if reference is None:
         lacking = f"({kinds_in_words()}); the bag has {', '.join(map(topic_in_words, bag.topics))}"
     return Run(
-        readable(path.resolve().name), path, ticks, reference, tuple(notes), no_reference=lacking
+        readable(path.resolve().name),
+        path,
+        ticks,
+        reference,
+        tuple(notes),
+        damage=bag.damage,
+        no_reference=lacking,
+        circle=circle,
     )
+
+
+def _collector(
+    path: Path, chosen: Chosen, robot_file: RobotFile
+) -> ChainCollector | ReferenceCollector:
+    if chosen.source.chain is not None:
+        return ChainCollector(path, chosen.source.chain)
+    return ReferenceCollector(path, chosen.source, robot_file, chosen.child)

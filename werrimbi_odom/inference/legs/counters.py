@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.legs.leaps import Leap, bridged
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
@@ -38,6 +39,8 @@ class Counters:
     """Extra measured channels at each message."""
     every: int = 1
     """Messages from one node to the next."""
+    leaps: tuple[tuple[float, float, str], ...] = ()
+    """Where a counter leapt: from and to [s], and what it did, in words."""
 
     def at_most(self, rate: float) -> Counters:
         """The same with nodes at every so many messages, as many as come to `rate` [Hz] or more.
@@ -76,15 +79,44 @@ def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counter
         raise InputError(
             f"{run.path}: the ticks' clock was set back in mid-run; cut the run there into two"
         )
-    rows = np.concatenate([[steps.first_row], steps.row]) if ticks.channels else None
+    per_turn = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
+    left, right = steps.left / robot.left_tick, steps.right / robot.right_tick
+    found = bridged(time, left / per_turn[0], right / per_turn[1])
+    leaps = _told(found.leaps, time, robot)
+    rows = np.concatenate([[steps.first_row], steps.row])
+    if leaps:
+        kept = found.kept
+        left, right = found.left[kept] * per_turn[0], found.right[kept] * per_turn[1]
+        kept = np.concatenate([[True], kept])
+        time, rows = time[kept], rows[kept]
     return Counters(
         time,
-        summed(steps.left / robot.left_tick),
-        summed(steps.right / robot.right_tick),
+        summed(left),
+        summed(right),
         float(ticks.left[steps.first_row]),
         float(ticks.right[steps.first_row]),
         {name: np.asarray(values)[rows] for name, values in ticks.channels.items()},
+        leaps=leaps,
     )
+
+
+def _told(
+    leaps: Sequence[Leap], time: Floats, robot: Robot
+) -> tuple[tuple[float, float, str], ...]:
+    found = []
+    for leap in leaps:
+        tick, per_turn = (
+            (robot.left_tick, robot.left_ticks_per_revolution)
+            if leap.left
+            else (robot.right_tick, robot.right_ticks_per_revolution)
+        )
+        size = leap.turns * tick * per_turn
+        words = (
+            f"the {'left' if leap.left else 'right'} counter leapt by {size:.3g} m"
+            f"{' and came back' if leap.back else ''}, faster than its wheel turns"
+        )
+        found.append((float(time[leap.first]), float(time[leap.last + 1]), words))
+    return tuple(found)
 
 
 def nodes_at(

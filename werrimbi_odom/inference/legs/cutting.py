@@ -250,7 +250,7 @@ def record_of(
 def _silences(
     run: Run, robot: Robot, counters: Counters, seen: Floats, leg: float, turn: float
 ) -> tuple[LeftOut, ...]:
-    """Gaps of the reference, and of the ticks while there is a reference."""
+    """Gaps of the reference and of the ticks, and leaps of these, while there is a reference."""
     way = counters.way(robot, leg, turn)
     parts = [("the reference is", seen, np.interp(seen, counters.time, way))]
     inside = (counters.time >= seen[0]) & (counters.time <= seen[-1])
@@ -262,6 +262,11 @@ def _silences(
             begin, end = float(time[index]), float(time[index + 1])
             driven = _driven(robot, counters, begin, end)
             found.append(LeftOut(run.path, begin, end, "gap", f"{who} silent while {driven}"))
+    found += [
+        LeftOut(run.path, begin, end, "counter", words)
+        for begin, end, words in counters.leaps
+        if end > seen[0] and begin < seen[-1]
+    ]
     return tuple(sorted(found, key=lambda part: part.begin))
 
 

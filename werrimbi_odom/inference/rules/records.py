@@ -58,6 +58,21 @@ GAP_LEG = 0.25
 GAP_FEWEST = 20
 """Intervals with travel in them, below which nobody knows what is usual: poses taken by hand."""
 
+# ------------------------------------------------------------------------------ leaps of counters
+
+LEAP_USUAL, LEAP_TIMES = 0.9, 10.0
+"""Share of the intervals with travel whose wheel speed is below the usual one, and times of that
+beyond which no wheel goes for a moment. A robot that creeps for nine tenths of its drive and then
+goes ten times as fast does so for longer than `LEAP_LASTS` intervals."""
+
+LEAP_SPEED = 10.0
+"""Turns a second that every wheel is believed to reach. Chosen: 2 m/s on wheels of 3 cm, 20 m/s on
+wheels of 30 cm, where nearly all robots are slower."""
+
+LEAP_LASTS, LEAP_FEWEST = 3, 20
+"""Intervals in a row that a leap may last, and those with travel below which nobody knows what is
+usual. To a wrong reading and back are two intervals; what lasts longer is driving."""
+
 # ------------------------------------------------------------------------- jumps of the reference
 
 JUMP_SCATTER = 12.0

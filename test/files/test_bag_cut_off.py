@@ -1,0 +1,72 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Bags that were cut off: read up to there, and said."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.reading import read_run
+
+MS = 10**6
+WHEELS = ["left_wheel_joint", "right_wheel_joint"]
+
+
+def drive(ros: Any, messages: int) -> list[Any]:
+    return [
+        ("/joint_states", n * MS, ros.joints(n * MS, WHEELS, [0.1 * n, 0.2 * n]))
+        for n in range(1, messages + 1)
+    ]
+
+
+@pytest.mark.parametrize("plugin", ["mcap", "sqlite3", "ros1"])
+@pytest.mark.parametrize("share", [0.3, 0.6, 0.95])
+def test_read_up_to_where_it_ends(
+    tmp_path: Path, ros: Any, robot: Any, plugin: str, share: float
+) -> None:
+    if plugin == "ros1":
+        bag = file = ros.write_ros1(tmp_path / "run.bag", drive(ros, 3000))
+    else:
+        bag = ros.write(tmp_path / "bag", drive(ros, 3000), plugin)
+        file = next(each for each in bag.iterdir() if each.suffix != ".yaml")
+    whole = file.read_bytes()
+    file.write_bytes(whole[: int(len(whole) * share)])
+    run = read_run(bag, robot())
+    assert 0.5 * share < run.ticks.rows / 3000 <= 1.0
+    np.testing.assert_allclose(run.ticks.left, 100.0 / (2 * np.pi) * 1000.0 * run.ticks.time)
+    assert (np.diff(run.ticks.time) > 0.0).all()
+    (told,) = run.damage
+    assert told.startswith("the bag is cut off or was never finished; read up to t_s ")
+    (bag / "metadata.yaml").unlink() if plugin != "ros1" else None
+    assert read_run(bag, robot()).ticks.rows == run.ticks.rows
+
+
+def test_files_of_a_recording_that_was_killed(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """Two files of one bag, the second one cut off, and no metadata."""
+    folder = tmp_path / "bag"
+    folder.mkdir()
+    for number in range(2):
+        part = ros.write(tmp_path / f"part_{number}", drive(ros, 2000)[1000 * number :][:1000])
+        whole = next(part.glob("*.mcap")).read_bytes()
+        cut = whole if number == 0 else whole[: len(whole) // 2]
+        (folder / f"bag_{number}.mcap").write_bytes(cut)
+    run = read_run(folder, robot())
+    assert 1000 < run.ticks.rows < 2000
+    assert run.damage
+
+
+def test_an_undamaged_bag_says_nothing(tmp_path: Path, ros: Any, robot: Any) -> None:
+    assert read_run(ros.write(tmp_path / "bag", drive(ros, 3)), robot()).damage == ()
+
+
+def test_nothing_is_left(tmp_path: Path, ros: Any, robot: Any) -> None:
+    bag = ros.write(tmp_path / "bag", drive(ros, 3))
+    file = next(bag.glob("*.mcap"))
+    file.write_bytes(file.read_bytes()[:60])
+    with pytest.raises(InputError, match="cannot be read as a bag"):
+        read_run(bag, robot())

@@ -1,0 +1,174 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Wheels as people have recorded them: drivers' own messages, speeds, odometry alone, ROS 1."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.model.trajectory import trajectory
+
+MS = 10**6
+WHEELS = ["left_wheel_joint", "right_wheel_joint"]
+DRIVERS = {
+    "turtlebot3_msgs/msg/SensorState": ("left_encoder", "right_encoder"),
+    "kobuki_ros_interfaces/msg/SensorState": ("left_encoder", "right_encoder"),
+    "kobuki_msgs/msg/SensorState": ("left_encoder", "right_encoder"),
+    "irobot_create_msgs/msg/WheelTicks": ("ticks_left", "ticks_right"),
+}
+
+
+@pytest.mark.parametrize("plugin", ["mcap", "sqlite3", "ros1"])
+@pytest.mark.parametrize("kind", DRIVERS)
+def test_counters_of_drivers(tmp_path: Path, ros: Any, robot: Any, kind: str, plugin: str) -> None:
+    left, right = DRIVERS[kind]
+    entries = [
+        (
+            "/sensors",
+            n * 50 * MS + 9,
+            ros.of_driver(kind, n * 50 * MS, **{left: 7 + 30 * n, right: 9 + 40 * n}),
+        )
+        for n in range(1, 4)
+    ]
+    if plugin == "ros1":
+        bag = ros.write_ros1(tmp_path / "run.bag", entries)
+    else:
+        bag = ros.write(tmp_path / "bag", entries, plugin)
+    run = read_run(bag, robot())
+    assert run.ticks.time.tolist() == [0.05, 0.1, 0.15], "stamps, not times of receipt"
+    assert run.ticks.left.tolist() == [37, 67, 97]
+    assert run.ticks.right.tolist() == [49, 89, 129]
+    assert run.ticks.left.dtype == np.int64
+
+
+def test_a_bag_without_definitions(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """As a sqlite3 bag of ROS 2 Humble: the types come from our own list."""
+    import sqlite3
+
+    kind = "turtlebot3_msgs/msg/SensorState"
+    entries = [
+        ("/sensor_state", n * MS, ros.of_driver(kind, n * MS, left_encoder=n, right_encoder=n))
+        for n in range(1, 4)
+    ]
+    bag = ros.write(tmp_path / "bag", entries, "sqlite3")
+    with sqlite3.connect(next(bag.glob("*.db3"))) as database:
+        database.execute("DELETE FROM message_definitions")
+    assert read_run(bag, robot()).ticks.left.tolist() == [1, 2, 3]
+
+
+def test_a_kobuki_counts_with_16_bits(tmp_path: Path, ros: Any, robot: Any) -> None:
+    kind = "kobuki_ros_interfaces/msg/SensorState"
+    counts = [65400, 65500, 64, 164]
+    entries = [
+        ("/s", n * MS, ros.of_driver(kind, n * MS, left_encoder=count, right_encoder=count))
+        for n, count in enumerate(counts, start=1)
+    ]
+    bag = ros.write(tmp_path / "bag", entries)
+    run = read_run(bag, robot())
+    assert np.diff(run.ticks.left).tolist() == [100, 100, 100]
+    assert read_run(bag, robot("encoder_bits: 16")).ticks.left.tolist() == counts, "as they are"
+
+
+def joints(ros: Any, n: int, angles: list[float], speeds: list[float]) -> Any:
+    kind, message = ros.joints(n * 100 * MS, WHEELS, angles)
+    message.velocity = np.array(speeds)
+    return ("/joint_states", n * 100 * MS, (kind, message))
+
+
+def test_speeds_alone_are_integrated_and_said_so(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """Speeds of 2 t rad/s for a second are one radian: trapezia are exact for it."""
+    entries = [joints(ros, n, [], [0.2 * n, -0.2 * n]) for n in range(11)]
+    run = read_run(ros.write(tmp_path / "bag", entries), robot())
+    assert run.ticks.left[-1] == pytest.approx(1000 / (2 * math.pi))
+    assert run.ticks.right[-1] == pytest.approx(-2000 / (2 * math.pi))
+    assert any("only speeds: they are integrated" in note for note in run.notes)
+
+
+def test_angles_that_never_change_are_none(tmp_path: Path, ros: Any, robot: Any) -> None:
+    entries = [joints(ros, n, [0.0, 0.0], [1.0, 1.0]) for n in range(11)]
+    run = read_run(ros.write(tmp_path / "bag", entries), robot())
+    assert run.ticks.left[-1] == pytest.approx(1000 / (2 * math.pi))
+    entries = [joints(ros, n, [0.1 * n, 0.1 * n], [9.0, 9.0]) for n in range(11)]
+    run = read_run(ros.write(tmp_path / "other", entries), robot())
+    assert run.ticks.left[-1] == pytest.approx(1000 / (2 * math.pi)), "angles are what was counted"
+    entries = [joints(ros, n, [0.5, 0.5], [0.0, 0.0]) for n in range(3)]
+    run = read_run(ros.write(tmp_path / "still", entries), robot())
+    assert not any("speeds" in note for note in run.notes), "a robot that stands has angles"
+
+
+def test_angles_that_begin_anew_at_each_turn(tmp_path: Path, ros: Any, robot: Any) -> None:
+    true = 0.5 * np.arange(40)
+    for name, wrapped in (
+        ("around zero", np.angle(np.exp(1j * true))),
+        ("from zero", true % (2 * math.pi)),
+    ):
+        entries = [joints(ros, n, [a, -a], []) for n, a in enumerate(wrapped)]
+        run = read_run(ros.write(tmp_path / name, entries), robot())
+        np.testing.assert_allclose(run.ticks.left, true * 1000 / (2 * math.pi), atol=1e-9)
+        assert any("unwrapped" in note for note in run.notes)
+
+
+def test_odometry_alone_is_turned_back(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """What the file makes of the wheels is where the odometry was; a calibration changes that."""
+    file = robot()
+    turns = np.cumsum(np.random.default_rng(3).normal(0.0, 30.0, (60, 2)), axis=0)
+    path = trajectory(file.robot, 0.1 * np.arange(60), turns[:, 0], turns[:, 1])
+    entries = [
+        ("/odom", n * 100 * MS, ros.odometry(n * 100 * MS, 3 + x, y - 2, yaw))
+        for n, (x, y, yaw) in enumerate(zip(path.x, path.y, path.yaw, strict=True))
+    ]
+    bag = ros.write(tmp_path / "bag", entries)
+    run = read_run(bag, file)
+    np.testing.assert_allclose(run.ticks.left, turns[:, 0] - turns[0, 0], atol=1e-6)
+    np.testing.assert_allclose(run.ticks.right, turns[:, 1] - turns[0, 1], atol=1e-6)
+    assert any("wheel_separation of the robot file" in note for note in run.notes)
+    assert run.reference is None, "it is no measurement of itself"
+    calibrated = read_run(bag, robot("wheel_separation_multiplier: 1.1"))
+    np.testing.assert_allclose(calibrated.ticks.left, run.ticks.left)
+
+
+def test_odometry_whose_poses_stay_at_zero(tmp_path: Path, ros: Any, robot: Any) -> None:
+    entries = []
+    for n in range(11):
+        kind, message = ros.odometry(n * 100 * MS, 0.0, 0.0, 0.0)
+        message.twist.twist.linear.x = 0.3
+        entries.append(("/odom", n * 100 * MS, (kind, message)))
+    run = read_run(ros.write(tmp_path / "bag", entries), robot())
+    assert run.ticks.left[-1] == pytest.approx(0.3 * 1000 / (2 * math.pi * 0.1))
+
+
+def test_wheels_come_before_odometry_and_two_robots_are_asked_about(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    entries = [
+        ("/a/joint_states", 1, ros.joints(1, WHEELS, [0.0, 0.0])),
+        ("/a/odom", 2, ros.odometry(2, 0.0, 0.0, 0.0)),
+        ("/arm/joint_states", 3, ros.joints(3, ["elbow"], [0.0])),
+    ]
+    assert (
+        read_run(ros.write(tmp_path / "one", entries), robot())
+        .notes[0]
+        .startswith("ticks from /a/joint_states")
+    )
+    entries.append(("/b/joint_states", 4, ros.joints(4, WHEELS, [0.0, 0.0])))
+    with pytest.raises(InputError, match=r"choose with --ticks-topic; candidates are /a/joint_st"):
+        read_run(ros.write(tmp_path / "two", entries), robot())
+
+
+def test_a_type_that_nobody_knows(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """A message of a type that lies about itself is named with its topic, not as a traceback."""
+    entries = [("/ticks", 1, ros.counts(1, 2)), ("/pose", 2, ros.pose(2, 0.0, 0.0, 0.0))]
+    bag = ros.write(tmp_path / "bag", entries, "sqlite3")
+    import sqlite3
+
+    with sqlite3.connect(next(bag.glob("*.db3"))) as database:
+        database.execute("UPDATE messages SET data = X'00010000' WHERE topic_id = 2")
+    with pytest.raises(InputError, match=r"/pose \(geometry_msgs/msg/PoseStamped\)"):
+        read_run(bag, robot(), reference_topic="/pose")

@@ -1,0 +1,83 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a bag holds: wheels, references, and which of them come from the wheels."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from werrimbi_odom.files.contents import contents_of
+from werrimbi_odom.files.made_from_wheels import why_from_wheels
+
+MS = 10**6
+WHEELS = ["left_wheel_joint", "right_wheel_joint"]
+ODOMETRY = "nav_msgs/msg/Odometry"
+
+
+def localised(ros: Any, corrections: tuple[float, ...]) -> list[Any]:
+    """Wheels, a gyro, odometry, and a localiser that shifts map -> odom so often."""
+    entries = [
+        ("/joint_states", 1, ros.joints(1 * MS, WHEELS, [0.0, 0.0])),
+        ("/imu", 2, ros.imu(2 * MS, 0.1)),
+        ("/odom", 3, ros.odometry(3 * MS, 0.0, 0.0, 0.0)),
+        ("/initialpose", 4, ros.pose_with_covariance(4 * MS, 0.0, 0.0, 0.0, (1, 1, 1))),
+        ("/tf_static", 5, ros.transforms(ros.transform(0, ("base_link", "laser"), 0.1, 0, 0))),
+    ]
+    for n, x in enumerate(corrections, start=6):
+        entries.append(("/tf", n, ros.transforms(ros.transform(n * MS, ("map", "odom"), x, 0, 0))))
+        moved = ros.transform(n * MS, ("odom", "base_link"), 0.1 * n, 0.0, 0.0)
+        entries.append(("/tf", n, ros.transforms(moved)))
+    return entries
+
+
+def test_what_measures_and_what_comes_from_the_wheels(tmp_path: Path, ros: Any) -> None:
+    held = contents_of(ros.write(tmp_path / "bag", localised(ros, (0.0, 0.01, 0.03))))
+    assert [(each.name, each.gives, each.joints) for each in held.wheels] == [
+        ("/joint_states", "positions", tuple(WHEELS)),
+        ("/odom", "odometry", ()),
+    ]
+    assert [(each.name, each.measures) for each in held.independent] == [
+        ("/tf:map:base_link", "poses"),
+        ("/imu", "yaw"),
+    ]
+    others = [each for each in held.references if not each.independent]
+    assert [each.name for each in others] == ["/tf:odom:base_link", "/odom"]
+    assert all("odom -> base_link is the robot's own odometry" in each.why for each in others)
+
+
+def test_a_map_that_never_corrects_leaves_the_odometry(tmp_path: Path, ros: Any) -> None:
+    held = contents_of(ros.write(tmp_path / "bag", localised(ros, (0.5, 0.5, 0.5))))
+    assert [each.name for each in held.independent] == ["/imu"]
+    on_map = next(each for each in held.references if each.name == "/tf:map:base_link")
+    assert on_map.why.endswith("and map -> odom never changes")
+
+
+def test_speeds_alone_are_told_from_angles(tmp_path: Path, ros: Any) -> None:
+    kind, message = ros.joints(1 * MS, WHEELS, [0.0, 0.0])
+    message.velocity, message.position = message.position, message.velocity
+    held = contents_of(ros.write(tmp_path / "bag", [("/joint_states", 1, (kind, message))]))
+    assert held.wheels[0].gives == "velocities"
+
+
+@pytest.mark.parametrize(
+    ("topic", "kind", "parent", "child", "from_wheels"),
+    [
+        ("/odom", ODOMETRY, "odom", "base_link", True),
+        ("/robot_3/odom", ODOMETRY, "robot_3/odom", "robot_3/base_footprint", True),
+        ("/odometry/filtered", ODOMETRY, "map", "base_link", True),
+        ("/robot_pose_ekf/odom_combined", "", "odom_combined", "", True),
+        ("/wheel_odom", ODOMETRY, "", "", True),
+        ("/rtabmap/odom", ODOMETRY, "odom", "base_link", False),
+        ("/zed2/zed_node/odom", ODOMETRY, "odom", "base_link", False),
+        ("/Odometry", ODOMETRY, "camera_init", "body", False),
+        ("/ground_truth/odom", ODOMETRY, "world", "base_link", False),
+        ("/odometry/gps", ODOMETRY, "odom", "", False),
+        ("/amcl_pose", "geometry_msgs/msg/PoseWithCovarianceStamped", "map", "", False),
+        ("/vrpn/robot/pose", "geometry_msgs/msg/PoseStamped", "world", "", False),
+    ],
+)
+def test_names(topic: str, kind: str, parent: str, child: str, from_wheels: bool) -> None:
+    assert bool(why_from_wheels(topic, kind, parent, child)) is from_wheels

@@ -1,0 +1,77 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Counters that leap: found where they do, and nowhere else."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.legs.counters import counters_of
+from werrimbi_odom.inference.legs.cutting import record_of
+from werrimbi_odom.model.robot import Robot
+
+ROBOT = Robot(0.3, 0.05, 1000.0, 1000.0)
+TIME = 0.05 * np.arange(400)
+
+
+def driven(seed: int = 1) -> np.ndarray:
+    """Two counters of a robot that drives at up to 2 turns a second, with stops."""
+    rng = np.random.default_rng(seed)
+    speed = np.repeat(rng.uniform(-2000.0, 2000.0, (20, 2)), 20, axis=0)
+    speed[100:160] = 0.0
+    return np.rint(np.cumsum(0.05 * speed, axis=0))
+
+
+def run_of(counts: np.ndarray, time: np.ndarray = TIME) -> Run:
+    none = np.full(time.size, np.nan)
+    reference = Reference(time, none, none, np.zeros(time.size))
+    return Run("run", Path("run"), Ticks(time, counts[:, 0], counts[:, 1]), reference)
+
+
+def test_to_somewhere_and_back() -> None:
+    counts = driven()
+    leapt = counts.copy()
+    leapt[250, 1] += 190_000.0  # 60 m for one message
+    found = counters_of(run_of(leapt), ROBOT, None)
+    ((begin, end, words),) = found.leaps
+    assert (begin, end) == (pytest.approx(12.45), pytest.approx(12.55))
+    assert words.startswith("the right counter leapt by 59.7 m and came back")
+    assert 250 * 0.05 not in found.time
+    np.testing.assert_allclose(found.right[-1], counts[-1, 1] - counts[0, 1])
+    np.testing.assert_allclose(found.left[-1], counts[-1, 0] - counts[0, 0])
+
+
+def test_for_good() -> None:
+    counts = driven()
+    leapt = counts.copy()
+    leapt[250:, 0] -= 190_000.0
+    found = counters_of(run_of(leapt), ROBOT, None)
+    assert len(found.leaps) == 1
+    assert "came back" not in found.leaps[0][2]
+    assert abs(found.left[-1] - (counts[-1, 0] - counts[0, 0])) < 110.0, "a message at 2 turns/s"
+
+
+def test_it_is_left_out_of_what_is_judged() -> None:
+    leapt = driven()
+    leapt[250, 1] += 190_000.0
+    record = record_of(run_of(leapt), ROBOT)
+    assert [(each.why, round(each.begin, 2)) for each in record.left_out] == [("counter", 12.45)]
+    assert record.gap[
+        (record.measured.time[:-1] >= 12.44) & (record.measured.time[1:] <= 12.56)
+    ].all()
+
+
+@pytest.mark.parametrize("seed", range(5))
+def test_driving_is_no_leap(seed: int) -> None:
+    """Fast starts after creeping, stamps that come in bursts, a silence of the ticks."""
+    rng = np.random.default_rng(seed)
+    counts = driven(seed)
+    counts[:340] *= 0.02
+    counts[340:] += counts[339] - counts[340]
+    time = np.sort(TIME + rng.uniform(-0.024, 0.024, TIME.size))
+    time[200:] += 5.0
+    assert counters_of(run_of(np.rint(counts), time), ROBOT, None).leaps == ()

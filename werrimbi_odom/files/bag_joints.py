@@ -1,0 +1,139 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Wheels from JointState messages: angles, counts, or speeds that are integrated."""
+
+from __future__ import annotations
+
+import difflib
+import math
+from array import array
+from collections import Counter
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.bag import Message, left_out_words, stamp_of
+from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.run import Ticks, counts_of
+from werrimbi_odom.files.wheel_sides import side_counts
+from werrimbi_odom.model.encoder import Counts
+from werrimbi_odom.model.pose import Floats
+
+INTEGRATED = (
+    "there are no wheel angles, only speeds: they are integrated (trapezia), which loses what the "
+    "wheels did between two messages"
+)
+UNTURNED = "the angles begin anew at each turn; they are unwrapped"
+
+
+class JointStates:
+    """Wheels among the joints of a robot."""
+
+    def __init__(self, path: Path, topic: str, robot_file: RobotFile) -> None:
+        self._place = f"{path}: {topic}"
+        self._file = robot_file
+        self._sides = [wheel_names(robot_file, side) for side in ("left", "right")]
+        self._wheels = [name for side in self._sides for name in side]
+        self._angles = _Rows()
+        self._speeds = _Rows()
+        self._names: list[str] = []
+        self._places: list[int] = []
+        self._left_out: Counter[str] = Counter()
+
+    def take(self, message: Message) -> None:
+        """Take a message."""
+        content = message.content
+        if content.name != self._names or not self._places:
+            self._names = list(content.name)
+            known = all(name in self._names for name in self._wheels)
+            self._places = [self._names.index(name) for name in self._wheels] if known else []
+        if not self._places:
+            self._left_out["without our joints"] += 1
+            return
+        angles = len(content.position) == len(self._names)
+        speeds = len(content.velocity) == len(self._names)
+        if angles:
+            self._angles.add(stamp_of(message), content.position, self._places)
+        elif not (speeds and len(content.position) == 0):
+            self._left_out["without a position for each joint"] += 1
+        if speeds:
+            self._speeds.add(stamp_of(message), content.velocity, self._places)
+
+    def ticks(self) -> tuple[Ticks, list[str]]:
+        """All of them, and in words what was left out."""
+        time, positions = self._angles.arrays(len(self._wheels))
+        words = left_out_words(self._left_out)
+        if self._speeds_tell(positions):
+            time, speeds = self._speeds.arrays(len(self._wheels))
+            positions, words = _integrated(time, speeds), [*words, INTEGRATED]
+        elif not time.size:
+            raise InputError(f"{self._place}: {self._why_none()}")
+        elif self._file.values["position_unit"] == "radians" and _begin_anew(positions):
+            positions, words = np.unwrap(positions, axis=0), [*words, UNTURNED]
+        left = self._side(positions[:, : len(self._sides[0])], "left")
+        right = self._side(positions[:, len(self._sides[0]) :], "right")
+        return Ticks(time, left, right), words
+
+    def _speeds_tell(self, positions: Floats) -> bool:
+        """Whether there are speeds, and no angles or none that ever change."""
+        speeds = self._speeds.arrays(len(self._wheels))[1]
+        if speeds.size == 0 or positions.shape[0] > speeds.shape[0]:
+            return False
+        still = positions.shape[0] == 0 or not np.ptp(positions, axis=0).any()
+        return bool(still and (positions.shape[0] == 0 or np.any(speeds != 0.0)))
+
+    def _side(self, positions: NDArray[np.float64], side: str) -> Counts:
+        values = self._file.values
+        per_turn = float(values[f"{side}_ticks_per_revolution"])  # type: ignore[arg-type]
+        in_radians = values["position_unit"] == "radians"
+        counts = positions * (per_turn / (2.0 * math.pi)) if in_radians else positions
+        return counts_of(side_counts(counts, per_turn, int(values["encoder_bits"])))  # type: ignore[arg-type]
+
+    def _why_none(self) -> str:
+        absent = [name for name in self._wheels if name not in self._names]
+        if not absent:
+            return "no message gives a position for each joint"
+        near = difflib.get_close_matches(absent[0], self._names, n=1, cutoff=0.0)
+        nearest = f", the nearest is {near[0]}" if near else ""
+        return (
+            f"no joint {absent[0]}{nearest}; it has {', '.join(self._names) or 'none'}; "
+            "set left_wheel_names and right_wheel_names in the robot file"
+        )
+
+
+class _Rows:
+    """Stamps, and a value for each wheel."""
+
+    def __init__(self) -> None:
+        self._time = array("d")
+        self._values = array("d")
+
+    def add(self, time: float, values: NDArray[np.float64], places: list[int]) -> None:
+        self._time.append(time)
+        self._values.extend(float(values[place]) for place in places)
+
+    def arrays(self, wheels: int) -> tuple[Floats, Floats]:
+        """Shapes (n,) and (n, wheels)."""
+        return np.array(self._time), np.array(self._values).reshape(-1, wheels)
+
+
+def _integrated(time: Floats, speeds: Floats) -> Floats:
+    """Angles from speeds, by trapezia; stamps that do not go forward add nothing."""
+    known = np.where(np.isfinite(speeds), speeds, 0.0)
+    lasted = np.diff(np.maximum.accumulate(time))[:, None]
+    turned = 0.5 * (known[1:] + known[:-1]) * lasted
+    return np.concatenate([np.zeros((1, speeds.shape[1])), np.cumsum(turned, axis=0)])
+
+
+def _begin_anew(angles: Floats) -> bool:
+    """Whether angles stay within a turn and leap by most of one: a driver that says them so."""
+    with np.errstate(invalid="ignore"):
+        within = np.nanmax(np.abs(angles), initial=0.0) <= 2.0 * math.pi + 1e-6
+        return bool(within and (np.abs(np.diff(angles, axis=0)) > 1.5 * math.pi).any())
+
+
+def wheel_names(robot_file: RobotFile, side: str) -> tuple[str, ...]:
+    """Joints of a side."""
+    return tuple(robot_file.values[f"{side}_wheel_names"])  # type: ignore[arg-type]

@@ -1,0 +1,181 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Bags that were never finished (a recorder killed, a power failure), read from their beginning.
+
+An index stands at a bag's end, so one that is cut off has none. Its messages stand in the file in
+the order in which they were received; they are read up to the first place that is spoilt.
+"""
+
+from __future__ import annotations
+
+import bz2
+import io
+import sqlite3
+import struct
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import IO, NamedTuple
+
+from werrimbi_odom.files.bag_scan_sqlite import described, rows_of
+
+MCAP_MAGIC = b"\x89MCAP0\r\n"
+ROS1_MAGIC = b"#ROSBAG V2.0\n"
+LARGEST = 2**30
+"""Bytes of a record; more is no length but damage."""
+
+
+class Raw(NamedTuple):
+    """A message as it stands in a file."""
+
+    topic: str
+    kind: str
+    received: int
+    """[ns]"""
+    data: bytes
+    definition: str
+    """Of its type; "" where the file has none."""
+
+
+class SpoiltError(Exception):
+    """A file ends in mid-record, or what stands there is no record."""
+
+
+def raw_messages(files: Sequence[Path]) -> Iterator[Raw]:
+    """Messages of files one after the other, up to where each is spoilt."""
+    for file in files:
+        scan = _SCANS[file.suffix]
+        try:
+            yield from scan(file)
+        except (SpoiltError, sqlite3.Error, struct.error, OSError, ValueError, LookupError):
+            continue
+
+
+def _mcap(file: Path) -> Iterator[Raw]:
+    with file.open("rb") as stream:
+        if stream.read(8) != MCAP_MAGIC:
+            raise SpoiltError
+        yield from _mcap_records(stream, {}, {})
+
+
+def _mcap_records(
+    stream: IO[bytes], schemas: dict[int, tuple[str, str]], channels: dict[int, tuple[str, int]]
+) -> Iterator[Raw]:
+    while head := stream.read(9):
+        code, length = struct.unpack("<BQ", head)
+        body = _exactly(stream, length, cut=code == _CHUNK)
+        if code == 0x03:
+            (key,), rest = struct.unpack_from("<H", body), body[2:]
+            name, rest = _text(rest)
+            _, rest = _text(rest)
+            schemas[key] = (name, _text(rest)[0])
+        elif code == 0x04:
+            key, schema = struct.unpack_from("<HH", body)
+            channels[key] = (_text(body[4:])[0], schema)
+        elif code == 0x05:
+            key, _, received = struct.unpack_from("<HIQ", body)
+            topic, schema = channels[key]
+            kind, definition = schemas[schema]
+            yield Raw(topic, kind, received, body[22:], definition)
+        elif code == _CHUNK:
+            size, _ = struct.unpack_from("<QI", body, 16)
+            compression, rest = _text(body[28:])
+            inside = _decompressed(rest[8:], compression, size)
+            yield from _mcap_records(io.BytesIO(inside), schemas, channels)
+        elif code in (0x0F, 0x02):
+            return  # end of the data, or the footer
+
+
+_CHUNK = 0x06
+
+
+def _text(body: bytes) -> tuple[str, bytes]:
+    (length,) = struct.unpack_from("<I", body)
+    if 4 + length > len(body):
+        raise SpoiltError
+    return body[4 : 4 + length].decode("utf-8", "replace"), body[4 + length :]
+
+
+def _decompressed(data: bytes, compression: str, size: int) -> bytes:
+    if not compression:
+        return data
+    if size > LARGEST:
+        raise SpoiltError
+    try:
+        if compression == "lz4":
+            from lz4.frame import LZ4FrameDecompressor
+
+            return bytes(LZ4FrameDecompressor().decompress(data, size))
+        if compression == "bz2":
+            return bz2.BZ2Decompressor().decompress(data, size)
+        from rosbags.rosbag2.storage_mcap import DECOMPRESSORS
+
+        return bytes(DECOMPRESSORS[compression](data, size))
+    except Exception as error:  # each library has its own
+        raise SpoiltError from error
+
+
+def _ros1(file: Path) -> Iterator[Raw]:
+    with file.open("rb") as stream:
+        if stream.readline() != ROS1_MAGIC:
+            raise SpoiltError
+        yield from _ros1_records(stream, {})
+
+
+def _ros1_records(stream: IO[bytes], connections: dict[int, tuple[str, str, str]]) -> Iterator[Raw]:
+    from rosbags.typesys.msg import normalize_msgtype
+
+    while head := stream.read(4):
+        fields = _fields(_exactly(stream, *struct.unpack("<I", head)))
+        code = fields["op"][0]
+        (length,) = struct.unpack("<I", _exactly(stream, 4))
+        data = _exactly(stream, length, cut=code == 5)
+        if code == 7:
+            told = _fields(data)
+            kind = normalize_msgtype(told["type"].decode())
+            names = (fields["topic"].decode(), kind, told["message_definition"].decode())
+            connections[struct.unpack("<I", fields["conn"])[0]] = names
+        elif code == 2:
+            topic, kind, definition = connections[struct.unpack("<I", fields["conn"])[0]]
+            seconds, nanoseconds = struct.unpack("<II", fields["time"])
+            received = seconds * 10**9 + nanoseconds
+            yield Raw("/" + topic.strip("/"), kind, received, data, definition)
+        elif code == 5:
+            size = struct.unpack("<I", fields["size"])[0]
+            compression = fields["compression"].decode().replace("none", "")
+            inside = _decompressed(data, compression, size)
+            yield from _ros1_records(io.BytesIO(inside), connections)
+
+
+def _fields(header: bytes) -> dict[str, bytes]:
+    found, at = {}, 0
+    while at < len(header):
+        (length,) = struct.unpack_from("<I", header, at)
+        name, _, value = header[at + 4 : at + 4 + length].partition(b"=")
+        found[name.decode()] = value
+        at += 4 + length
+    return found
+
+
+def _exactly(stream: IO[bytes], length: int, cut: bool = False) -> bytes:
+    """So many bytes; where they may be cut off, those that are there."""
+    if length > LARGEST:
+        raise SpoiltError
+    found = stream.read(length)
+    if len(found) < length and not cut:
+        raise SpoiltError
+    return found
+
+
+def _sqlite(file: Path) -> Iterator[Raw]:
+    topics, definitions = described(file)
+    for key, received, data in rows_of(file):
+        if key in topics:
+            topic, kind = topics[key]
+            yield Raw(topic, kind, received, data, definitions.get(kind, ""))
+
+
+_SCANS: dict[str, Callable[[Path], Iterator[Raw]]] = {
+    ".mcap": _mcap,
+    ".db3": _sqlite,
+    ".bag": _ros1,
+}

@@ -1,0 +1,142 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Messages of a sqlite3 bag whose end is missing, page by page.
+
+SQLite finds rows through pages that may be anywhere in the file, so that it reads nothing of a
+table whose end is cut off. The rows themselves stand in leaf pages one after the other. Format:
+https://www.sqlite.org/fileformat2.html, sections 1.5, 1.6 and 2.1.
+"""
+
+from __future__ import annotations
+
+import mmap
+import sqlite3
+from collections.abc import Iterator
+from contextlib import suppress
+from pathlib import Path
+from typing import NamedTuple
+
+LEAF = 0x0D
+"""First byte of a page with rows of a table."""
+
+
+class Row(NamedTuple):
+    """A row of the table of messages."""
+
+    topic: int
+    received: int
+    """[ns]"""
+    data: bytes
+
+
+def described(file: Path) -> tuple[dict[int, tuple[str, str]], dict[str, str]]:
+    """Name and type of each topic by its number, and what defines each type."""
+    database = sqlite3.connect(f"{file.resolve().as_uri()}?immutable=1", uri=True)
+    try:
+        # Without it a file that is shorter than its header says is not read at all.
+        database.execute("PRAGMA writable_schema=ON")
+        found = database.execute("SELECT id, name, type FROM topics")
+        topics = {key: (name, kind) for key, name, kind in found}
+        definitions: dict[str, str] = {}
+        with suppress(sqlite3.Error):  # before ROS 2 Iron there are none
+            definitions.update(
+                database.execute(
+                    "SELECT topic_type, encoded_message_definition FROM message_definitions"
+                )
+            )
+        return topics, definitions
+    finally:
+        database.close()
+
+
+def rows_of(file: Path) -> Iterator[Row]:
+    """Messages in the order in which they were written; those that are cut off are left out."""
+    with file.open("rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as held:
+        pages = _Pages(held)
+        for _, place in sorted(pages.cells()):
+            row = pages.row(place)
+            if row is not None:
+                yield row
+
+
+class _Pages:
+    def __init__(self, held: mmap.mmap) -> None:
+        self._held = held
+        size = int.from_bytes(held[16:18], "big")
+        self._size = 65536 if size == 1 else max(size, 512)
+        self._usable = self._size - held[20]
+
+    def cells(self) -> Iterator[tuple[int, int]]:
+        """Number of each row, and where its payload's length stands."""
+        for start in range(0, len(self._held), self._size):
+            head = start + (100 if start == 0 else 0)
+            if self._held[head] != LEAF or head + 8 > len(self._held):
+                continue
+            count = int.from_bytes(self._held[head + 3 : head + 5], "big")
+            for at in range(head + 8, min(head + 8 + 2 * count, start + self._size), 2):
+                place = start + int.from_bytes(self._held[at : at + 2], "big")
+                if place < min(start + self._size, len(self._held)) - 8:
+                    yield self._number(self._number(place)[1])[0], place
+
+    def row(self, place: int) -> Row | None:
+        """A row of four columns: its number, the topic's, a time, and bytes; None for others."""
+        length, at = self._number(place)
+        payload = self._payload(length, self._number(at)[1])
+        if payload is None:
+            return None
+        size, at = _varint(payload, 0)
+        kinds = []
+        while at < size:
+            kind, at = _varint(payload, at)
+            kinds.append(kind)
+        if len(kinds) != 4 or kinds[0] != 0 or kinds[3] < 12 or kinds[3] % 2:
+            return None
+        numbers = []
+        for kind in kinds[1:3]:
+            if kind not in _WIDTHS:
+                return None
+            width = _WIDTHS[kind]
+            numbers.append(int.from_bytes(payload[at : at + width], "big", signed=True))
+            at += width
+            numbers[-1] = {8: 0, 9: 1}.get(kind, numbers[-1])
+        return Row(numbers[0], numbers[1], payload[at : at + (kinds[3] - 12) // 2])
+
+    def _payload(self, length: int, at: int) -> bytes | None:
+        """A row's bytes, those on pages of their own among them; None where some are missing."""
+        most = self._usable - 35
+        if length <= most:
+            found = self._held[at : at + length]
+            return found if len(found) == length else None
+        least = (self._usable - 12) * 32 // 255 - 23
+        here = least + (length - least) % (self._usable - 4)
+        here = here if here <= most else least
+        found = self._held[at : at + here]
+        page = int.from_bytes(self._held[at + here : at + here + 4], "big")
+        while page and len(found) < length:
+            start = (page - 1) * self._size
+            block = self._held[start : start + self._usable]
+            if len(block) < 4:
+                return None
+            page = int.from_bytes(block[:4], "big")
+            found += block[4:]
+        return found[:length] if len(found) >= length else None
+
+    def _number(self, at: int) -> tuple[int, int]:
+        return _varint(self._held, at)
+
+
+_WIDTHS = {1: 1, 2: 2, 3: 3, 4: 4, 5: 6, 6: 8, 8: 0, 9: 0}
+"""Bytes of an integer by its serial type."""
+
+
+def _varint(held: bytes | mmap.mmap, at: int) -> tuple[int, int]:
+    """A number of one to nine bytes, and where the next begins."""
+    value = 0
+    for index in range(9):
+        byte = held[at + index]
+        if index == 8:
+            return (value << 8) | byte, at + 9
+        value = (value << 7) | (byte & 0x7F)
+        if byte < 0x80:
+            return value, at + index + 1
+    raise AssertionError

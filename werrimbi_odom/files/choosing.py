@@ -1,0 +1,162 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Which of a bag's topics is the reference: what was asked for, or the only independent one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import NamedTuple
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.contents import Contents, Measured, Wheels
+from werrimbi_odom.files.frames import KINDS as TRANSFORMS
+from werrimbi_odom.files.frames import Chain, chain, frame, is_static
+from werrimbi_odom.files.made_from_wheels import is_odometry_frame
+
+NONE = "none"
+"""Said instead of a topic: use no reference."""
+
+
+class Chosen(NamedTuple):
+    """The reference of a run."""
+
+    source: Measured
+    child: str = ""
+    """Frame that was asked for, of messages that hold several; "" where none was."""
+
+
+def choose_reference(
+    held: Contents, wheels: Wheels, wish: str | None, force: bool = False
+) -> Chosen | None:
+    """The reference that is wished for, or the only independent one; None where there is none.
+
+    What is made from the wheels is taken where it is wished for or nothing else is there; whether
+    it may be used is judged by its numbers too, see `Measured.independent`.
+
+    Parameters
+    ----------
+    wheels
+        What tells the wheels; it is no reference.
+    wish : str, optional
+        TOPIC, TOPIC:CHILD_FRAME, /tf:PARENT:CHILD, or `none`.
+    force : bool
+        Take a localiser's correction for poses of the robot all the same.
+
+    Raises
+    ------
+    InputError
+        When the wish is not there, or there are several; the message lists them.
+    """
+    if wish == NONE:
+        return None
+    topics = wheels.name.split(",")
+    there = [each for each in held.references if each.name not in topics]
+    if wish is not None:
+        return _wished(held, there, wish, force)
+    independent = [each for each in there if each.independent]
+    if len(independent) > 1:
+        raise InputError(
+            f"{held.path}: choose with --reference-topic ({NONE} for no reference); "
+            f"candidates are: {listed(independent)}{_not_independent(there)}"
+        )
+    if wheels.gives == "odometry":
+        return Chosen(independent[0]) if independent else None
+    # Odometry by its name may be a simulator's truth: what it is, its numbers say.
+    chosen = independent or [each for each in there if each.chain is None] or there
+    return Chosen(chosen[0]) if chosen else None
+
+
+def listed(found: Sequence[Measured]) -> str:
+    """Names and types."""
+    return ", ".join(f"{each.name} ({each.kind})" for each in found) or "none"
+
+
+def _not_independent(found: Sequence[Measured]) -> str:
+    names = ", ".join(each.name for each in found if not each.independent)
+    return f"; made from the wheels, and so no reference: {names}" if names else ""
+
+
+def _wished(held: Contents, there: Sequence[Measured], wish: str, force: bool) -> Chosen:
+    name, *frames = wish.split(":")
+    name = "/" + name.strip().strip("/")
+    frames = [frame(each) for each in frames]
+    if any(each.kind in TRANSFORMS for each in held.topics if each.name == name):
+        return Chosen(_transforms(held, name, frames, force))
+    for each in there:
+        if each.name == name and len(frames) <= 1:
+            return Chosen(each, frames[0] if frames else "")
+    candidates = [each for each in there if each.independent]
+    raise InputError(
+        f"{held.path}: there is no reference in {name}; candidates are: "
+        f"{listed(candidates)}{_not_independent(there)}"
+    )
+
+
+def _transforms(held: Contents, topic: str, frames: Sequence[str], force: bool) -> Measured:
+    """A chain of transforms, by its two ends, by its last frame alone, or the one that is there."""
+    space = topic.rpartition("/")[0]
+    edges = [
+        each
+        for each in held.edges
+        if each.topic == topic or (is_static(each.topic) and each.topic.rpartition("/")[0] == space)
+    ] or list(held.edges)
+    chains = [each for each in held.references if each.chain and each.chain.topic == topic]
+    if len(frames) == 2:
+        found = chain(edges, *frames)
+        if found is None:
+            told = ", ".join(f"{each.parent} -> {each.child}" for each in edges) or "none"
+            raise InputError(
+                f"{held.path}: {topic}: no transforms lead from {frames[0]} to {frames[1]}; "
+                f"it has: {told}"
+            )
+        return _measured(topic, found)
+    if frames:
+        direct = [edge for edge in edges if edge.child == frames[0] and not edge.static]
+        if len(direct) == 1:
+            _refuse_correction(held, topic, frames[0], chains, force)
+            edge = direct[0]
+            return _measured(topic, Chain((edge,), (False,), edge.parent, edge.child))
+        above = [each for each in chains if each.child == frames[0]]
+        chains = above
+    several = [each for each in chains if each.independent] or chains
+    if len(several) == 1 or (several and not several[0].independent):
+        return several[0]
+    moving = [edge for edge in edges if not edge.static]
+    told = ", ".join(f"{each.parent} -> {each.child}" for each in moving) or "none"
+    raise InputError(
+        f"{held.path}: {topic}: name the frames with --reference-topic {topic}:PARENT:CHILD; "
+        f"it has: {told}"
+    )
+
+
+def _refuse_correction(
+    held: Contents, topic: str, child: str, chains: Sequence[Measured], force: bool
+) -> None:
+    """The odometry's start on a map is no pose of the robot."""
+    whole = [each for each in chains if each.chain and len(each.chain.steps) > 1]
+    through = [
+        each
+        for each in whole
+        if each.chain and any(step.child == child for step in each.chain.steps[:-1])
+    ]
+    if through and is_odometry_frame(child) and not force:
+        raise InputError(
+            f"{held.path}: {topic}:{child} is where the odometry starts, as a localiser corrects "
+            f"it, and no pose of the robot; its poses are --reference-topic {through[0].name} "
+            "(--force takes it all the same)"
+        )
+
+
+def _measured(topic: str, found: Chain) -> Measured:
+    reason = found.made_from_wheels
+    return Measured(
+        f"{topic}:{found.parent}:{found.child}",
+        TRANSFORMS[0],
+        min(each.messages for each in found.steps),
+        "poses",
+        found.parent,
+        found.child,
+        not reason,
+        reason or f"{found.in_words()} comes from a sensor or a localiser",
+        found,
+    )

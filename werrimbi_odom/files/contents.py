@@ -1,0 +1,205 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a bag holds: what tells the wheels, and what measures the robot, independent of them or not.
+
+`contents_of(path)` reads a bag once and gives `Contents`: `wheels` (each a `Wheels`: what may be
+given to --ticks-topic) and `references` (each a `Measured`: what may be given to --reference-topic,
+with what it measures, its frames, whether it is independent of the wheels, and why). Nothing is
+judged from numbers here: whether poses follow the wheels too closely to be measured is asked where
+they are compared.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from werrimbi_odom.files.bag import Bag, Topic, opened_bag
+from werrimbi_odom.files.frames import KINDS as TRANSFORMS
+from werrimbi_odom.files.frames import Chain, Edge, EdgeCollector, chains_to_base, frame
+from werrimbi_odom.files.made_from_wheels import ODOMETRY, is_asked_for, why_from_wheels
+
+Measures = Literal["poses", "positions", "yaw"]
+Gives = Literal["counts", "positions", "velocities", "odometry"]
+"""Of wheels: counters, angles of joints, speeds of joints alone, or the firmware's own poses."""
+
+IMU = "sensor_msgs/msg/Imu"
+FIX = "sensor_msgs/msg/NavSatFix"
+JOINT_STATE = "sensor_msgs/msg/JointState"
+INT32, INT64 = "std_msgs/msg/Int32", "std_msgs/msg/Int64"
+COUNTS = {
+    "std_msgs/msg/Int64MultiArray": "two counters in one message",
+    "turtlebot3_msgs/msg/SensorState": "TurtleBot3's counters",
+    "kobuki_msgs/msg/SensorState": "Kobuki's counters, of 16 bits",
+    "kobuki_ros_interfaces/msg/SensorState": "Kobuki's counters, of 16 bits",
+    "irobot_create_msgs/msg/WheelTicks": "the counters of a Create",
+}
+"""Messages that hold both wheels' counters."""
+POSES = {
+    ODOMETRY: "poses",
+    "geometry_msgs/msg/PoseStamped": "poses",
+    "geometry_msgs/msg/PoseWithCovarianceStamped": "poses",
+    "geometry_msgs/msg/TransformStamped": "poses",
+    "geometry_msgs/msg/PointStamped": "positions",
+    FIX: "positions",
+    IMU: "yaw",
+}
+"""Messages that measure the robot, transforms of many frames apart."""
+
+
+@dataclass(frozen=True)
+class Wheels:
+    """A topic, or two, that tell how the wheels turned."""
+
+    name: str
+    """What is given to --ticks-topic: TOPIC, or LEFT,RIGHT."""
+    kind: str
+    """Message type, as in `sensor_msgs/msg/JointState`."""
+    messages: int
+    gives: Gives
+    joints: tuple[str, ...] = ()
+    """Names of the joints, of a JointState."""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """Something in a bag that measures the robot, or seems to."""
+
+    name: str
+    """What is given to --reference-topic: TOPIC, or /tf:PARENT:CHILD."""
+    kind: str
+    messages: int
+    """Of a chain of transforms: those of the transform that measures."""
+    measures: Measures
+    parent: str
+    """Frame that it is told in; "" where it says none."""
+    child: str
+    """Frame that it is about; "" where it says none."""
+    independent: bool
+    """Whether, by name and frames, it does not come from the wheels."""
+    why: str
+    """Why it is independent, or why not: the end of a sentence."""
+    chain: Chain | None = None
+    """Of transforms: what is composed."""
+
+
+@dataclass(frozen=True)
+class Contents:
+    """What a bag holds."""
+
+    path: Path
+    topics: tuple[Topic, ...]
+    """All that have messages."""
+    wheels: tuple[Wheels, ...]
+    """What can be read as wheels; the firmware's odometry last."""
+    references: tuple[Measured, ...]
+    """What measures the robot or seems to, independent ones first."""
+    edges: tuple[Edge, ...]
+    """All transforms between frames."""
+
+    @property
+    def independent(self) -> tuple[Measured, ...]:
+        """References that do not come from the wheels."""
+        return tuple(each for each in self.references if each.independent)
+
+
+def contents_of(path: str | Path, base: str = "") -> Contents:
+    """What a bag holds.
+
+    Parameters
+    ----------
+    base
+        The robot's frame, as `base_frame_id` of its file; "" for what is called a base.
+
+    Raises
+    ------
+    InputError
+        When it cannot be read as a bag.
+    """
+    with opened_bag(Path(path)) as bag:
+        return contents_of_bag(bag, base)
+
+
+def contents_of_bag(bag: Bag, base: str = "") -> Contents:
+    """What an open bag holds; see `contents_of`."""
+    edges = EdgeCollector()
+    names = [each.name for each in bag.topics if each.kind in TRANSFORMS]
+    for message in bag.messages(names) if names else ():
+        edges.take(message.topic, message.content.transforms)
+    found = edges.edges()
+    looked_at = [each.name for each in bag.topics if each.kind in (JOINT_STATE, *POSES)]
+    firsts = bag.firsts(looked_at)
+    references = [
+        *_chains(found, base),
+        *(_measured(each, firsts.get(each.name)) for each in bag.topics if each.kind in POSES),
+    ]
+    references = [each for each in references if not is_asked_for(each.name)]
+    references.sort(key=lambda each: not each.independent)  # stable: else in the bag's order
+    return Contents(bag.path, bag.topics, tuple(_wheels(bag, firsts)), tuple(references), found)
+
+
+def _measured(topic: Topic, first: Any) -> Measured:
+    kind = topic.kind
+    header = getattr(first, "header", None)
+    parent = frame(getattr(header, "frame_id", ""))
+    child = frame(getattr(first, "child_frame_id", ""))
+    measures: Measures = POSES[kind]  # type: ignore[assignment]
+    if kind == IMU:
+        parent, child, reason = "", parent, ""
+        why = "a gyro of its own; its yaw rate is integrated"
+    elif kind == FIX:
+        parent, child, reason = "", parent, ""
+        why = "satellites"
+    else:
+        reason = why_from_wheels(topic.name, kind, parent, child)
+        why = reason or f"poses in {parent or 'a frame of their own'}, of a sensor or a localiser"
+    return Measured(topic.name, kind, topic.messages, measures, parent, child, not reason, why)
+
+
+def _chains(edges: tuple[Edge, ...], base: str) -> list[Measured]:
+    found = []
+    for each in chains_to_base(edges, base):
+        reason = each.made_from_wheels
+        told = each.measures or tuple(step for step in each.steps if not step.static)
+        words = " and ".join(f"{step.parent} -> {step.child}" for step in each.measures)
+        why = reason or f"{words or each.in_words()} comes from a sensor or a localiser"
+        count = min(step.messages for step in told)
+        name = f"{each.topic}:{each.parent}:{each.child}"
+        found.append(
+            Measured(
+                name, TRANSFORMS[0], count, "poses", each.parent, each.child, not reason, why, each
+            )
+        )
+    return found
+
+
+def _wheels(bag: Bag, firsts: dict[str, Any]) -> list[Wheels]:
+    found: list[Wheels] = []
+    for topic in bag.topics:
+        if topic.kind == JOINT_STATE:
+            first = firsts.get(topic.name)
+            joints = tuple(getattr(first, "name", ()))
+            angles = len(getattr(first, "position", ())) > 0 or not joints
+            gives: Gives = "positions" if angles else "velocities"
+            found.append(Wheels(topic.name, topic.kind, topic.messages, gives, joints))
+        elif topic.kind in COUNTS:
+            found.append(Wheels(topic.name, topic.kind, topic.messages, "counts"))
+        elif topic.kind in (INT32, INT64):
+            mirrored = topic.name.replace("left", "right")
+            for each in bag.topics if mirrored != topic.name else ():
+                if each.name == mirrored and each.kind == topic.kind:
+                    both = min(topic.messages, each.messages)
+                    name = f"{topic.name},{mirrored}"
+                    found.append(Wheels(name, topic.kind, both, "counts"))
+    for topic in bag.topics:
+        if topic.kind == ODOMETRY:
+            reason = why_from_wheels(
+                topic.name,
+                topic.kind,
+                frame(getattr(getattr(firsts.get(topic.name), "header", None), "frame_id", "")),
+                frame(getattr(firsts.get(topic.name), "child_frame_id", "")),
+            )
+            if reason and "filter" not in reason:
+                found.append(Wheels(topic.name, topic.kind, topic.messages, "odometry"))
+    return found

@@ -1,0 +1,73 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What by its name and its frames is the robot's own odometry, and so no measurement of it.
+
+Names alone decide nothing: they are what is looked at; how closely such poses follow the wheels is
+asked beside them (inference.comparison.circle).
+"""
+
+from __future__ import annotations
+
+import re
+
+_SENSORS = """
+aruco apriltag amcl camera cartographer fiducial fix gazebo gnss gps gt icp kiss laser lidar
+lio liosam loam localiser localizer mocap motion motive ndt optitrack orb orbslam qualisys
+realsense rf2o rtabmap rtk slam svo t265 tag tracker tracking true truth uwb vicon vins vio
+vision visual vo vslam zed rovio okvis openvins scan reference qtm ground
+"""
+SENSORS = frozenset(_SENSORS.split())
+"""Words of names whose poses come from a sensor that looks at the world."""
+
+FILTERS = ("filtered", "ekf", "ukf", "combined", "fused", "robot_localization")
+"""Words of names of filters' outputs, which fuse the wheels."""
+
+NO_MEASUREMENT = ("goal", "initialpose", "clicked", "target", "setpoint", "plan", "cmd", "command")
+"""Words of topics with poses that somebody asked for, in RViz or in a program."""
+
+ODOMETRY = "nav_msgs/msg/Odometry"
+
+
+def why_from_wheels(topic: str, kind: str, parent: str, child: str) -> str:
+    """Why poses are likely to be made from the wheels; "" where their names do not say so.
+
+    Parameters
+    ----------
+    topic, kind
+        Where they were published; "" for a transform.
+    parent, child
+        Their frames, as far as they are told.
+    """
+    if _words(topic, parent, child) & SENSORS:
+        return ""
+    if any(word in topic.lower() for word in FILTERS):
+        return "a filter's output, which fuses the wheels"
+    frames = f"{parent} -> {child}" if parent and child else (parent or child)
+    if is_odometry_frame(parent) and (is_base(child) or not child):
+        return f"{frames} is the robot's own odometry, made from its wheels"
+    if kind == ODOMETRY and not parent:
+        return "odometry of no sensor that is named, made from the wheels"
+    return ""
+
+
+def is_asked_for(topic: str) -> bool:
+    """Whether poses of a topic are where the robot should be, not where it is."""
+    return any(word in topic.lower() for word in NO_MEASUREMENT)
+
+
+def is_base(frame: str) -> bool:
+    """Whether a frame is a robot's base by its name."""
+    tail = frame.rpartition("/")[2].lower()
+    return tail in ("base", "footprint", "chassis") or any(
+        word in tail for word in ("base_link", "base_footprint", "baselink", "base_frame")
+    )
+
+
+def is_odometry_frame(frame: str) -> bool:
+    """Whether a frame is where odometry starts, by its name."""
+    return "odom" in frame.rpartition("/")[2].lower()
+
+
+def _words(*names: str) -> set[str]:
+    found = {word for name in names for word in re.findall(r"[a-z0-9]+", name.lower())}
+    return found | {word.rstrip("0123456789") for word in found}

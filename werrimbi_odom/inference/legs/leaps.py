@@ -1,0 +1,108 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Counters that leap: to somewhere and back (a message that was read wrongly), or for good.
+
+An encoder model takes any step for motion but a fall to zero, unless it is told how fast a wheel
+can be. A record shows that by itself: what a wheel does for some intervals it can do.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.rules import (
+    LEAP_FEWEST,
+    LEAP_LASTS,
+    LEAP_SPEED,
+    LEAP_TIMES,
+    LEAP_USUAL,
+)
+from werrimbi_odom.model.pose import Floats
+
+
+class Leap(NamedTuple):
+    """Steps of a record in which a counter leapt."""
+
+    first: int
+    last: int
+    """Its steps, the last one among them."""
+    turns: float
+    """The largest of them, in turns of the wheel."""
+    left: bool
+    """Whether it was the left wheel's."""
+    back: bool
+    """Whether the counter came back."""
+
+
+class Bridged(NamedTuple):
+    """Steps without leaps; n steps, of which some may be joined."""
+
+    kept: NDArray[np.bool_]
+    """Steps at whose ends there is still a reading, shape (n,)."""
+    left: Floats
+    """Travel in turns, of a step and of those before it that are not kept, shape (n,)."""
+    right: Floats
+    leaps: tuple[Leap, ...]
+
+
+def bridged(time: Floats, left: Floats, right: Floats) -> Bridged:
+    """Steps of a record, leaps taken out.
+
+    A counter that came back has counted all the while: its readings in between are left out.
+    One that did not has lost what it should have counted: the wheel is taken to have gone on as
+    before and after.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n + 1,)
+        Stamps, ascending [s].
+    left, right : ndarray, shape (n,)
+        Travel between them, in turns of the wheel.
+    """
+    found = leaps_in(time, left, right)
+    kept = np.ones(left.size, dtype=np.bool_)
+    sides = [left.copy(), right.copy()] if found else [left, right]
+    for leap in found:
+        first, last = leap.first, leap.last
+        kept[first:last] = False
+        lasted = time[last + 1] - time[first]
+        for side in sides:
+            net = float(side[first : last + 1].sum())
+            if not leap.back:
+                near = [at for at in (first - 1, last + 1) if 0 <= at < left.size]
+                durations = [time[at + 1] - time[at] for at in near]
+                net = lasted * float(np.mean([side[at] for at in near]) / np.mean(durations))
+            side[first : last + 1] = 0.0
+            side[last] = net
+    return Bridged(kept, sides[0], sides[1], found)
+
+
+def leaps_in(time: Floats, left: Floats, right: Floats) -> tuple[Leap, ...]:
+    """Where counters leapt; see `bridged`."""
+    lasted = np.diff(time)
+    turns = np.maximum(np.abs(left), np.abs(right))
+    moving = turns > 0.0
+    if np.count_nonzero(moving) < LEAP_FEWEST:
+        return ()
+    lasted = np.maximum(lasted, np.median(lasted))  # two stamps may be close by accident
+    speed = turns / lasted
+    usual = float(np.quantile(speed[moving], LEAP_USUAL))
+    fastest = max(LEAP_TIMES * usual, LEAP_SPEED)
+    fast = np.flatnonzero(speed > fastest)
+    if fast.size == 0:
+        return ()
+    groups = np.split(fast, np.flatnonzero(np.diff(fast) > 1) + 1)
+    found = []
+    for group in groups:
+        if group.size > LEAP_LASTS:
+            continue  # a wheel that is so fast for so long is fast
+        first, last = int(group[0]), int(group[-1])
+        of_left = np.abs(left[group]).max() >= np.abs(right[group]).max()
+        reach = fastest * float(lasted[group].sum())
+        net = max(abs(float(side[group].sum())) for side in (left, right))
+        size = float(turns[group].max())
+        found.append(Leap(first, last, size, bool(of_left), group.size > 1 and net <= reach))
+    return tuple(found)
