@@ -17,7 +17,7 @@ from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Amount
-from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.diagnosis.pairs import Sides
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.model.declared import DRAWINGS
 from werrimbi_odom.model.effect import Sketch

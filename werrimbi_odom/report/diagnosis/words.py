@@ -9,9 +9,9 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.diagnosis import VERY_SURE, Diagnosis
-from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
+from werrimbi_odom.inference.diagnosis.pairs import Sides
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.diagnosis.as_json import significant
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
