@@ -9,6 +9,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from werrimbi_odom.report.diagnosis.told import Told
 
 from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
@@ -18,6 +19,8 @@ from werrimbi_odom.inference.adding.adding import Added, add_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.words import json_of, words_of
+from werrimbi_odom.report.diagnosis.words import NextSteps
+from werrimbi_odom.report.diagnosis.words import words_of as diagnosis_words
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 
@@ -56,6 +59,34 @@ def test_what_is_not_there_is_objected_to() -> None:
     found = added("lateral_slip", replace(PLAIN, wheel_separation_multiplier=1.02))
     assert found.objection is not None
     assert re.search("does not lower|do not show", found.objection)
+
+
+def test_a_held_out_error_that_rises_by_chance_refuses_no_effect_that_the_others_show() -> None:
+    """Twenty seconds, in which a creep of eighteen deviations costs less than the noise."""
+    truth = replace(PLAIN, effects=(find("lateral_slip").using(creep=0.003),))
+    fitted, held = runs_of(truth, (1, 2, 3), 60), runs_of(truth, (8,), 20)
+    found = add_effect(find("lateral_slip"), fitted, PLAIN, holdout=held)
+    sides = found.holdout.sides
+    assert sides.after > sides.before
+    assert found.objection is None
+    assert "higher, which is chance" in " ".join(words_of(found).split())
+
+
+def test_a_held_out_error_that_rises_beyond_chance_refuses_what_the_others_show() -> None:
+    """A carpet whose pile leans the other way, and half a minute on it is enough."""
+    one, other = (
+        replace(PLAIN, effects=(find("lateral_slip").using(creep=creep),)) for creep in (0.02, 0.0)
+    )
+    fitted, held = runs_of(one, (1, 2, 3), 30), runs_of(other, (8,), 40)
+    found = add_effect(find("lateral_slip"), fitted, PLAIN, holdout=held)
+    assert found.objection is not None
+    assert "chance does not raise it so" in found.objection
+    assert found.chances["lateral_slip"] == pytest.approx(0.0, abs=1e-9)
+    named = diagnose(fitted, PLAIN, [find("lateral_slip")], holdout=held)
+    assert named.holdout.rose
+    assert "chance does not raise it so" in " ".join(
+        diagnosis_words(Told(named, None, ()), NextSteps()).split()
+    )
 
 
 def test_a_base_is_written_as_the_files_multiplier() -> None:

@@ -6,7 +6,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 
@@ -16,7 +15,7 @@ from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
 from werrimbi_odom.inference.comparison.legs import LegStatistics
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
-from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.diagnosis.pairs import Sides, Unit, error_of, sides_of
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
@@ -42,7 +41,7 @@ class Side:
         return statistics_of(getattr(self, which))
 
     @property
-    def unit(self) -> Literal["m", "rad"]:
+    def unit(self) -> Unit:
         """Radians where headings alone were measured, and errors are those of the heading."""
         return "m" if np.isfinite(self.after.errors.error[:, 0]).any() else "rad"
 
@@ -53,7 +52,7 @@ class Side:
     @property
     def sides(self) -> Sides:
         """Error before and after."""
-        return Sides(self.error("before"), self.error("after"), self.unit)
+        return sides_of(self.before, self.after, self.unit)
 
     @property
     def promised(self) -> float:
@@ -72,12 +71,6 @@ class Side:
             return float("nan")
         usual = promised <= UNUSUAL_PROMISE * np.median(promised)
         return float(np.sqrt(np.mean(promised[usual])))
-
-
-def error_of(legs: Legs, unit: Literal["m", "rad"]) -> float:
-    """Root mean square error of legs, of positions [m] or of headings [rad]."""
-    figures = statistics_of(legs)
-    return figures.rmse_position_m if unit == "m" else figures.rmse_yaw_rad
 
 
 @dataclass(frozen=True, kw_only=True)

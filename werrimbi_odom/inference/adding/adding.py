@@ -9,15 +9,14 @@ the user's own will puts it in.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Literal
 
 import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.adding.added import Added, Side, error_of
+from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.fits import Fits, Show, fits_of
 from werrimbi_odom.inference.adding.objection import Worth, objection
 from werrimbi_odom.inference.adding.start import (
@@ -26,10 +25,12 @@ from werrimbi_odom.inference.adding.start import (
     with_set_up,
 )
 from werrimbi_odom.inference.adding.values import (
+    FittedParameter,
     parameters_of,
     std_of,
     to_write,
 )
+from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.comparison.judged_legs import (
     Legs,
     Prepared,
@@ -37,10 +38,12 @@ from werrimbi_odom.inference.comparison.judged_legs import (
     in_runs,
     judged_legs,
 )
+from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.diagnosis import chance
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
+from werrimbi_odom.inference.diagnosis.pairs import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, sizes_needed, with_sizes
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
@@ -53,7 +56,7 @@ from werrimbi_odom.inference.fitting.knobs import (
 )
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
 from werrimbi_odom.inference.fitting.together import together
-from werrimbi_odom.inference.rules import STRANGE_NOISE, SURE
+from werrimbi_odom.inference.rules import STRANGE_NOISE, SURE, SURE_WHEN_ASKED
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -148,15 +151,22 @@ def add_effects(
     show(0.75, "judging")
     train, kept = _judged(judge, fits.none, fit)
     chances = {effect.name: _chance(effect, fits, also) for effect in effects}
-    alone = {name: _error_at_home(judge, each, kept.unit) for name, each in fits.without.items()}
+    alone = {name: _at_home(judge, each, kept) for name, each in fits.without.items()}
     objections = {}
     for effect in effects:
         name = effect.name
         others = tuple(other.name for other in effects if other is not effect)
-        without = alone.get(name, kept.error("calibrated"))
-        mended = np.inf if name in also else without
-        worth = Worth(kept.sides, mended, chances[name], name in held, others)
-        against = objection(effect, parameters_of(effect, fit, robot), worth, set_up)
+        found = parameters_of(effect, fit, robot)
+        without = sides_of(kept.calibrated, kept.after, kept.unit)
+        worth = Worth(
+            kept.sides,
+            None if name in also else alone.get(name, without),
+            _asked_for(effect, fits, drives, found),
+            chances[name],
+            name in held,
+            others,
+        )
+        against = objection(effect, found, worth, set_up)
         if against is not None:
             objections[name] = against
     noises, remaining, explained = _noise(drives, fit, sigma)
@@ -177,7 +187,7 @@ def add_effects(
         multiplier_stds={name: std_of(written, name) or None for name in MULTIPLIERS},
         train=train,
         holdout=kept,
-        without=alone,
+        without={name: sides.before for name, sides in alone.items()},
         set_aside=() if holdout else tuple(run.name for run in judge.kept_back),
         written_from_all=written is not fit,
         noises=noises,
@@ -242,10 +252,25 @@ def _judged(judge: Judge, base: Fitted, fit: Fitted) -> tuple[Side, Side]:
     return train, kept
 
 
-def _error_at_home(judge: Judge, fit: Fitted, unit: Literal["m", "rad"]) -> float:
-    """Error of the held-out drives with a model."""
-    legs = _legs(judge.holdout, judge.at_home(_noisy(fit)).model)
-    return error_of(legs, unit)
+def _at_home(judge: Judge, without: Fitted, kept: Side) -> Sides:
+    """What becomes of the held-out error of a model when all effects are in."""
+    legs = _legs(judge.holdout, judge.at_home(_noisy(without)).model)
+    return sides_of(legs, kept.after, kept.unit)
+
+
+def _asked_for(
+    effect: Effect, fits: Fits, drives: Drives, found: Mapping[str, FittedParameter]
+) -> bool:
+    """Whether the fitted drives want an effect, by legs left out of the fits as in a diagnosis.
+
+    A size, which is in every fit, by how far it is from what the file says.
+    """
+    if effect.name not in CALIBRATED:
+        before = fits.without.get(effect.name, fits.none)
+        return holds_when_cross_validated(drives.laid, before, fits.all)
+    [size] = found.values()
+    away = ((size.value or 0.0) - size.declared.null) / size.std if size.std else 0.0
+    return chi2_above(away**2, 1) < SURE_WHEN_ASKED
 
 
 def _noisy(fit: Fitted) -> Model:

@@ -12,9 +12,9 @@ import numpy as np
 
 from werrimbi_odom.inference.adding.start import is_of_set_up
 from werrimbi_odom.inference.adding.values import FittedParameter
-from werrimbi_odom.inference.diagnosis.holdout import Sides
+from werrimbi_odom.inference.diagnosis.pairs import Sides
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.rules import HELD_OUT_FALL, SURE_WHEN_ASKED
+from werrimbi_odom.inference.rules import SURE_WHEN_ASKED
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 
@@ -23,9 +23,12 @@ class Worth(NamedTuple):
     """What an effect is worth beside all others that are added."""
 
     kept: Sides
-    """Held-out position error with the given file, and with everything [m]."""
-    alone: float
-    """The same with everything but the effect."""
+    """Held-out error with the given file, and with everything."""
+    alone: Sides | None
+    """The same with everything but the effect, and with everything; None where nobody asks that: of
+    a mistake that was put right with others."""
+    asked_for: bool
+    """Whether the fitted drives want it, be it that those held out do not show it."""
     chance: float | None
     """None where it is not tested."""
     held: bool
@@ -39,9 +42,8 @@ def objection(
 ) -> str | None:
     """Why the effect should not be added, in a line; None where nothing speaks against it."""
     name = effect.name
-    before, after = worth.kept.before, worth.kept.after
-    unit = worth.kept.unit
-    figures = f"{_told(before, unit)} before, {_told(after, unit)} after"
+    after, unit = worth.kept.after, worth.kept.unit
+    figures = f"{_told(worth.kept.before, unit)} before, {_told(after, unit)} after"
     hint = ""
     if set_up.findings and not is_of_set_up(effect, set_up):
         hint = f"; look at {set_up.findings[0].effect} first ({set_up.findings[0].words})"
@@ -53,8 +55,8 @@ def objection(
             )
     if not np.isfinite(after):
         return f"{name} cannot be judged: the held-out drives have no leg that was measured"
-    if not after < before * (1.0 - HELD_OUT_FALL):
-        return f"{name} does not lower the error of the held-out drives ({figures}){hint}"
+    if (against := _not_lower(worth.kept, worth)) is not None:
+        return f"{name} does not lower the error of the held-out drives ({figures}){against}{hint}"
     if name in CALIBRATED or not parameters:
         shown = [item for item in parameters.values() if item.std is not None]
         if shown and not shown[0].significant:
@@ -65,14 +67,29 @@ def objection(
                 f"held-out drives ({figures}) is {rest}{hint}"
             )
         return _by_chance(name, worth)
-    if not worth.held and not worth.alone * (1.0 - HELD_OUT_FALL) > after:
+    alone = worth.alone
+    if not worth.held and alone is not None and (against := _not_lower(alone, worth)) is not None:
         rest = " and ".join(["calibration", *worth.others]) if worth.others else "calibration alone"
         verb = "leave" if worth.others else "leaves"
+        errors = f"{_told(alone.before, unit)}, with the effect it is {_told(after, unit)}"
         return (
             f"{name} does not lower the error of the held-out drives: {rest} {verb} "
-            f"{_told(worth.alone, unit)}, with the effect it is {_told(after, unit)}{hint}"
+            f"{errors}{against}{hint}"
         )
     return _by_chance(name, worth)
+
+
+def _not_lower(sides: Sides, worth: Worth) -> str | None:
+    """What is held against an error that did not fall; None where nothing is.
+
+    A rise that chance makes says nothing of an effect that these drives hardly show: then the
+    fitted ones decide, by legs left out of their fits, as they do in a diagnosis.
+    """
+    if sides.rose:
+        return ", and chance does not raise it so"
+    if sides.fell or worth.asked_for:
+        return None
+    return ", and the fitted drives do not ask for it either"
 
 
 def _told(error: float, unit: str) -> str:

@@ -6,22 +6,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
-
-import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.judged_legs import (
+    Legs,
     Prepared,
     finely,
     in_runs,
     judged_by,
     judged_legs,
     prepare,
-    statistics_of,
 )
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise, recorded_otherwise
+from werrimbi_odom.inference.diagnosis.pairs import Sides, Unit, error_of, median_of, sides_of
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.knobs import Model
@@ -34,16 +32,6 @@ from werrimbi_odom.model.robot import Robot
 
 
 @dataclass(frozen=True, slots=True)
-class Sides:
-    """A figure before and after."""
-
-    before: float
-    after: float
-    unit: Literal["m", "rad"] = "m"
-    """Radians where headings alone were measured, and errors are those of the heading."""
-
-
-@dataclass(frozen=True, slots=True)
 class Errors:
     """Root mean square errors of legs: of position [m], or of headings alone [rad]."""
 
@@ -53,7 +41,13 @@ class Errors:
     holdout_median: float
     holdout_yaw: float
     """Root mean square heading error [rad]."""
-    unit: Literal["m", "rad"]
+    unit: Unit
+    legs: Legs
+    """Of the held-out drives."""
+
+    def to(self, after: Errors) -> Sides:
+        """What becomes of the held-out error with another model."""
+        return sides_of(self.legs, after.legs, self.unit)
 
 
 @dataclass(frozen=True)
@@ -81,11 +75,18 @@ class Judge:
 
     def of(self, model: Model) -> Errors:
         """Errors of a model; what each held-out run has of its own is fitted to that run alone."""
-        train = _figures(self.train, in_runs(self.train, model))
-        holdout = _figures(self.holdout, known_at_home(model, self.fine, self.kind))
-        if judged_by(self.train) == "heading":
-            return Errors(train[2], holdout[2], train[3], holdout[3], holdout[2], "rad")
-        return Errors(train[0], holdout[0], train[1], holdout[1], holdout[2], "m")
+        train = _legs(self.train, in_runs(self.train, model))
+        holdout = _legs(self.holdout, known_at_home(model, self.fine, self.kind))
+        unit: Unit = "rad" if judged_by(self.train) == "heading" else "m"
+        return Errors(
+            error_of(train, unit),
+            error_of(holdout, unit),
+            median_of(train, unit),
+            median_of(holdout, unit),
+            error_of(holdout, "rad"),
+            unit,
+            holdout,
+        )
 
     def at_home(self, model: Model) -> Point:
         """The model in the held-out runs: shared values as they are, the runs' own learnt."""
@@ -165,10 +166,5 @@ def judge_of(
     return Judge(robot, kind, fitted_on, kept_back, train, held, finely(held))
 
 
-def _figures(prepared: Prepared, model: Model) -> tuple[float, float, float, float]:
-    legs = judged_legs(prepared, model, prepared.leg)
-    figures = statistics_of(legs)
-    turned = np.abs(legs.errors.error[:, 2])
-    known = turned[np.isfinite(turned)]
-    middle = float(np.median(known)) if known.size else float("nan")
-    return figures.rmse_position_m, figures.median_position_m, figures.rmse_yaw_rad, middle
+def _legs(prepared: Prepared, model: Model) -> Legs:
+    return judged_legs(prepared, model, prepared.leg)

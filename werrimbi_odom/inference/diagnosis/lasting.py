@@ -94,13 +94,24 @@ def _too_few(runs: Together) -> bool:
     return runs.count < LASTING_LEGS * LASTING_FEWEST * len(runs.runs)
 
 
+def parts_of(run: NDArray[np.intp]) -> NDArray[np.intp]:
+    """The part of a run to which each leg belongs, counted through, (m,).
+
+    Parameters
+    ----------
+    run : ndarray, shape (m,)
+        Index of each leg's run, in order.
+    """
+    each = min(max(math.ceil(LASTING_PARTS / np.unique(run).size), LASTING_FEWEST), LASTING_MOST)
+    first = np.searchsorted(run, run, side="left")
+    count = np.bincount(run)[run]
+    part = (np.arange(run.size) - first) * each // count
+    return np.asarray(each * run + part)
+
+
 def _parts(runs: Together) -> NDArray[np.intp]:
-    """The part to which each innovation belongs, counted through, (3 m,)."""
-    each = min(max(math.ceil(LASTING_PARTS / len(runs.runs)), LASTING_FEWEST), LASTING_MOST)
-    first = np.searchsorted(runs.run_of_leg, runs.run_of_leg, side="left")
-    count = np.bincount(runs.run_of_leg)[runs.run_of_leg]
-    part = (np.arange(runs.count) - first) * each // count
-    return np.repeat(each * runs.run_of_leg + part, 3)
+    """The part to which each innovation belongs, (3 m,)."""
+    return np.repeat(parts_of(runs.run_of_leg), 3)
 
 
 def _chance(

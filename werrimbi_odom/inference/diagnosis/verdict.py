@@ -13,8 +13,9 @@ from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
-from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge, Sides
+from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
+from werrimbi_odom.inference.diagnosis.pairs import Sides
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.stability import rivals_in_halves
@@ -146,7 +147,7 @@ def told(
         laid,
         kind,
         Sides(start.train, last.train, start.unit),
-        Sides(start.holdout, last.holdout, start.unit),
+        start.to(last),
         Sides(start.holdout_median, last.holdout_median, start.unit),
         Sides(start.holdout_yaw, last.holdout_yaw, "rad"),
         judge.left_out,
@@ -265,5 +266,5 @@ def _worth(effect: str, p_value: float | None, before: Errors, after: Errors) ->
         effect,
         p_value,
         Sides(before.train, after.train, after.unit),
-        Sides(before.holdout, after.holdout, after.unit),
+        before.to(after),
     )

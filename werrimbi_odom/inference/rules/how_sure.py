@@ -16,7 +16,8 @@ hundred times as much is asked of it."""
 
 SURE_WHEN_ASKED = 0.01
 """The same of one question that the user asked before the drives answered it (does this effect do
-anything, does this model fit): nothing was searched, so the usual hundredth is enough."""
+anything, does it raise the error of the drives held out, does this model fit): nothing was
+searched, so the usual hundredth is enough."""
 
 SURE_OF_LEGS = 1e-4
 """The same in a comparison. About twenty systematic parts are looked at, uncorrected: a false one

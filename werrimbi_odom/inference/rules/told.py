@@ -12,7 +12,7 @@ larger beside one that is 0.1 % smaller is one thing on the robot, a tyre."""
 
 HELD_OUT_FALL = 1e-4
 """Share by which the held-out error must fall to have fallen: what fits that stop a little earlier
-differ by. Chance is judged elsewhere (`SURE_WHEN_ASKED`)."""
+differ by. That it rises by more than chance is asked leg by leg (`SURE_WHEN_ASKED`)."""
 
 SHAPES_FITTED = 3
 """Shapes of an effect (where a threshold is, how long a lag) that are fitted in full when it is

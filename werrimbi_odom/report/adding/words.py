@@ -26,7 +26,8 @@ def _headline(added: Added) -> str:
     sides = added.holdout.sides
     leg = added.holdout.after.leg
     share = 100.0 * (1.0 - sides.after / sides.before) if sides.before > 0.0 else math.nan
-    change = f"{abs(share):.{0 if abs(share) >= 10 else 1}f} % {'lower' if share > 0 else 'higher'}"
+    way = "lower" if share > 0 else "higher" if sides.rose else "higher, which is chance"
+    change = f"{abs(share):.{0 if abs(share) >= 10 else 1}f} % {way}"
     names = listed([effect.name for effect in added.effects])
     text = (
         f"With {names} the error of the held-out drives is {_told(sides.after, sides.unit)} where "

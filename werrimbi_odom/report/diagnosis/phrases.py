@@ -8,8 +8,8 @@ import math
 
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.holdout import Sides
 from werrimbi_odom.inference.diagnosis.named import effect_named
+from werrimbi_odom.inference.diagnosis.pairs import Sides
 from werrimbi_odom.inference.diagnosis.values import (
     Value,
     at_bounds,
@@ -118,11 +118,16 @@ def _fall(told: Told, sides: Sides) -> list[str]:
         return []
     where = f"on {judged(told)}"
     if after >= before:
-        return [
-            f"What it costs: little so far; {where} the {_of(sides)} error is "
-            f"{error_words(before, sides.unit)} without it and "
-            f"{error_words(after, sides.unit)} with it."
-        ]
+        both = (
+            f"{where} the {_of(sides)} error is {error_words(before, sides.unit)} without it and "
+            f"{error_words(after, sides.unit)} with it"
+        )
+        if sides.rose:
+            return [
+                f"But: {both}, and chance does not raise it so. These drives are not like those "
+                "it was found in: look what is different."
+            ]
+        return [f"What it costs: little so far; {both}, a difference that chance makes."]
     part = math.sqrt(before**2 - after**2)
     return [
         f"What it costs: {error_words(part, sides.unit)} {_each(told)}; {where} the {_of(sides)} "

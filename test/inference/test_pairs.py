@@ -1,0 +1,61 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Two models over the same legs: chance raises an error in as many cases as the rule says."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from test.inference.driven import run_of
+from werrimbi_odom.inference.comparison.judged_legs import Legs, judged_legs, prepare
+from werrimbi_odom.inference.diagnosis.pairs import sides_of
+from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.rules import SURE_WHEN_ASKED
+from werrimbi_odom.model.robot import Robot
+
+PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
+RANDOM = np.random.default_rng(13)
+
+
+@pytest.fixture(scope="module")
+def legs() -> Legs:
+    prepared = prepare([run_of(PLAIN, seed, 40) for seed in (1, 2)], PLAIN)
+    return judged_legs(prepared, Model(PLAIN, ({}, {})), 1.0)
+
+
+def erring(legs: Legs, error: np.ndarray) -> Legs:
+    return replace(legs, errors=replace(legs.errors, error=error))
+
+
+def test_two_models_that_err_alike_differ_beyond_chance_as_seldom_as_the_rule_says(
+    legs: Legs,
+) -> None:
+    """Errors of a leg are alike but for a little, which is what two models of one robot do."""
+    count, rose = 1000, 0
+    for _ in range(count):
+        common = RANDOM.normal(0.0, 1e-2, legs.errors.error.shape)
+        one, other = (common + RANDOM.normal(0.0, 1e-3, common.shape) for _ in range(2))
+        rose += sides_of(erring(legs, one), erring(legs, other), "m").rose
+    assert SURE_WHEN_ASKED / 5 < rose / count < 2.5 * SURE_WHEN_ASKED
+
+
+def test_a_rise_that_two_totals_hide_is_seen_leg_by_leg(legs: Legs) -> None:
+    """Noise of 10 mm a leg, and 3 % more of it on every leg."""
+    noise = RANDOM.normal(0.0, 1e-2, legs.errors.error.shape)
+    before, after = erring(legs, noise), erring(legs, 1.03 * noise)
+    for unit in ("m", "rad"):
+        assert sides_of(before, after, unit).rose
+        assert not sides_of(before, after, unit).fell
+        assert sides_of(after, before, unit).fell
+        assert not sides_of(after, before, unit).rose
+
+
+def test_what_the_legs_do_not_show_at_all_rose_by_nothing(legs: Legs) -> None:
+    assert sides_of(legs, legs, "m").chance == 1.0
+    alone = legs.chosen(np.arange(1))
+    assert sides_of(alone, erring(alone, alone.errors.error + 1.0), "m").chance == 1.0
+    nothing = erring(legs, np.full(legs.errors.error.shape, np.nan))
+    assert sides_of(nothing, nothing, "m").chance == 1.0
