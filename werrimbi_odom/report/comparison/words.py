@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from werrimbi_odom.inference.calibration_sizes import skidding
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
 from werrimbi_odom.inference.comparison.consistency import AtLength, trend_of
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
@@ -69,6 +70,11 @@ def _headline(comparison: Comparison, verdict: Verdict) -> str:
         return (
             f"The model explains these drives: {over} its errors are what its covariance "
             "promises, and nothing systematic is left in them."
+        )
+    if verdict.gross and skidding(comparison.model.robot):
+        return (
+            "The model is grossly wrong: that is not calibration. This robot's driven wheels skid "
+            "in turns, and how much is to be found first; or something is set up wrongly."
         )
     if verdict.gross:
         return (
