@@ -36,6 +36,7 @@ from werrimbi_odom.simulation.hidden.geometry import (
     WheelRadiusScale,
 )
 from werrimbi_odom.simulation.hidden.mount import AskewAxle
+from werrimbi_odom.simulation.hidden.skid import LENGTH, SkidSteer
 from werrimbi_odom.simulation.hidden.wheels import Backlash, EccentricWheel, RadiusDrift
 
 PER_TURN = 2e5
@@ -56,6 +57,11 @@ CASES = [
     (LateralSlip(0.02), made("lateral_slip", creep=0.02), 50),
     (TurnDependentTrack(0.04, "sharpness"), made("turn_dependent_track", sharpness=0.04), 200),
     (TurnDependentTrack(0.04, "sense"), made("turn_dependent_track", sense=0.04), 100),
+    (
+        SkidSteer(1.7, 0.6, 0.45),
+        made("skid_steer", multiplier=1.7, x=0.1 * LENGTH, y=0.05 * 0.35 * 0.7),
+        100,
+    ),
     (AskewAxle(0.03), made("sideways_drift", angle=0.03), 200),
     (
         FloorSlope(0.02, 1.0),

@@ -29,6 +29,7 @@ VOCABULARY = {
     "longitudinal_slip": 0.0,
     "lateral_slip": 0.0,
     "turn_dependent_track": 0.0,
+    "skid_steer": 0.0,  # its offsets; its multiplier, being the base, is 1
     "sideways_drift": 0.0,
     "floor_slope": 0.0,
     "castor_kick": 0.0,
@@ -68,7 +69,7 @@ def test_the_library_is_the_contracts_vocabulary() -> None:
         assert effect.is_mistake == (effect.name in MISTAKES)
         for name, item in effect.parameters.items():
             is_shape = item.tries or (effect.quadrature and name == effect.quadrature[1])
-            assert is_shape or item.null == VOCABULARY[effect.name]
+            assert is_shape or item.null == (1.0 if item.as_base else VOCABULARY[effect.name])
 
 
 def test_names_are_unique_and_are_their_functions_names() -> None:

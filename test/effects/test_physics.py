@@ -34,6 +34,26 @@ def test_ten_turns_fall_short_by_the_wider_base(sense: float) -> None:
     assert missing == pytest.approx(20 * math.pi * 0.001, rel=2e-3)
 
 
+@pytest.mark.parametrize("multiplier", [1.3, 1.7, 2.4])
+def test_ten_turns_of_a_skidding_robot_fall_short_exactly(multiplier: float) -> None:
+    law = find("skid_steer").using(multiplier=multiplier)
+    missing = 20 * math.pi - track(plan(*turn(20 * math.pi)), law).end[2]
+    assert missing == pytest.approx(20 * math.pi * (1 - 1 / multiplier), rel=1e-9)
+
+
+def test_a_skidding_robot_spins_about_its_own_point() -> None:
+    """The point of the body that lies x ahead and y left stays over one place of the floor."""
+    x, y = 0.04, -0.03
+    law = find("skid_steer").using(multiplier=1.7, x=x, y=y)
+    gone = track(plan(*turn(12.0)), law, rate=200.0)
+    cos, sin = np.cos(gone.yaw), np.sin(gone.yaw)
+    over_x, over_y = gone.x + cos * x - sin * y, gone.y + sin * x + cos * y
+    assert np.ptp(over_x) < 1e-9
+    assert np.ptp(over_y) < 1e-9
+    assert np.ptp(gone.x) > 0.05
+    assert track(plan(*line(5.0)), law).end == pytest.approx((5.0, 0.0, 0.0), abs=1e-12)
+
+
 def test_a_larger_right_wheel_bends_the_way_to_the_left() -> None:
     end = track(plan(*line(10.0)), find("unequal_wheel_radii").using(ratio=1.001)).end
     assert 2 * TRACK * end[1] / 10.0**2 == pytest.approx(0.001, rel=1e-3)

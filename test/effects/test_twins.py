@@ -80,6 +80,14 @@ def test_a_false_metre_is_larger_wheels_on_a_wider_base() -> None:
     np.testing.assert_allclose(larger, measured() * [1.01, 1.01, 1.0], atol=1e-12)
 
 
+def test_a_skidding_robot_is_a_wider_base_and_another_point_measured() -> None:
+    skid = find("skid_steer").using(multiplier=1.7, x=0.04, y=-0.03)
+    base = find("track_width").using(multiplier=1.7)
+    arm = find("reference_lever_arm").using(x=-0.04, y=0.03)
+    np.testing.assert_allclose(measured(skid), measured(base, arm), atol=3e-5)  # within steps
+    np.testing.assert_allclose(measured(skid)[:, 2], measured(base)[:, 2], atol=1e-12)
+
+
 def test_with_yaw_alone_the_base_is_the_inverse_of_the_radii() -> None:
     base = measured(find("track_width").using(multiplier=1.02))[:, 2]
     radii = measured(find("wheel_radius_scale").using(multiplier=1 / 1.02))[:, 2]
@@ -114,7 +122,7 @@ def sensitivities(effect: Effect) -> Floats:
     start = effect.to_fit({**effect.nulls, **shapes})
     columns = []
     for name in start:
-        if name in shapes:
+        if name in shapes or (name in effect.parameters and effect.parameters[name].as_base):
             continue
         item = effect.parameters.get(name) or effect.parameters[effect.quadrature[0]]  # type: ignore[index]
         step = 0.1 * item.scale

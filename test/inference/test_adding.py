@@ -9,7 +9,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from werrimbi_odom.report.diagnosis.told import Told
 
 from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
@@ -17,6 +16,7 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.adding import Added, add_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.words import json_of, words_of
 from werrimbi_odom.report.diagnosis.words import NextSteps

@@ -17,6 +17,7 @@ from werrimbi_odom.effects.reference_clock import reference_delay, reference_hea
 from werrimbi_odom.effects.reference_mirrored import reference_mirrored
 from werrimbi_odom.effects.reference_mount import reference_lever_arm, reference_yaw_offset
 from werrimbi_odom.effects.sideways_drift import sideways_drift
+from werrimbi_odom.effects.skid_steer import skid_steer
 from werrimbi_odom.effects.track_width import track_width
 from werrimbi_odom.effects.turn_dependent_track import turn_dependent_track
 from werrimbi_odom.effects.unequal_wheel_radii import unequal_wheel_radii
@@ -37,6 +38,7 @@ LIBRARY: tuple[Effect, ...] = (
     longitudinal_slip,
     lateral_slip,
     turn_dependent_track,
+    skid_steer,
     sideways_drift,
     floor_slope,
     castor_kick,

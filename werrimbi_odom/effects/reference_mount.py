@@ -32,7 +32,9 @@ def reference_lever_arm(view: View, x: float, y: float) -> View:
     Signature  on the spot the reference goes round a circle; on lines nothing is wrong
     Ruler      tape from the middle between the wheels to the marker, along the robot and across it
     Twins      y: a midpoint that is not the middle. Where one wheel stands farther from the marker
-               than the other, the axle's midpoint is off by half the difference: the same thing
+               than the other, the axle's midpoint is off by half the difference: the same thing.
+               Driven wheels that skid may turn the robot about another point than their middle
+               (skid_steer, the same x and y with the other sign): the same thing too
     Alike      lateral_slip at a steady speed (x = -creep * speed); reference_delay on lines at one
                speed (x = -delay * speed): spin on the spot
     """

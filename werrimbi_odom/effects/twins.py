@@ -44,3 +44,25 @@ def radii_over_base(name: str) -> Twin:
         minutes=2.0,
         of_headings=True,
     )
+
+
+def turning_about_another_point(name: str) -> Twin:
+    """A robot that turns about another point than its middle, or a marker that is not there."""
+    return Twin(
+        name,
+        told_apart_by="where the reference is mounted is known by a tape, and about which point of "
+        "its body the robot turns is seen on the floor; to the reference both are one",
+        do="spin on the spot and mark the point of the body that stays over one place of the floor",
+        values={"x": ("x", -1.0), "y": ("y", -1.0)},
+    )
+
+
+def as_a_wider_base(name: str) -> Twin:
+    """Wheels that skid, or a base that is wider than entered, where headings alone are measured."""
+    return Twin(
+        name,
+        told_apart_by="where headings alone are measured both are one number; the wheels tell "
+        "which name is right, for more than two driven ones skid in turns",
+        do="count the driven wheels, and measure how far apart the two sides stand",
+        of_headings=True,
+    )

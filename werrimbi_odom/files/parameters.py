@@ -302,7 +302,9 @@ def find(name: str) -> Parameter:
 def robot_of(values: Mapping[str, Value], effects: tuple[AppliedEffect, ...] = ()) -> Robot:
     """The robot that a complete set of checked values, and its effects, describe."""
     numbers = {item.name: values[item.name] for item in fields(Robot) if item.name in values}
-    return Robot(**numbers, effects=effects)  # type: ignore[arg-type]
+    names = (values["left_wheel_names"], values["right_wheel_names"])
+    many = max(len(each) for each in names)  # type: ignore[arg-type]
+    return Robot(**numbers, effects=effects, wheels_a_side=max(many, 1))  # type: ignore[arg-type]
 
 
 def tolerance_of(values: Mapping[str, Value]) -> PieceTolerance:

@@ -4,6 +4,8 @@
 
 A robot file has them as multipliers, UMBmark's C_B, C_L and C_R; the library as effects,
 `track_width`, `unequal_wheel_radii` (E_d) and `wheel_radius_scale`, which a file may hold as well.
+The base goes by a third name where it is an effect's own parameter (`Parameter.as_base`): that of
+`skid_steer`.
 """
 
 from __future__ import annotations
@@ -13,6 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -49,7 +52,10 @@ def sizes_of(robot: Robot) -> Sizes:
     """A robot's multipliers, with the calibration effects that it holds."""
     base, left, right = (float(getattr(robot, name)) for name in MULTIPLIERS)
     for applied in robot.effects:
-        if applied.name == "track_width":
+        key = base_name(applied.effect)
+        if key is not None:
+            base *= applied.values[key]
+        elif applied.name == "track_width":
             base *= applied.values["multiplier"]
         elif applied.name == "wheel_radius_scale":
             left, right = (side * applied.values["multiplier"] for side in (left, right))
@@ -57,6 +63,41 @@ def sizes_of(robot: Robot) -> Sizes:
             ratio = applied.values["ratio"]
             left, right = left * 2.0 / (1.0 + ratio), right * 2.0 * ratio / (1.0 + ratio)
     return Sizes(base, left, right)
+
+
+def base_name(effect: Effect) -> str | None:
+    """The parameter of an effect that is the base by another name; None where there is none."""
+    return next((name for name, item in effect.parameters.items() if item.as_base), None)
+
+
+def name_of_base(robot: Robot) -> str:
+    """The effect by whose name a robot's base is told."""
+    named = (item.name for item in robot.effects if base_name(item.effect) is not None)
+    return next(named, "track_width")
+
+
+def skidding(robot: Robot) -> bool:
+    """Whether a robot is known to skid as it turns: wheels on a side, or an effect in its file."""
+    return robot.wheels_a_side > 1 or name_of_base(robot) != "track_width"
+
+
+def base_told(applied: AppliedEffect, robot: Robot, given: Robot) -> float:
+    """What an effect's own name of the base comes to: all that the base differs by, it says.
+
+    Parameters
+    ----------
+    robot : Robot
+        It holds `applied`.
+    given : Robot
+        The file, whose multiplier stays as it stands there.
+    """
+    name = base_name(applied.effect)
+    assert name is not None
+    before = next((item for item in given.effects if item.name == applied.name), None)
+    value = sizes_of(robot).base / sizes_of(given).base
+    value *= 1.0 if before is None else before.values[name]
+    low, high = applied.effect.parameters[name].bounds
+    return min(max(value, low), high)
 
 
 def calibration_deviation(robot: Robot, given: Robot) -> Floats:

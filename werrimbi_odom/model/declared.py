@@ -32,6 +32,9 @@ class Parameter:
     tries : tuple of float
         Given for a shape (a threshold, a length): it does nothing while the effect's other
         parameters are null, so no derivative there finds it. A fit begins at each of these values.
+    as_base : bool
+        It is the robot file's `wheel_separation_multiplier` by another name: a fit turns that, and
+        what it finds is told and written as this.
     """
 
     unit: str
@@ -41,6 +44,7 @@ class Parameter:
     says: str
     per_run: bool = False
     tries: tuple[float, ...] = ()
+    as_base: bool = False
 
     @property
     def scale(self) -> float:
@@ -106,6 +110,7 @@ DRAWINGS: Mapping[str, int] = {
     "radius": 0,
     "shrinking": 0,
     "sideways": 0,
+    "skid": 0,
     "slip_ahead": 0,
     "slip_outwards": 0,
     "slope": 0,

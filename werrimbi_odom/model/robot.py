@@ -60,6 +60,8 @@ class Robot:
         The paper's first order, or exact moments for large errors.
     effects : tuple of AppliedEffect
         Physical effects that the model holds, in the order in which they act.
+    wheels_a_side : int
+        Driven wheels on a side; more than one, and they skid as the robot turns.
 
     Raises
     ------
@@ -80,6 +82,7 @@ class Robot:
     right_wheel_noise: float = 5.8e-4
     covariance_order: CovarianceOrder = "first"
     effects: tuple[AppliedEffect, ...] = ()
+    wheels_a_side: int = 1
 
     def __post_init__(self) -> None:
         for field in fields(self):

@@ -46,6 +46,8 @@ class TrueRobot:
         encoder). False: counters start anywhere, as after switching on a real robot.
     mass : float
         Of the whole robot [kg].
+    wheels_a_side : int
+        That the robot file lists.
     nominal : Nominal
         What the controller and the robot file believe.
     """
@@ -59,4 +61,5 @@ class TrueRobot:
     right_wheel_noise: float = 0.0
     counters_keep_zero: bool = False
     mass: float = 10.0
+    wheels_a_side: int = 1
     nominal: Nominal = field(default_factory=Nominal)

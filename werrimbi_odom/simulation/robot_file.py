@@ -28,8 +28,8 @@ odom_node:
     base_frame_id: base_link
     enable_odom_tf: false               # true where no filter (EKF) publishes odom -> base_link
     input_type: joint_state             # wheel angles in radians on joint_states
-    left_wheel_names: [left_wheel_joint]
-    right_wheel_names: [right_wheel_joint]
+    left_wheel_names: [{left_wheel_names}]
+    right_wheel_names: [{right_wheel_names}]
 """
 
 
@@ -54,9 +54,18 @@ def write_robot_file(robot: TrueRobot, path: str | Path) -> Path:
         right_ticks_per_revolution=_real(robot.right_ticks_per_revolution),
         left_wheel_noise=_real(robot.left_wheel_noise),
         right_wheel_noise=_real(robot.right_wheel_noise),
+        left_wheel_names=", ".join(_joints("left", robot.wheels_a_side)),
+        right_wheel_names=", ".join(_joints("right", robot.wheels_a_side)),
     )
     path.write_text(text, encoding="utf-8")
     return path
+
+
+def _joints(side: str, count: int) -> list[str]:
+    """Names of a side's wheel joints."""
+    if count == 1:
+        return [f"{side}_wheel_joint"]
+    return [f"{place}_{side}_wheel_joint" for place in ("front", "rear")]
 
 
 def _real(value: float) -> str:

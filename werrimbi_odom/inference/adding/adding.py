@@ -30,6 +30,7 @@ from werrimbi_odom.inference.adding.values import (
     std_of,
     to_write,
 )
+from werrimbi_odom.inference.calibration_sizes import base_name
 from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.comparison.judged_legs import (
     Legs,
@@ -137,6 +138,8 @@ def add_effects(
                 f"the robot file lists {effect.name} already; a mistake put right twice is made "
                 "again"
             )
+    if any(base_name(effect) is not None for effect in effects):
+        robot = replace(robot, wheels_a_side=max(robot.wheels_a_side, 2))  # so says who asks for it
     show(0.0, "set-up")
     started = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw, given=given)
     judge, set_up = started.judge, started.set_up
@@ -206,7 +209,8 @@ def add_effects(
 def _calibrations_wanted(effects: Sequence[Effect], set_up: SetUp) -> set[str]:
     """Sizes that are fitted whatever they are worth: asked for, or far off as the file has them."""
     names = {effect.name for effect in effects} | {item.effect for item in set_up.findings}
-    return names & set(CALIBRATED)
+    as_base = {effect.name for effect in effects if base_name(effect) is not None}
+    return (names | ({"track_width"} if as_base else set())) & set(CALIBRATED)
 
 
 def _chance(effect: Effect, fits: Fits, also: tuple[str, ...]) -> float | None:

@@ -144,7 +144,7 @@ def scored(
     """What effects would explain beside a model, to first order: each shape of each effect."""
     runs = drives.laid
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
-    tried = candidates(effects, (), channels, len(runs.runs))
+    tried = candidates(effects, (), channels, len(runs.runs), asked=True)
     return scores(runs, before.point, drives.kind, (*CALIBRATION, *knobs), tried)
 
 

@@ -11,7 +11,13 @@ from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.inference.calibration_sizes import sizes_of, std_as_effect
+from werrimbi_odom.effects import find
+from werrimbi_odom.inference.calibration_sizes import (
+    base_name,
+    base_told,
+    sizes_of,
+    std_as_effect,
+)
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob, Model
@@ -55,7 +61,9 @@ def parameters_of(effect: Effect, fit: Fitted, given: Robot) -> dict[str, Fitted
     for name, item in effect.parameters.items():
         key = f"{effect.name}.{name}"
         knob = knobs.get(key)
-        if knob is None:
+        if item.as_base:
+            found[name] = _as_base(applied, item, fit, given)
+        elif knob is None:
             found[name] = FittedParameter(item, applied.values[name], None, "null")
         elif knob.per_run:
             own = tuple(mine[key] for mine in model.own)
@@ -103,6 +111,14 @@ def _calibrated(effect: Effect, fit: Fitted, given: Robot) -> FittedParameter:
     )
 
 
+def _as_base(applied: AppliedEffect, item: Parameter, fit: Fitted, given: Robot) -> FittedParameter:
+    """The base by the name that an effect has for it."""
+    value = base_told(applied, fit.point.model.robot, given)
+    base = _calibrated(find("track_width"), fit, given)
+    std = None if base.value is None or base.std is None else base.std / base.value * value
+    return FittedParameter(item, value, std, base.remark)
+
+
 def to_write(model: Model, given: Robot) -> Robot:
     """The robot for a file: sizes as multipliers, and what each run has of its own left unknown.
 
@@ -110,18 +126,25 @@ def to_write(model: Model, given: Robot) -> Robot:
     """
     held = {item.name: item for item in given.effects if item.name in CALIBRATED}
     own = set(model.own[0]) if model.own else set()
-    effects = []
+    effects, in_effects = [], 1.0
     for applied in model.robot.effects:
         if applied.name in CALIBRATED:
             if applied.name in held:
                 effects.append(held[applied.name])
             continue
+        name = base_name(applied.effect)
+        if name is not None:
+            value = base_told(applied, model.robot, given)
+            before = next((item for item in given.effects if item.name == applied.name), None)
+            in_effects *= value if before is None else value / before.values[name]
+            applied = replace(applied, values={**applied.values, name: value})
         effects.append(_forgotten(applied, own))
     effects = [
         replace(item, values={name: rounded(value) for name, value in item.values.items()})
         for item in effects
     ]
     relative = sizes_of(model.robot).over(sizes_of(given))
+    relative = relative._replace(base=relative.base / in_effects)
     multipliers = {
         name: rounded(float(getattr(given, name)) * share)
         for name, share in zip(MULTIPLIERS, relative, strict=True)

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.effects import find
-from werrimbi_odom.inference.calibration_sizes import sizes_of, std_as_effect
+from werrimbi_odom.inference.calibration_sizes import base_told, sizes_of, std_as_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, Ranked, chance
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
@@ -55,10 +55,17 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
     anew = set(model.own[0]) if model.own else set()
     found = {}
     for parameter, item in applied.effect.parameters.items():
+        if item.as_base:
+            size = base_told(applied, diagnosis.robot, diagnosis.given)
+            base = _calibrated(diagnosis, "track_width")
+            std = base.std / base.value * size
+            found[parameter] = Value(size, std, item.unit, item.says, item.null)
+            continue
         per_run = f"{name}.{parameter}" in anew
+        untold = f"{name}.{parameter}" in fit.held
         found[parameter] = Value(
             math.nan if per_run else float(applied.values[parameter]),
-            math.nan if per_run else spread.get(f"{name}.{parameter}", math.nan),
+            math.nan if per_run or untold else spread.get(f"{name}.{parameter}", math.nan),
             item.unit,
             item.says,
             item.null,

@@ -4,11 +4,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
+import numpy as np
+
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
 from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
@@ -23,7 +27,7 @@ from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.rules import CALIBRATION_WORTH, RIVAL, SIMPLER, SURE
+from werrimbi_odom.inference.rules import CALIBRATION_WORTH, RIVAL, SIGNIFICANT, SIMPLER, SURE
 from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding
 from werrimbi_odom.model.robot import Robot
 
@@ -108,9 +112,14 @@ def told(
     """Everything put together."""
     judge, set_up = begun.judge, begun.set_up
     mistakes = [finding.effect for finding in set_up.findings]
-    sizes = [name for name in final.calibrated if _is_news(name, final, rounds[0].number)]
+    sizes = [
+        name
+        for name in final.calibrated
+        if _is_news(name, final, rounds[0].number) and _differs(name, final, given)
+    ]
     effects = sorted([*final.names, *sizes], key=lambda name: -final.importance[name])
-    found = tuple(dict.fromkeys([*mistakes, *effects]))
+    names = {"track_width": name_of_base(final.point.model.robot)}
+    found = tuple(dict.fromkeys([*mistakes, *(names.get(name, name) for name in effects)]))
     rivals: tuple[str, ...] = ()
     torn: tuple[str, ...] = ()
     if mistakes:
@@ -159,6 +168,16 @@ def _is_news(name: str, final: Fitted, tried: int) -> bool:
     worth = final.importance[name]
     certain = chi2_above(worth, 1) * tried < SURE
     return certain and worth > CALIBRATION_WORTH * final.price_of_one
+
+
+def _differs(name: str, final: Fitted, given: Robot) -> bool:
+    """Whether a size surely differs from the file's; what set-ups began with may be off it too."""
+    robot = final.point.model.robot
+    columns = [knob.name for knob, _ in final.design.columns]
+    where = [columns.index(multiplier) for multiplier in MULTIPLIERS]
+    std = std_as_effect(name, robot, final.covariance[np.ix_(where, where)])
+    size = sizes_of(robot).over(sizes_of(given)).as_effects[name]
+    return abs(math.log(size)) > SIGNIFICANT * std
 
 
 def _possible_twins(finding: SetUpFinding) -> tuple[str, ...]:
@@ -249,7 +268,8 @@ def _ranking(
         p_value = min(1.0, chi2_above(importance, 1) * rounds[0].number)
         untried = Ranked(name, p_value, None, None)
         worth = _worth(name, p_value, mended, calibrated) if importance else untried
-        ranked.setdefault(name, worth)
+        base = name_of_base(final.point.model.robot)
+        ranked.setdefault(base if name == "track_width" else name, worth)
     for score in rounds[0].scores:
         p_value = min(1.0, chi2_above(score.gain, score.degrees) * rounds[0].number)
         ranked.setdefault(score.candidate.name, Ranked(score.candidate.name, p_value, None, None))

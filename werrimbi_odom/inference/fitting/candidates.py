@@ -59,7 +59,7 @@ class Candidate:
         return tuple(
             null | {name: null[name] + STEP * item.scale}
             for name, item in self.effect.parameters.items()
-            if not item.tries
+            if not item.tries and not item.as_base
         )
 
     @property
@@ -101,7 +101,12 @@ class Score:
 
 
 def candidates(
-    effects: Iterable[Effect], known: Iterable[str], channels: Iterable[str], runs: int
+    effects: Iterable[Effect],
+    known: Iterable[str],
+    channels: Iterable[str],
+    runs: int,
+    *,
+    asked: bool = False,
 ) -> tuple[Candidate, ...]:
     """All that may be tried: a candidate for each set of shapes of each effect.
 
@@ -113,6 +118,9 @@ def candidates(
         Extra measured channels of the runs; effects that need others are left out.
     runs : int
         How many there are: of one run, nobody can say whether a phase stays.
+    asked : bool
+        The user asked for these effects. Else those that are the base by another name
+        (`Parameter.as_base`) are left to the search of set-ups, which knows whose robots have them.
     """
     there, measured = set(known), set(channels)
     found = []
@@ -120,6 +128,8 @@ def candidates(
         if effect.is_mistake or effect.name in there or effect.name in CALIBRATED:
             continue
         if not set(effect.channels) <= measured:
+            continue
+        if not asked and any(item.as_base for item in effect.parameters.values()):
             continue
         shapes = {name: item.tries for name, item in effect.parameters.items() if item.tries}
         own = tuple(name for name, item in effect.parameters.items() if item.per_run)
@@ -252,7 +262,9 @@ def put_in(model: Model, score: Score) -> Model:
             for mine, angle in zip(own, angles.tolist(), strict=True):
                 mine[f"{effect.name}.{phase}"] = angle
     else:
-        moving = [name for name, item in effect.parameters.items() if not item.tries]
+        moving = [
+            name for name, item in effect.parameters.items() if not item.tries and not item.as_base
+        ]
         for name, coefficient in zip(moving, np.ravel(score.coefficients).tolist(), strict=False):
             item = effect.parameters[name]
             value = start[name] + coefficient * STEP * item.scale

@@ -95,6 +95,7 @@ def knobs_of(effect: Effect, shared: Sequence[str] = ()) -> tuple[Knob, ...]:
             item.per_run and name not in shared,
         )
         for name, item in effect.parameters.items()
+        if not item.as_base
     )
 
 

@@ -24,7 +24,8 @@ FACTORS: dict[str, float] = {
 
 _SKID = (
     "it has four driven wheels, or tracks, which skid in turns and act as on a base 1.3 to 2.5 "
-    "times as wide: then all is entered rightly, and this is its effective base"
+    "times as wide: then all is entered rightly, this is its effective base, and its name is "
+    "skid_steer (list all wheels in left_wheel_names and right_wheel_names)"
 )
 
 RADIUS: dict[str, str] = {
@@ -90,6 +91,14 @@ def base_words(value: float, factor: str | None) -> str:
     """The base."""
     words = _words("the wheel base", value, factor, BASE, "measure it anew")
     return f"{words}; or {_SKID}" if skids(value) else words
+
+
+def skid_words(value: float) -> str:
+    """The base of a robot that is known to skid."""
+    return (
+        f"its driven wheels skid in turns, so it turns as if its two sides were {value:.3g} times "
+        "as far apart as the robot file says: such robots do, and nothing is entered wrongly"
+    )
 
 
 def metre_words(value: float, factor: str | None) -> str:

@@ -18,6 +18,7 @@ from werrimbi_odom.inference.set_up.factors import (
     radius_words,
     side_words,
     simple_factor,
+    skid_words,
     skids,
     turning_words,
 )
@@ -155,6 +156,22 @@ def _sizes(setting: Setting, yaw_alone: bool) -> Iterator[SetUpFinding]:
     if odd_base:
         words = base_words(base, of_base)
         yield SetUpFinding("track_width", {"multiplier": base}, of_base, words, (), 1.0, wider)
+
+
+def as_skid(finding: SetUpFinding) -> SetUpFinding:
+    """What is said of a base that is too wide where the robot is known to skid as it turns."""
+    base = finding.values.get("multiplier", 1.0)
+    if finding.effect == "wheel_radius_scale" and "track_width" in finding.twins:
+        base = 1.0 / base  # of headings alone: distances are then right as they are
+    elif finding.effect != "track_width":
+        return finding
+    skid = find("skid_steer")
+    if base < 1.0 or not skid.allows({"multiplier": base}):
+        return finding
+    values = {"multiplier": base}
+    return replace(
+        finding, effect=skid.name, values=values, factor=None, words=skid_words(base), twins=()
+    )
 
 
 def _odd_side(left: float, right: float) -> tuple[str, float]:

@@ -14,8 +14,9 @@ from dataclasses import dataclass
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference.calibration_sizes import skidding
 from werrimbi_odom.inference.set_up.delay import lag_of
-from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding
+from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding, as_skid
 from werrimbi_odom.inference.set_up.headings import search_headings
 from werrimbi_odom.inference.set_up.poses import degrees_gain, search_poses
 from werrimbi_odom.inference.set_up.positions import search_positions
@@ -45,6 +46,11 @@ class SetUp:
 
     Where one wheel alone is off, a `wheel_radius_scale` goes with the ratio, which keeps the mean
     of the radii."""
+
+    @property
+    def wrong(self) -> tuple[SetUpFinding, ...]:
+        """The findings that are mistakes: that driven wheels skid in turns is none."""
+        return tuple(each for each in self.findings if each.effect != "skid_steer")
 
     @property
     def to_convert(self) -> str | None:
@@ -95,6 +101,8 @@ def look_for_mistakes(
         found, setting = search_headings(records, robot)
     mount = [each for each in found if find(each.effect).stage == "reference"]
     wheels = sorted((each for each in found if each not in mount), key=lambda each: -each.gain)
+    if skidding(robot):
+        wheels = [as_skid(each) for each in wheels]
     degrees = [each for each in extra if each.effect == IN_DEGREES]
     late = [each for each in extra if each.effect != IN_DEGREES]
     mended, findings = with_findings(robot, [*degrees, *wheels, *late, *mount], setting)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 
+from werrimbi_odom.inference.calibration_sizes import skidding
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
 from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
@@ -66,6 +67,11 @@ def _headline(comparison: Comparison, verdict: Verdict) -> str:
         return (
             f"The model explains these drives: {over} its errors are what its covariance "
             "promises, and nothing systematic is left in them."
+        )
+    if verdict.gross and skidding(comparison.model.robot):
+        return (
+            "The model is grossly wrong: that is not calibration. This robot's driven wheels skid "
+            "in turns, and how much is to be found first; or something is set up wrongly."
         )
     if verdict.gross:
         return (

@@ -52,7 +52,7 @@ def json_of(
                 "words": finding.words,
                 "twins": list(finding.twins),
             }
-            for finding in diagnosis.set_up.findings
+            for finding in diagnosis.set_up.wrong
         ],
         "recorded_otherwise": [
             {

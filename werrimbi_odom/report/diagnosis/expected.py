@@ -123,6 +123,7 @@ def _missed(values: Values, robot: Robot) -> str:
 
 
 _EXPECTED: dict[str, Callable[[Values, Robot], str]] = {
+    "skid_steer": _base,
     "track_width": _base,
     "unequal_wheel_radii": _radii,
     "wheel_radius_scale": _scale,

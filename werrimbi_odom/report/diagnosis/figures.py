@@ -141,7 +141,7 @@ def set_up_figure(diagnosis: Diagnosis) -> go.Figure:
     runs = diagnosis.runs
     for name, robot, colour, symbol in (
         ("as the robot file says", diagnosis.given, ORANGE, "x"),
-        ("with the mistake put right", diagnosis.set_up.robot, BLUE, "circle"),
+        ("with that put right", diagnosis.set_up.robot, BLUE, "circle"),
     ):
         measured, predicted = _legs(diagnosis, robot)
         rows = np.linspace(0, runs.count - 1, min(runs.count, MARKS // 4)).astype(int)

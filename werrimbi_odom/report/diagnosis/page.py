@@ -52,8 +52,8 @@ def diagnosis_page(
         "ambiguous": f"What is missing: {' or '.join(diagnosis.rivals)}",
         "unknown": "Something is missing that the library does not hold",
     }[diagnosis.verdict]
-    if diagnosis.set_up.findings:
-        mistakes = ", ".join(item.effect for item in diagnosis.set_up.findings)
+    if diagnosis.set_up.wrong:
+        mistakes = ", ".join(item.effect for item in diagnosis.set_up.wrong)
         title = f"What is set up wrongly: {mistakes}"
     return Page(
         title, words_of(told, steps or NextSteps()), shown, tables_of(diagnosis, told.sights), made
@@ -102,8 +102,8 @@ def _before_after(diagnosis: Diagnosis) -> list[Shown]:
         return [
             Shown(
                 "set-up",
-                "The set-up, as given and put right",
-                "Each mark is a short leg. What is set up rightly lies on the dashed line; a "
+                "Turn and travel, as given and put right",
+                "Each mark is a short leg. What is right lies on the dashed line; a "
                 "wrong sign or a wrong factor lies on another one.",
                 {"": set_up_figure(diagnosis)},
             )

@@ -73,6 +73,8 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
 def _unseen(value: Value) -> bool:
     """Whether a parameter may as well be null, by as much as `add` would put it there."""
     away = abs(value.value - value.null)
+    if away == 0.0 and not value.is_shape and not value.per_run:
+        return True
     told = not value.per_run and not value.is_shape and value.std > 0.0
     return told and away < SIGNIFICANT * value.std
 

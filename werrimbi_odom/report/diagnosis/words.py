@@ -242,14 +242,16 @@ _OF_A_WHEEL = ("unequal_wheel_radii", "wheel_radius_scale")
 
 
 def _set_up(diagnosis: Diagnosis) -> list[str]:
-    """Set-up mistakes first: nothing else counts while they are there."""
+    """Set-up mistakes first: nothing else counts while they are there; then what is no mistake."""
     findings = diagnosis.set_up.findings
-    if not findings:
-        return []
-    lines = ["Something is set up wrongly:"]
-    for finding in findings:
-        lines.append(f"- {_sentence(finding.words)[:-1]}: {finding.effect}.")
-    return lines
+    wrong = diagnosis.set_up.wrong
+    lines = ["Something is set up wrongly:"] if wrong else []
+    lines += [f"- {_sentence(finding.words)[:-1]}: {finding.effect}." for finding in wrong]
+    skids = [finding for finding in findings if finding not in wrong]
+    return [
+        *lines,
+        *(f"This robot is a skid steer ({each.effect}): {each.words}." for each in skids),
+    ]
 
 
 def _otherwise(diagnosis: Diagnosis) -> list[str]:

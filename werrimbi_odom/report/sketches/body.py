@@ -116,6 +116,23 @@ def _turn_dependent() -> Parts:
     ]
 
 
+def _skid_steer() -> Parts:
+    tyres = [oblong(x, y, 34, 13, colour=INK, fill=GREY) for x in (128, 182) for y in (58, 102)]
+    return [
+        oblong(155, 80, 92, 34, colour=BLUE),
+        *tyres,
+        line((155, 12), (155, 148), colour=GREY, dash=DASH),
+        circle(163, 18, 4, colour=ORANGE, fill=ORANGE),
+        circle(163, 142, 4, colour=ORANGE, fill=ORANGE),
+        words(172, 22, "centre of the left side", colour=ORANGE, anchor="start"),
+        words(172, 146, "centre of the right side", colour=ORANGE, anchor="start"),
+        arrow((82, 18), (82, 142), both=True),
+        words(76, 84, "acts", colour=ORANGE, anchor="end"),
+        arrow((100, 58), (100, 102), colour=GREY, both=True),
+        arc(155, 80, 78, 335, 25, colour=ORANGE, head=True),
+    ]
+
+
 def _sideways_drift() -> Parts:
     return [
         robot(80, 105),
@@ -190,6 +207,7 @@ DRAWINGS: Mapping[str, Callable[..., Parts]] = {
     "slip_ahead": _longitudinal_slip,
     "slip_outwards": _lateral_slip,
     "two_bases": _turn_dependent,
+    "skid": _skid_steer,
     "sideways": _sideways_drift,
     "slope": _floor_slope,
     "castor": _castor_kick,

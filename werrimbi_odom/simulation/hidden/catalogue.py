@@ -19,11 +19,12 @@ from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
 from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount
 from .outside import RadiusFollowsPayload, RadiusFollowsTemperature, RadiusGrowsWithSpeed
 from .peculiarity import Peculiarity
+from .skid import skid_steer
 from .wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift
 
 Rng = np.random.Generator
 Make = Callable[[float, Rng], Peculiarity]
-Kind = Literal["effect", "mistake", "outside"]
+Kind = Literal["effect", "mistake", "outside", "robot"]
 
 
 class UnknownEffectError(ValueError):
@@ -53,8 +54,9 @@ class Entry:
         Strength at which there is no effect.
     signed : bool
         Whether both signs of that distance occur.
-    kind : "effect", "mistake" or "outside"
-        In the library's vocabulary, a mistake of set-up, or nothing that the library knows.
+    kind : "effect", "mistake", "outside" or "robot"
+        In the library's vocabulary, a mistake of set-up, nothing that the library knows, or another
+        kind of robot.
     """
 
     name: str
@@ -199,6 +201,8 @@ CATALOGUE: tuple[Entry, ...] = (
             "turning towards one direction of the room", signed=False, kind="outside"),
     Entry("oval_wheel", lambda s, rng: OvalWheel("left" if _either(rng) else "right", s), "1",
             0.01, 0.05, "out-of-roundness of one wheel", signed=False, kind="outside"),
+    Entry("skid_steer", skid_steer, "1", 0.3, 1.5, "turning by four skidding wheels over the true",
+            null=1.0, signed=False, kind="robot"),
 )
 # fmt: on
 

@@ -1,0 +1,100 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Robots that skid as they turn, from the engine: four tyres in balance, no formula of the law."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.adding.adding import add_effect
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.manoeuvres.told import Told
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.diagnosis.as_json import json_of
+from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.simulation import TrueRobot, free, record
+from werrimbi_odom.simulation.hidden.skid import LENGTH, SkidSteer
+
+HIDDEN = SkidSteer(1.7, 0.6, 0.45)
+ROBOT = Robot(0.35, 0.05, 2000.0, 2000.0)
+FOUR_WHEELS = replace(ROBOT, wheels_a_side=2)
+X, Y = 0.1 * LENGTH, 0.05 * 0.35 * 0.7
+
+
+@cache
+def drive(number: int, *, headings_alone: bool = False) -> Run:
+    true = TrueRobot(left_wheel_noise=4e-4, right_wheel_noise=5.8e-4)
+    found = record(true, free(25.0, seed=number, yaw_rate=1.0), seed=number, hidden=[HIDDEN])
+    place = (found.reference_x_m, found.reference_y_m)
+    if headings_alone:
+        place = (0.0 * place[0] + float("nan"), 0.0 * place[1] + float("nan"))
+    return Run(
+        f"drive_{number}",
+        Path(f"drive_{number}"),
+        Ticks(found.t_s, found.left_ticks.astype(float), found.right_ticks.astype(float)),
+        Reference(found.reference_t_s, *place, found.reference_yaw_rad),
+    )
+
+
+@cache
+def diagnosed(robot: Robot, *, headings_alone: bool = False) -> Diagnosis:
+    runs = [drive(number, headings_alone=headings_alone) for number in (1, 2, 3)]
+    return diagnose(runs[:2], robot, LIBRARY, holdout=runs[2:])
+
+
+def said(diagnosis: Diagnosis) -> str:
+    return " ".join(words_of(Told(diagnosis, None, ()), NextSteps()).split())
+
+
+def test_it_is_named_with_its_numbers_and_no_mistake_is_told() -> None:
+    found = diagnosed(FOUR_WHEELS)
+    assert (found.verdict, found.effect, found.found) == ("named", "skid_steer", ("skid_steer",))
+    values = json_of(found, None)["found"][0]["parameters"]
+    for name, true in (("multiplier", 1.7), ("x", X), ("y", Y)):
+        assert abs(values[name]["value"] - true) < 4.0 * values[name]["std"]
+    assert values["multiplier"]["std"] < 2e-3
+    assert json_of(found, None)["set_up"] == []
+    words = said(found)
+    assert "set up wrongly" not in words
+    assert "half the base" not in words
+    assert "nothing is entered wrongly" in words
+
+
+def test_a_gyro_tells_its_multiplier_and_nothing_of_its_point() -> None:
+    found = diagnosed(FOUR_WHEELS, headings_alone=True)
+    assert (found.verdict, found.found) == ("named", ("skid_steer",))
+    values = json_of(found, None)["found"][0]["parameters"]
+    assert abs(values["multiplier"]["value"] - 1.7) < 4.0 * values["multiplier"]["std"]
+    assert "None is seen of x and y" in said(found)
+
+
+def test_two_wheels_keep_the_base_and_hear_of_skidding() -> None:
+    found = diagnosed(ROBOT)
+    assert found.effect == "track_width"
+    assert "skid_steer" not in found.found
+    assert "left_wheel_names" in said(found)
+
+
+def test_whoever_asks_for_it_gets_it_and_no_other_number_moves() -> None:
+    runs = [drive(number) for number in (1, 2, 3)]
+    added = add_effect(find("skid_steer"), runs[:2], ROBOT, holdout=runs[2:])
+    assert not added.objections
+    (applied,) = added.robot.effects
+    assert applied.values == pytest.approx({"multiplier": 1.7, "x": X, "y": Y}, abs=2e-3)
+    assert added.robot.wheel_separation_multiplier == 1.0
+
+
+def test_a_file_that_holds_it_is_fitted_again_by_its_own_name() -> None:
+    near = find("skid_steer").using(multiplier=1.6)
+    runs = [drive(number) for number in (1, 2, 3)]
+    added = add_effect(
+        find("skid_steer"), runs[:2], replace(FOUR_WHEELS, effects=(near,)), holdout=runs[2:]
+    )
+    assert added.robot.effects[0].values["multiplier"] == pytest.approx(1.7, abs=2e-3)
+    assert added.robot.wheel_separation_multiplier == 1.0
