@@ -11,8 +11,7 @@ from typing import Any
 import pytest
 
 from test.report.browser import visit
-from werrimbi_odom.report.fleet.figure import fleet_figure
-from werrimbi_odom.report.fleet.page import write_fleet_page
+from werrimbi_odom.report.fleet.page import fleet_figure, write_fleet_page
 from werrimbi_odom.report.fleet.rows import Fleet, Row, fleet_json
 from werrimbi_odom.report.fleet.tables import cells, fleet_table
 from werrimbi_odom.report.fleet.words import headline, words_of

@@ -17,7 +17,7 @@ from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.report.adding.page import adding_page
-from werrimbi_odom.report.calibration.fit_figure import leg_figure
+from werrimbi_odom.report.calibration.figures import leg_figure
 from werrimbi_odom.report.calibration.page import calibration_page
 from werrimbi_odom.report.comparison.page import compare_page
 from werrimbi_odom.report.diagnosis.page import diagnosis_page

@@ -25,7 +25,7 @@ from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.model.declared import DRAWINGS
 from werrimbi_odom.model.effect import Sketch
 from werrimbi_odom.report.adding.figures import error_falling_figure, steps_of
-from werrimbi_odom.report.calibration.fit_figure import leg_figure
+from werrimbi_odom.report.calibration.figures import leg_figure
 from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
 from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure
 from werrimbi_odom.report.diagnosis.figures import ranking_figure

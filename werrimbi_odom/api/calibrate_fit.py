@@ -100,7 +100,7 @@ def calibrated(given: Recordings) -> Result[Calibration]:
 
 def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) -> go.Figure:
     from werrimbi_odom.inference.calibration.any_driving import errors_of_legs
-    from werrimbi_odom.report.calibration.fit_figure import leg_figure
+    from werrimbi_odom.report.calibration.figures import leg_figure
 
     model = result.fit.point.model
     headings = [model.start_yaw(index) for index in range(len(runs))]

@@ -119,6 +119,11 @@ def plain(value: Any) -> Any:
     return value
 
 
+def picked(item: object, names: str) -> dict[str, Any]:
+    """Some of its attributes, by name."""
+    return {name: getattr(item, name) for name in names.split()}
+
+
 def counted(number: int, word: str) -> str:
     """1 leg, 2 legs."""
     return f"{number} {word}{'' if number == 1 else 's'}"

@@ -11,7 +11,7 @@ from typing import Any
 from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.values import FittedParameter
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
-from werrimbi_odom.report.numbers import listed, quantity, scaled_with_std
+from werrimbi_odom.report.numbers import listed, picked, quantity, scaled_with_std
 from werrimbi_odom.report.phrases import jumps_words, left_out_json, left_out_words, sizes_words
 from werrimbi_odom.report.text import WIDTH, filled, table
 
@@ -196,10 +196,8 @@ def json_of(added: Added) -> dict[str, Any]:
         "effects": [effect.name for effect in added.effects],
         "parameters": {
             name: {
-                "value": item.value,
-                "std": item.std,
-                "unit": item.declared.unit,
-                "null": item.declared.null,
+                **picked(item, "value std"),
+                **picked(item.declared, "unit null"),
                 "remark": item.remark,
                 "of_runs": list(item.of_runs),
                 "says": item.declared.says,
@@ -218,10 +216,7 @@ def json_of(added: Added) -> dict[str, Any]:
         },
         "noise": {
             "written": added.explained,
-            **{
-                name: {"value": item.value, "std": item.std, "determined": item.determined}
-                for name, item in added.noises.items()
-            },
+            **{name: picked(item, "value std determined") for name, item in added.noises.items()},
         },
         "put_right_with_it": list(added.also),
         "per_run": list(added.per_run),

@@ -20,6 +20,7 @@ from werrimbi_odom.inference.comparison.groups import ByVariable, Cell
 from werrimbi_odom.inference.comparison.judged_legs import Legs
 from werrimbi_odom.inference.comparison.systematic import Systematic
 from werrimbi_odom.inference.comparison.verdict import verdict_of
+from werrimbi_odom.report.numbers import picked
 from werrimbi_odom.report.phrases import left_out_json
 
 
@@ -32,18 +33,10 @@ def json_of(comparison: Comparison) -> dict[str, Any]:
         "by_motion": {kind: legs_json(main.by_motion[kind]) for kind in KINDS},
         "leg_m": comparison.prepared.leg,
         "verdict": {
-            "good": verdict.good,
-            "enough": verdict.enough,
-            "mean_is_right": verdict.mean_is_right,
-            "gross": verdict.gross,
-            "covariance": verdict.covariance,
-            "noise": verdict.noise,
+            **picked(verdict, "good enough mean_is_right gross covariance noise"),
             "noise_factor": [verdict.factor.value, verdict.factor.low, verdict.factor.high],
             "systematic": [_systematic(part) for part in verdict.systematic],
-            "depends_on": [
-                {"channel": item.channel, "variable": item.variable, "p_value": item.p_value}
-                for item in verdict.depends
-            ],
+            "depends_on": [picked(item, "channel variable p_value") for item in verdict.depends],
         },
         "systematic": [_systematic(part) for part in main.systematic],
         "by_length": [_of_length(item) for item in comparison.lengths],
@@ -64,12 +57,9 @@ def legs_json(figures: LegFigures) -> dict[str, Any]:
     return {
         "count": item.count,
         "outliers": figures.outliers,
-        "rmse_position_m": item.rmse_position_m,
-        "median_position_m": item.median_position_m,
+        **picked(item, "rmse_position_m median_position_m"),
         "rmse_all_position_m": figures.rmse_all_position_m,
-        "rmse_yaw_rad": item.rmse_yaw_rad,
-        "nees": item.nees,
-        "coverage_95": item.coverage_95,
+        **picked(item, "rmse_yaw_rad nees coverage_95"),
         "nees_without_systematic": figures.scatter_nees,
         "noise_factor": list(figures.noise),
     }
@@ -78,11 +68,7 @@ def legs_json(figures: LegFigures) -> dict[str, Any]:
 def _run(item: RunFigures) -> dict[str, Any]:
     return {
         "run": str(item.run.path),
-        "distance_m": item.distance_m,
-        "duration_s": item.duration_s,
-        "end_error_m": item.end_error_m,
-        "end_error_rad": item.end_error_rad,
-        "rmse_path_m": item.rmse_path_m,
+        **picked(item, "distance_m duration_s end_error_m end_error_rad rmse_path_m"),
         "legs": legs_json(item.legs),
     }
 
@@ -121,8 +107,7 @@ def _cell(cell: Cell) -> dict[str, Any]:
         "x_m": cell.x,
         "y_m": cell.y,
         "side_m": cell.side,
-        "p_value": cell.p_value,
-        "stands_out": cell.stands_out,
+        **picked(cell, "p_value stands_out"),
         **asdict(cell.figures),
     }
 

@@ -18,6 +18,7 @@ from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
 from werrimbi_odom.inference.manoeuvres.told import beyond_chance, one_each, significant
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.numbers import picked
 from werrimbi_odom.report.phrases import left_out_json
 
 
@@ -46,10 +47,7 @@ def json_of(
         ],
         "set_up": [
             {
-                "effect": finding.effect,
-                "values": dict(finding.values),
-                "factor": finding.factor,
-                "words": finding.words,
+                **picked(finding, "effect values factor words"),
                 "twins": list(finding.twins),
             }
             for finding in diagnosis.set_up.wrong
@@ -108,12 +106,7 @@ def _sides(sides: Sides | None, headings: Sides | None = None) -> dict[str, Any]
 
 def _parameters(diagnosis: Diagnosis, name: str) -> dict[str, Any]:
     return {
-        parameter: {
-            "value": value.value,
-            "std": value.std,
-            "unit": value.unit,
-            "per_run": value.per_run,
-        }
+        parameter: picked(value, "value std unit per_run")
         for parameter, value in values_of(diagnosis, name).items()
     }
 

@@ -1,19 +1,130 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The report of a fleet: words, one figure, and the table of robots."""
+"""The report of a fleet: words, the error of each robot falling in one figure, and the table."""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.report.fleet.figure import fleet_figure
-from werrimbi_odom.report.fleet.rows import Fleet
+from werrimbi_odom.report.fleet.rows import ERROR, Fleet, Row
 from werrimbi_odom.report.fleet.tables import fleet_table_html
-from werrimbi_odom.report.fleet.words import words_of
+from werrimbi_odom.report.fleet.words import missing_words, words_of
 from werrimbi_odom.report.page import Page, Shown
 from werrimbi_odom.report.save import save_report
+from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, PAPER, escaped, plain
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+_FREQUENT = ((BLUE, "circle"), (ORANGE, "square"), (GREEN, "diamond"))
+"""Colour and mark of the effects that most robots miss."""
+_OTHERS = {
+    "something else": (INK, "triangle-up"),
+    "ambiguous": (GREY, "cross"),
+    "unknown": (GREY, "x"),
+    "nothing": (GREY, "pentagon"),
+}
+_LOGARITHMIC = 20.0
+"""From this ratio of the largest to the smallest error on the axis is logarithmic."""
+_CLOSE = 60
+"""Robots from which on rows move closer together."""
+
+
+def fleet_figure(fleet: Fleet) -> go.Figure | None:
+    """Rows of robots over held-out error [mm]; None where no robot has such an error."""
+    import plotly.graph_objects as go
+
+    shown = [row for row in fleet.rows if all(map(math.isfinite, row.errors))]
+    if not shown:
+        return None
+    looks = _looks(fleet)
+    figure = go.Figure()
+    for group, (colour, mark) in looks.items():
+        rows = [row for row in shown if _group(row, looks) == group]
+        if not rows:
+            continue
+        before = [1e3 * row.errors[0] for row in rows]
+        after = [1e3 * row.errors[1] for row in rows]
+        names = [escaped(row.robot) for row in rows]
+        common = {"legendgroup": group, "y": names}
+        lines: dict[str, list[object]] = {"x": [], "y": []}
+        for name, first, last in zip(names, before, after, strict=True):
+            lines["x"] += [first, last, None]
+            lines["y"] += [name, name, None]
+        figure.add_scatter(
+            **lines,
+            mode="lines",
+            line={"color": colour, "width": 2},
+            legendgroup=group,
+            showlegend=False,
+            hoverinfo="skip",
+        )
+        figure.add_scatter(
+            **common,
+            x=before,
+            mode="markers",
+            marker={
+                "color": PAPER,
+                "symbol": mark,
+                "size": 9,
+                "line": {"color": colour, "width": 2},
+            },
+            showlegend=False,
+            hovertemplate="%{y}, as given: %{x:.2f} mm<extra></extra>",
+        )
+        figure.add_scatter(
+            **common,
+            x=after,
+            mode="markers",
+            name=f"{group} ({len(rows)})",
+            marker={"color": colour, "symbol": mark, "size": 10},
+            customdata=[escaped(" ".join("; ".join(missing_words(row)).split())) for row in rows],
+            hovertemplate="%{y}: %{x:.2f} mm<br>missing: %{customdata}<extra></extra>",
+        )
+    _axes(figure, shown)
+    height = max(150 + (26 if len(shown) <= _CLOSE else 15) * len(shown), 260)
+    plain(figure, height=height)
+    figure.update_layout(legend={"y": 1.0 + 12.0 / height})
+    return figure
+
+
+def _axes(figure: go.Figure, shown: list[Row]) -> None:
+    errors = [1e3 * value for row in shown for value in row.errors]
+    low, high = min(errors), max(errors)
+    title = (
+        "position error of held-out legs [mm]<br>"
+        "hollow: as given, filled: with what is missing put in"
+    )
+    if low > 0.0 and high > _LOGARITHMIC * low:
+        figure.update_xaxes(type="log", title=title, dtick="D1" if high < 1e3 * low else 1)
+    else:
+        figure.update_xaxes(title=title, range=[0.0, 1.06 * high])
+    figure.update_yaxes(
+        type="category",
+        categoryorder="array",
+        categoryarray=[escaped(row.robot) for row in shown],
+        range=[len(shown) - 0.4, -0.6],  # the first robot on top
+        tickmode="linear",
+        dtick=1,
+    )
+
+
+def _looks(fleet: Fleet) -> Mapping[str, tuple[str, str]]:
+    """Colour and mark of each group."""
+    frequent = zip(fleet.by_effect, _FREQUENT, strict=False)
+    return {**dict(frequent), **_OTHERS}
+
+
+def _group(row: Row, looks: Mapping[str, tuple[str, str]]) -> str:
+    """The group that a robot is shown in: its most important effect's, or its verdict's."""
+    assert row.verdict != ERROR
+    if row.verdict == "named":
+        return row.missing[0] if row.missing[0] in looks else "something else"
+    return {"none": "nothing"}.get(row.verdict, row.verdict)
 
 
 def write_fleet_page(fleet: Fleet, path: Path, made: Mapping[str, str]) -> list[Path]:
