@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.model.robot import Robot
 
 RATE = 50.0
 
@@ -22,6 +23,19 @@ class WhiteNoiseRobot:
     left_noise: float = 1.0e-3
     right_noise: float = 2.0e-3
     ticks_per_revolution: float = 2000.0
+
+    def entered(self, radius: float = 1.0, noise: float = 1.0) -> Robot:
+        """As its robot file would have it: sizes by multipliers, `noise` times the wheels' own."""
+        return Robot(
+            self.separation,
+            radius,
+            self.ticks_per_revolution,
+            self.ticks_per_revolution,
+            left_wheel_radius_multiplier=self.left_radius / radius,
+            right_wheel_radius_multiplier=self.right_radius / radius,
+            left_wheel_noise=noise * self.left_noise,
+            right_wheel_noise=noise * self.right_noise,
+        )
 
 
 def wandering(

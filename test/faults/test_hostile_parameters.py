@@ -13,17 +13,9 @@ import pytest
 
 pytest.importorskip("rclpy")
 
+from test.robot_file import BARE
 from test.ros.conftest import environment
 from werrimbi_odom.ros.domain import free_domain
-
-GOOD = """\
-odom_node:
-  ros__parameters:
-    wheel_separation: 0.35
-    wheel_radius: 0.05
-    left_ticks_per_revolution: 2000.0
-    right_ticks_per_revolution: 2000.0
-"""
 
 
 def limits() -> None:
@@ -39,15 +31,15 @@ BOMB = "a0: &a0 [lol, lol]\n" + "".join(
 @pytest.mark.parametrize(
     "text",
     [
-        BOMB + GOOD,
-        GOOD.replace("0.35", "!!python/object/apply:os.system [touch pwned]"),
-        GOOD.replace("0.35", "1e999"),
-        GOOD.replace("0.35", "9" * 5000),
-        GOOD.replace("0.35", "[" * 5000 + "]" * 5000),
-        GOOD + "    " + "x" * 100_000 + ": 1.0\n",
-        GOOD + "    effects: [../../evil, os.system]\n",
-        GOOD + "    effects: [lateral_slip]\n    lateral_slip: {creep: 1.0e300}\n",
-        GOOD + "    odom_frame_id: [a, 1]\n",
+        BOMB + BARE,
+        BARE.replace("0.35", "!!python/object/apply:os.system [touch pwned]"),
+        BARE.replace("0.35", "1e999"),
+        BARE.replace("0.35", "9" * 5000),
+        BARE.replace("0.35", "[" * 5000 + "]" * 5000),
+        BARE + "    " + "x" * 100_000 + ": 1.0\n",
+        BARE + "    effects: [../../evil, os.system]\n",
+        BARE + "    effects: [lateral_slip]\n    lateral_slip: {creep: 1.0e300}\n",
+        BARE + "    odom_frame_id: [a, 1]\n",
         "\0" * 1000,
         "",
     ],

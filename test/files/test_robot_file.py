@@ -14,19 +14,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from ruamel.yaml import YAML
 
+from test.robot_file import BARE
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.parameters import PARAMETERS, Parameter, Value
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, write_robot_file
 
 ROOT = Path(__file__).parents[2]
-BARE = """\
-odom_node:
-  ros__parameters:
-    wheel_separation: 0.35
-    wheel_radius: 0.05
-    left_ticks_per_revolution: 2000.0
-    right_ticks_per_revolution: 2000.0
-"""
 COMMENTED = """\
 # The robot in the cellar.
 

@@ -11,22 +11,14 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
+from test.robot_file import BARE
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files import yaml_text
 from werrimbi_odom.files.robot_file import read_robot_file
 
-GOOD = """\
-odom_node:
-  ros__parameters:
-    wheel_separation: 0.35
-    wheel_radius: 0.05
-    left_ticks_per_revolution: 2000.0
-    right_ticks_per_revolution: 2000.0
-"""
-
 
 def _with(line: str) -> str:
-    return f"{GOOD}    {line}\n"
+    return f"{BARE}    {line}\n"
 
 
 def _slipping(block: str, more: str = "") -> str:
@@ -53,14 +45,14 @@ def complaint(path: Path, text: str | bytes) -> str:
         ),
         (_with("5: 1.0"), ", line 7: unknown parameter 5"),
         *(
-            (GOOD.replace("0.05", number), f", line 4: ROS reads {number} otherwise than YAML does")
+            (BARE.replace("0.05", number), f", line 4: ROS reads {number} otherwise than YAML does")
             for number in ("0100", "-0100", "089", "1_0", "1_0.5", "1_e3", "0o17", "0b11", "0x1_F")
         ),
         (_slipping("{creep: 0_1}"), ", line 8: ROS reads 0_1 otherwise"),
-        (GOOD.replace("0.05", '!!int "010"'), ", line 4: ROS reads 010 otherwise"),
-        ("%YAML 1.1\n---\n" + GOOD, ", line 2: leave out %YAML"),
+        (BARE.replace("0.05", '!!int "010"'), ", line 4: ROS reads 010 otherwise"),
+        ("%YAML 1.1\n---\n" + BARE, ", line 2: leave out %YAML"),
         (
-            GOOD.replace("0.35", "1.0e-300"),
+            BARE.replace("0.35", "1.0e-300"),
             ", line 3: wheel_separation times wheel_separation_multiplier must be from 1e-09 to "
             "1e+09 m, it is 1e-300 m",
         ),
@@ -69,7 +61,7 @@ def complaint(path: Path, text: str | bytes) -> str:
             ", line 7: wheel_separation times wheel_separation_multiplier must be from",
         ),
         (
-            GOOD.replace(
+            BARE.replace(
                 "right_ticks_per_revolution: 2000.0", "right_ticks_per_revolution: 5e-324"
             ),
             ", line 6: travel for one count (wheel_radius times right_wheel_radius_multiplier "
@@ -77,20 +69,20 @@ def complaint(path: Path, text: str | bytes) -> str:
         ),
         (_with("left_wheel_noise: 1.0e160"), ", line 7: left_wheel_noise must be at most 1000"),
         (
-            GOOD.replace("0.05", "-0.05"),
+            BARE.replace("0.05", "-0.05"),
             ", line 4: wheel_radius must be a number greater than 0 (m), not -0.05",
         ),
         (
-            GOOD.replace("0.05", "0"),
+            BARE.replace("0.05", "0"),
             ", line 4: wheel_radius must be a number greater than 0 (m), not 0",
         ),
-        (GOOD.replace("0.05", ".nan"), ", line 4: wheel_radius must be a number (m), not nan"),
-        (GOOD.replace("0.05", "-.inf"), ", line 4: wheel_radius must be a number (m), not -inf"),
-        (GOOD.replace("0.05", "5 cm"), ", line 4: wheel_radius must be a number (m), not '5 cm'"),
-        (GOOD.replace("0.05", "true"), ", line 4: wheel_radius must be a number (m), not True"),
-        (GOOD.replace("0.05", "[0.05]"), ", line 4: wheel_radius must be a number (m), not [0.05]"),
-        (GOOD.replace("0.05", ""), ", line 4: wheel_radius must be a number (m), not None"),
-        (GOOD.replace("0.05", "2024-01-01"), ", line 4: wheel_radius must be a number (m), not "),
+        (BARE.replace("0.05", ".nan"), ", line 4: wheel_radius must be a number (m), not nan"),
+        (BARE.replace("0.05", "-.inf"), ", line 4: wheel_radius must be a number (m), not -inf"),
+        (BARE.replace("0.05", "5 cm"), ", line 4: wheel_radius must be a number (m), not '5 cm'"),
+        (BARE.replace("0.05", "true"), ", line 4: wheel_radius must be a number (m), not True"),
+        (BARE.replace("0.05", "[0.05]"), ", line 4: wheel_radius must be a number (m), not [0.05]"),
+        (BARE.replace("0.05", ""), ", line 4: wheel_radius must be a number (m), not None"),
+        (BARE.replace("0.05", "2024-01-01"), ", line 4: wheel_radius must be a number (m), not "),
         (_with("encoder_bits: 16.5"), ", line 7: encoder_bits must be a whole number (bits)"),
         (_with("encoder_bits: 12"), ", line 7: encoder_bits must be one of 0, 8, 16, 32"),
         (_with("left_wheel_noise: -1e-4"), ", line 7: left_wheel_noise must be a number of at"),
@@ -176,21 +168,21 @@ def complaint(path: Path, text: str | bytes) -> str:
         ("odom_node:\n", ", line 1: below odom_node comes ros__parameters"),
         ("5:\n  ros__parameters: {}\n", ", line 1: the top key must be a node's name, not 5"),
         ("a: 1\nb: 2\n", ": a robot file tells of one node (odom_node or /**); here are: a, b"),
-        (GOOD + GOOD.replace("odom_node", "/**"), ": a robot file tells of one node"),
+        (BARE + BARE.replace("odom_node", "/**"), ": a robot file tells of one node"),
         ("{}\n", ": a robot file tells of one node (odom_node or /**); here are: none"),
         ("", " is empty"),
         ("# only a comment\n", " is empty"),
         ("- a\n", ": a robot file begins with the node's name and a colon"),
         ("just words\n", ": a robot file begins with the node's name and a colon"),
-        (GOOD.replace("0.05", '"0.05'), ", line 4: this is not YAML"),
-        (GOOD.replace("0.05", "\t0.05"), ", line 4: this is not YAML"),
-        (GOOD.replace(" 0.05", "0.05"), ", line 4: this is not YAML"),
-        (GOOD.replace("0.05", "2024-13-77"), ": this is not YAML: month must be in 1..12"),
-        (GOOD.replace("0.05", "9" * 5000), ": this is not YAML: Exceeds the limit"),
-        (GOOD + "---\n" + GOOD, ", line 7: a second document begins"),
-        (GOOD.encode() + b"    # \xff\n", ", line 7: byte 0xff is not UTF-8"),
-        (GOOD + "\0", ": this is not YAML"),
-        (GOOD.replace(" 0.05", "  # m\n      0.05\n\n"), ", line 4: a comment between a key and"),
+        (BARE.replace("0.05", '"0.05'), ", line 4: this is not YAML"),
+        (BARE.replace("0.05", "\t0.05"), ", line 4: this is not YAML"),
+        (BARE.replace(" 0.05", "0.05"), ", line 4: this is not YAML"),
+        (BARE.replace("0.05", "2024-13-77"), ": this is not YAML: month must be in 1..12"),
+        (BARE.replace("0.05", "9" * 5000), ": this is not YAML: Exceeds the limit"),
+        (BARE + "---\n" + BARE, ", line 7: a second document begins"),
+        (BARE.encode() + b"    # \xff\n", ", line 7: byte 0xff is not UTF-8"),
+        (BARE + "\0", ": this is not YAML"),
+        (BARE.replace(" 0.05", "  # m\n      0.05\n\n"), ", line 4: a comment between a key and"),
     ],
 )
 def test_wrong_files(tmp_path: Path, text: str | bytes, said: str) -> None:
@@ -244,10 +236,10 @@ def test_a_device_without_end_is_not_read_to_its_end() -> None:
         st.binary(max_size=200),
         st.text(max_size=200).map(lambda text: text.encode("utf-8", "surrogatepass")),
         st.text("{}[]:,&*!|>-?'\"#%@` \n\tab0.", max_size=80).map(
-            lambda text: GOOD.encode() + b"    x: " + text.encode()
+            lambda text: BARE.encode() + b"    x: " + text.encode()
         ),
         st.text("{}[]:,&*!|>-?'\"#%@` \n\tab0.e-", max_size=20).map(
-            lambda text: GOOD.replace("0.05", text).encode()
+            lambda text: BARE.replace("0.05", text).encode()
         ),
     )
 )

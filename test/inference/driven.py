@@ -6,13 +6,18 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from test.model.drives import ROBOT, read
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.calibration.recorded_square import Record
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
+
+if TYPE_CHECKING:
+    from werrimbi_odom.simulation import Recording
 
 NOISE_XY, NOISE_YAW = 1e-3, 2e-3
 
@@ -51,3 +56,17 @@ def run_of(
         ticks.time, ticks.left.astype(float), ticks.right.astype(float), dict(channels or {})
     )
     return Run(f"run_{seed}", Path(f"run_{seed}"), record, reference)
+
+
+def record_of(name: str, drive: Recording) -> Record:
+    """A drive of the engine, as a recorded square is read."""
+    return Record(
+        name,
+        drive.t_s,
+        drive.left_ticks,
+        drive.right_ticks,
+        drive.reference_t_s,
+        drive.reference_x_m,
+        drive.reference_y_m,
+        drive.reference_yaw_rad,
+    )

@@ -28,16 +28,7 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 TRUE = WhiteNoiseRobot()
-ROBOT = Robot(
-    TRUE.separation,
-    0.05,
-    2000.0,
-    2000.0,
-    left_wheel_radius_multiplier=TRUE.left_radius / 0.05,
-    right_wheel_radius_multiplier=TRUE.right_radius / 0.05,
-    left_wheel_noise=TRUE.left_noise,
-    right_wheel_noise=TRUE.right_noise,
-)
+ROBOT = TRUE.entered(0.05)
 
 
 @pytest.fixture(scope="module")

@@ -20,19 +20,9 @@ from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
 from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
-from werrimbi_odom.model.robot import Robot
 
 TRUE = WhiteNoiseRobot()
-ROBOT = Robot(
-    TRUE.separation,
-    0.05,
-    TRUE.ticks_per_revolution,
-    TRUE.ticks_per_revolution,
-    left_wheel_radius_multiplier=TRUE.left_radius / 0.05,
-    right_wheel_radius_multiplier=TRUE.right_radius / 0.05,
-    left_wheel_noise=TRUE.left_noise,
-    right_wheel_noise=TRUE.right_noise,
-)
+ROBOT = TRUE.entered(0.05)
 LASTING = 5.0
 """For how long the wandering reference errs alike [s]."""
 

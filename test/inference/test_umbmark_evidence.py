@@ -14,7 +14,8 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.calibration.recorded_square import Record, recorded_square, squares_of
+from test.inference.driven import record_of
+from werrimbi_odom.inference.calibration.recorded_square import recorded_square, squares_of
 from werrimbi_odom.inference.calibration.squares import Squares, e_max_of_scatter, e_max_syst
 from werrimbi_odom.inference.calibration.umbmark import corrected, umbmark
 from werrimbi_odom.model.robot import Robot
@@ -110,16 +111,7 @@ def engine_squares(
             )
             found.append(
                 recorded_square(
-                    Record(
-                        f"{sense} {number}",
-                        drive.t_s,
-                        drive.left_ticks,
-                        drive.right_ticks,
-                        drive.reference_t_s,
-                        drive.reference_x_m,
-                        drive.reference_y_m,
-                        drive.reference_yaw_rad,
-                    ),
+                    record_of(f"{sense} {number}", drive),
                     believed,
                     side,
                 )

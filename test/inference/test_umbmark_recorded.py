@@ -10,6 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from test.inference.driven import record_of
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
@@ -29,16 +30,7 @@ DATA = ROBOTS / "optitrack_robot"
 def driven(sense: str, seed: int, true: TrueRobot = TRUE, **options: float) -> Record:
     manoeuvre = figure_eight(0.6) if sense == "eight" else square(SIDE, sense, **options)
     drive = record(true, manoeuvre, seed=seed)
-    return Record(
-        f"run {seed}",
-        drive.t_s,
-        drive.left_ticks,
-        drive.right_ticks,
-        drive.reference_t_s,
-        drive.reference_x_m,
-        drive.reference_y_m,
-        drive.reference_yaw_rad,
-    )
+    return record_of(f"run {seed}", drive)
 
 
 @pytest.fixture(scope="module")
@@ -158,16 +150,7 @@ def test_a_square_whose_legs_differ_is_refused() -> None:
     legs = [1.0, 1.09, 1.0, 0.8]
     steps = [step for leg in legs for step in ((leg, 0.0), (0.0, np.pi / 2))]
     drive = record(TrueRobot(), moves("askew", steps), seed=9)
-    wanted = Record(
-        "run 9",
-        drive.t_s,
-        drive.left_ticks,
-        drive.right_ticks,
-        drive.reference_t_s,
-        drive.reference_x_m,
-        drive.reference_y_m,
-        drive.reference_yaw_rad,
-    )
+    wanted = record_of("run 9", drive)
     with pytest.raises(InputError, match="run 9: not a square"):
         recorded_square(wanted, ROBOT, SIDE)
 

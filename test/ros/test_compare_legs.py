@@ -20,7 +20,6 @@ from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.pose import Pose
-from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError
 from werrimbi_odom.ros.compare_track import OdometryTrack, Reading
@@ -31,20 +30,6 @@ SIGMA_XY, SIGMA_YAW = 1e-3, 2e-3
 REFERENCE = PoseCovariance(SIGMA_XY**2, 0.0, 0.0, SIGMA_XY**2, 0.0, SIGMA_YAW**2)
 STILL = BodyMotion(0.0, 0.0, 0.0)
 UNKNOWN = BodyMotion(math.nan, math.nan, math.nan)
-
-
-def believed(noise: float = 1.0) -> Robot:
-    """The robot as a robot file would have it, with `noise` times the wheels' true one."""
-    return Robot(
-        TRUE.separation,
-        1.0,
-        TRUE.ticks_per_revolution,
-        TRUE.ticks_per_revolution,
-        left_wheel_radius_multiplier=TRUE.left_radius,
-        right_wheel_radius_multiplier=TRUE.right_radius,
-        left_wheel_noise=noise * TRUE.left_noise,
-        right_wheel_noise=noise * TRUE.right_noise,
-    )
 
 
 def legs_of(
@@ -69,7 +54,7 @@ def legs_of(
         every=7,
     )
     counts = (part.astype(np.int64) for part in (run.ticks.left, run.ticks.right))
-    path = trajectory(believed(noise), run.ticks.time, *counts)
+    path = trajectory(TRUE.entered(noise=noise), run.ticks.time, *counts)
     covariances = np.array(path.covariance).T
     if constant is not None:
         covariances[:] = np.array(PoseCovariance(constant, 0.0, 0.0, constant, 0.0, constant))

@@ -28,23 +28,13 @@ from scipy import stats
 from test.white_noise_robot import RATE, WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.model.covariance import PoseCovariance, carried
 from werrimbi_odom.model.pose import Pose, between, compose, wrap
-from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 
 kalman = pytest.importorskip("filterpy.kalman", reason="needs filterpy (pip install .[test])")
 
 ROOT = Path(__file__).parents[2]
 TRUE = WhiteNoiseRobot()
-BELIEVED = Robot(
-    TRUE.separation,
-    1.0,
-    TRUE.ticks_per_revolution,
-    TRUE.ticks_per_revolution,
-    left_wheel_radius_multiplier=TRUE.left_radius,
-    right_wheel_radius_multiplier=TRUE.right_radius,
-    left_wheel_noise=TRUE.left_noise,
-    right_wheel_noise=TRUE.right_noise,
-)
+BELIEVED = TRUE.entered()
 DRIVES = 40
 SECONDS = 60.0
 PACES = {"slow": 0.2, "as tuned": 1.0, "fast": 4.0}
