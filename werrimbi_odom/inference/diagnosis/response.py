@@ -118,7 +118,7 @@ _FOR_CALIBRATION = {
 """Channel, amount and variable along which a wrong size is seen, as a line off zero."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class BeforeAfter:
     """What the figure shows."""
 
@@ -158,12 +158,12 @@ def before_after(diagnosis: Diagnosis) -> BeforeAfter | None:
         return response(diagnosis.runs, where, diagnosis.kind, free, cell.amount, values, edges)
 
     return BeforeAfter(
-        effect,
-        cell,
-        at(point, knobs),
-        None if after is None else at(after, knobs),
-        turns,
-        aligned,
+        effect=effect,
+        cell=cell,
+        before=at(point, knobs),
+        after=None if after is None else at(after, knobs),
+        turns=turns,
+        aligned=aligned,
     )
 
 

@@ -9,6 +9,7 @@ import math
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.named import effect_named
+from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.pairs import Sides
 from werrimbi_odom.inference.diagnosis.values import (
     Value,
@@ -21,6 +22,7 @@ from werrimbi_odom.inference.diagnosis.values import (
 from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.inference.rules import SIGNIFICANT
 from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.expected import expected_words
 from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity
 from werrimbi_odom.report.phrases import sizes_words
@@ -188,3 +190,59 @@ def at_bounds_words(diagnosis: Diagnosis) -> dict[str, str]:
         name: f"{parameter} = {quantity(value, math.nan, unit)}"
         for name, (parameter, value, unit) in at_bounds(diagnosis).items()
     }
+
+
+def otherwise(diagnosis: Diagnosis) -> list[str]:
+    """Drives that were recorded otherwise than the fitted ones, by what differs."""
+    alike: dict[tuple[str, ...], list[RecordedOtherwise]] = {}
+    for each in diagnosis.otherwise:
+        alike.setdefault(each.effects, []).append(each)
+    lines = []
+    for drives in alike.values():
+        names = listed([each.run for each in drives])
+        what = "; ".join(finding.words for finding in drives[0].findings)
+        one = len(drives) == 1
+        lines.append(
+            f"But: {'drive' if one else 'drives'} {names} {'was' if one else 'were'} recorded "
+            f"otherwise than the drives that the diagnosis is of: {what}. "
+            f"{'It has' if one else 'They have'} no part in what is said here, but for the figures "
+            "of held-out drives where there are no others."
+        )
+    return lines
+
+
+def law(told: Told) -> list[str]:
+    """What is left once everything found is put in, or of a law that the robot file holds."""
+    misfit = told.diagnosis.misfit
+    if misfit is None:
+        return []
+    cell = f"{dependence_words(misfit.cell)} ({chance_words(misfit.cell.p_value)})"
+    if misfit.effect is None:
+        return [f"But: something is left. With everything found put in, {cell}."]
+    share = "" if misfit.share is None else f", {100.0 * misfit.share:.2g} % of what it explains,"
+    return [
+        f"But: the law of {misfit.effect} does not fit fully. What it leaves{share} is in what it "
+        f"looks at: {cell}. That is a matter of the law's form, and no other effect."
+    ]
+
+
+def not_shown(told: Told) -> list[str]:
+    """Effects that would have stayed hidden, and what would show them."""
+    hidden = [sight for sight in told.sights if sight.hidden]
+    if not hidden:
+        return []
+    by_drive = [
+        f"{sight.effect} ({sight.shown_by} would show it)" for sight in hidden if sight.shown_by
+    ]
+    lines = []
+    if by_drive:
+        lines.append(
+            f"These drives cannot show whether there is, of usual size, {listed(by_drive, 'or')}."
+        )
+    needing = [sight.effect for sight in hidden if sight.needs_more]
+    if needing:
+        lines.append(
+            f"No drive shows {listed(needing)} with such a reference; one that measures positions "
+            "and headings does (motion capture, a scan matcher)."
+        )
+    return lines

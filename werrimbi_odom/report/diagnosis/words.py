@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.named import effect_named
-from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.pairs import Sides
 from werrimbi_odom.inference.diagnosis.values import mistakes, one_wheel, reference_wanders
 from werrimbi_odom.inference.manoeuvres.told import Told, significant
@@ -22,6 +21,9 @@ from werrimbi_odom.report.diagnosis.phrases import (
     at_bounds_words,
     cost,
     judged,
+    law,
+    not_shown,
+    otherwise,
     ruler,
     sizes,
     sizes_found,
@@ -53,7 +55,7 @@ def words_of(told: Told, steps: NextSteps) -> str:
         "ambiguous": _ambiguous,
         "unknown": _unknown,
     }[diagnosis.verdict]
-    paragraphs = [*tell(told, steps), *_otherwise(diagnosis)]
+    paragraphs = [*tell(told, steps), *otherwise(diagnosis)]
     left_out = [*left_out_words(diagnosis.left_out), *jumps_words(diagnosis.left_out)]
     last = (index for index, text in enumerate(paragraphs) if text.startswith("Next: "))
     place = next(last, len(paragraphs))
@@ -91,7 +93,7 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
     lines = [
         "Nothing is missing that these drives could show"
         + ("." if wanders or misfit else ": the model explains them to their noise."),
-        *_law(told),
+        *law(told),
     ]
     errors = diagnosis.holdout.after
     if math.isfinite(errors):
@@ -112,7 +114,7 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
             "seen."
         )
     if hidden:
-        lines += _not_shown(told)
+        lines += not_shown(told)
     lines.append(
         "Next: there is nothing to add. On drives held out, `werrimbi compare` says whether the "
         "covariance is honest; where it is not, `werrimbi calibrate fit` fits the wheels' noise."
@@ -136,9 +138,9 @@ def _named(told: Told, steps: NextSteps) -> list[str]:
     sizes = sizes_found(diagnosis)
     if sizes:
         lines.append(f"On the robot: {sizes}.")
-    lines += [*whole(told), *_law(told), *_at_bounds(diagnosis)]
+    lines += [*whole(told), *law(told), *_at_bounds(diagnosis)]
     lines += _next_add(told, steps)
-    return [*lines, *_not_shown(told)]
+    return [*lines, *not_shown(told)]
 
 
 def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
@@ -188,7 +190,7 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
     for other in diagnosis.found[1:]:
         if other not in rivals and other not in mistakes(diagnosis):
             lines += also(told, other)
-    return [*lines, *_law(told), *_at_bounds(diagnosis)]
+    return [*lines, *law(told), *_at_bounds(diagnosis)]
 
 
 def _unknown(told: Told, steps: NextSteps) -> list[str]:
@@ -254,40 +256,6 @@ def _set_up(diagnosis: Diagnosis) -> list[str]:
     ]
 
 
-def _otherwise(diagnosis: Diagnosis) -> list[str]:
-    """Drives that were recorded otherwise than the fitted ones, by what differs."""
-    alike: dict[tuple[str, ...], list[RecordedOtherwise]] = {}
-    for each in diagnosis.otherwise:
-        alike.setdefault(each.effects, []).append(each)
-    lines = []
-    for drives in alike.values():
-        names = listed([each.run for each in drives])
-        what = "; ".join(finding.words for finding in drives[0].findings)
-        one = len(drives) == 1
-        lines.append(
-            f"But: {'drive' if one else 'drives'} {names} {'was' if one else 'were'} recorded "
-            f"otherwise than the drives that the diagnosis is of: {what}. "
-            f"{'It has' if one else 'They have'} no part in what is said here, but for the figures "
-            "of held-out drives where there are no others."
-        )
-    return lines
-
-
-def _law(told: Told) -> list[str]:
-    """What is left once everything found is put in, or of a law that the robot file holds."""
-    misfit = told.diagnosis.misfit
-    if misfit is None:
-        return []
-    cell = f"{dependence_words(misfit.cell)} ({chance_words(misfit.cell.p_value)})"
-    if misfit.effect is None:
-        return [f"But: something is left. With everything found put in, {cell}."]
-    share = "" if misfit.share is None else f", {100.0 * misfit.share:.2g} % of what it explains,"
-    return [
-        f"But: the law of {misfit.effect} does not fit fully. What it leaves{share} is in what it "
-        f"looks at: {cell}. That is a matter of the law's form, and no other effect."
-    ]
-
-
 def _at_bounds(diagnosis: Diagnosis) -> list[str]:
     return [
         f"But: {name} would lower the error too, only with {value}, the limit of what physics "
@@ -303,28 +271,6 @@ def _next_add(told: Told, steps: NextSteps) -> list[str]:
         f"Next: add {it} to the model, fitted together with all calibration:",
         f"    {steps.add(diagnosis.found)}",
     ]
-
-
-def _not_shown(told: Told) -> list[str]:
-    """Effects that would have stayed hidden, and what would show them."""
-    hidden = [sight for sight in told.sights if sight.hidden]
-    if not hidden:
-        return []
-    by_drive = [
-        f"{sight.effect} ({sight.shown_by} would show it)" for sight in hidden if sight.shown_by
-    ]
-    lines = []
-    if by_drive:
-        lines.append(
-            f"These drives cannot show whether there is, of usual size, {listed(by_drive, 'or')}."
-        )
-    needing = [sight.effect for sight in hidden if sight.needs_more]
-    if needing:
-        lines.append(
-            f"No drive shows {listed(needing)} with such a reference; one that measures positions "
-            "and headings does (motion capture, a scan matcher)."
-        )
-    return lines
 
 
 def _count(number: int) -> str:
