@@ -15,7 +15,7 @@ from conftest import AMPLITUDE, PLAIN, eccentric_run
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
-from werrimbi_odom.inference.comparison.dead_reckoning import covariance_along, path_figure
+from werrimbi_odom.inference.comparison.dead_reckoning import covariance_along
 from werrimbi_odom.inference.comparison.over_variable import once_a_turn, over_a_turn, wheel_errors
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Amount
@@ -27,6 +27,7 @@ from werrimbi_odom.model.effect import Sketch
 from werrimbi_odom.report.adding.figures import error_falling_figure, steps_of
 from werrimbi_odom.report.calibration.figures import leg_figure
 from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
+from werrimbi_odom.report.comparison.path_figure import path_figure
 from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure
 from werrimbi_odom.report.diagnosis.figures import ranking_figure
 from werrimbi_odom.report.diagnosis.manoeuvre_figure import manoeuvre_figure
