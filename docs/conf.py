@@ -14,7 +14,10 @@ sys.path.insert(0, str(ROOT))
 project = "werrimbi_odom"
 author = "The werrimbi_odom authors"
 copyright = "2026, The werrimbi_odom authors"
-release = ElementTree.parse(ROOT / "package.xml").findtext("version", "")
+if (
+    ROOT / "package.xml"
+).exists():  # rosdoc2 builds from a copy of docs/, and knows the version itself
+    release = ElementTree.parse(ROOT / "package.xml").findtext("version", "")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
 html_theme = "sphinx_rtd_theme"
