@@ -14,9 +14,8 @@ sys.path.insert(0, str(ROOT))
 project = "werrimbi_odom"
 author = "The werrimbi_odom authors"
 copyright = "2026, The werrimbi_odom authors"
-if (
-    ROOT / "package.xml"
-).exists():  # rosdoc2 builds from a copy of docs/, and knows the version itself
+# rosdoc2 builds from a copy of docs/ alone, and knows the version itself.
+if (ROOT / "package.xml").exists():
     release = ElementTree.parse(ROOT / "package.xml").findtext("version", "")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
