@@ -20,6 +20,8 @@ if (ROOT / "package.xml").exists():
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
 html_theme = "sphinx_rtd_theme"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
 
 # Links to a heading, page.md#the-heading, as on GitHub.
 myst_heading_anchors = 4
