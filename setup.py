@@ -70,6 +70,18 @@ setup(
     name=PACKAGE,
     version="0.1.0",
     description="Wheel odometry that knows how wrong it is, and can tell its user why",
+    long_description=(Path(__file__).resolve().parent / "README.md").read_text(encoding="utf-8"),
+    long_description_content_type="text/markdown",
+    author="The werrimbi_odom authors",
+    keywords=["ROS", "odometry", "calibration", "covariance", "diagnosis"],
+    classifiers=[
+        "Development Status :: 4 - Beta",
+        "Intended Audience :: Science/Research",
+        "Operating System :: POSIX :: Linux",
+        "Programming Language :: Python :: 3",
+        "Topic :: Scientific/Engineering",
+        "Typing :: Typed",
+    ],
     license="Apache-2.0 AND MIT",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
     package_data={
@@ -94,8 +106,8 @@ setup(
     zip_safe=False,
     entry_points={
         "console_scripts": [
-            f"compare_node = {PACKAGE}.ros.compare_node:main",
-            f"odom_node = {PACKAGE}.ros.odom_node:main",
+            f"compare_node = {PACKAGE}.ros.start:compare_node",
+            f"odom_node = {PACKAGE}.ros.start:odom_node",
             f"werrimbi = {PACKAGE}.cli.main:main",
         ],
     },

@@ -14,10 +14,14 @@ sys.path.insert(0, str(ROOT))
 project = "werrimbi_odom"
 author = "The werrimbi_odom authors"
 copyright = "2026, The werrimbi_odom authors"
-release = ElementTree.parse(ROOT / "package.xml").findtext("version", "")
+# rosdoc2 builds from a copy of docs/ alone, and knows the version itself.
+if (ROOT / "package.xml").exists():
+    release = ElementTree.parse(ROOT / "package.xml").findtext("version", "")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
 html_theme = "sphinx_rtd_theme"
+html_static_path = ["_static"]
+html_css_files = ["site.css"]
 
 # Links to a heading, page.md#the-heading, as on GitHub.
 myst_heading_anchors = 4

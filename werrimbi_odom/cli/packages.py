@@ -43,7 +43,8 @@ def refuse_lacking(arguments: argparse.Namespace) -> None:
     InputError
         When it is not; the message says how to get it.
     """
-    for name in NEEDED.get(arguments.verb, ()):
+    needed = NEEDED.get(arguments.verb, ())
+    for name in reversed(needed):  # the last is of the extra that brings the others too
         refuse_without(name, arguments.verb)
     if getattr(arguments, "fleet", None) is not None:
         refuse_without("threadpoolctl", "--fleet")

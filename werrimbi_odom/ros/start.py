@@ -1,0 +1,34 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The nodes' executables: where there is no ROS they say how to get it."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+
+
+def odom_node() -> int:
+    """Run `odom_node`; returns the exit code."""
+    return _started("odom_node")
+
+
+def compare_node() -> int:
+    """Run `compare_node`; returns the exit code."""
+    return _started("compare_node")
+
+
+def _started(name: str) -> int:
+    try:
+        node = import_module(f"werrimbi_odom.ros.{name}")
+    except ModuleNotFoundError as missing:
+        if (missing.name or "").startswith("werrimbi_odom"):
+            raise
+        print(
+            f"{name} needs ROS 2, and its Python package {missing.name}: source its setup.bash, "
+            "or pip install 'werrimbi_odom[ros]'",
+            file=sys.stderr,
+        )
+        return 2
+    code: int = node.main()
+    return code
