@@ -17,14 +17,36 @@ help:  ## this list
 setup: $(READY)  ## the environment .venv with everything in it
 
 $(READY): setup.py setup.cfg constraints.txt
-	$(PYTHON) -c 'import sys; sys.exit(0 if (3, 10) <= sys.version_info[:2] <= (3, 13) else "werrimbi_odom needs Python 3.10 to 3.13 (the ROS 2 Jazzy wheels do); try: make PYTHON=python3.12 " + " ".join(sys.argv[1:]))'
-	$(PYTHON) -m venv $(VENV)
-	@echo "Setting up $(VENV): ROS 2 Jazzy, scipy, MuJoCo, NiceGUI and what tests need come from PyPI once,"
-	@echo "and fill about 1.2 GB; that takes some minutes. pip shows how far it is."
-	$(BIN)/python -m pip install --disable-pip-version-check --constraint constraints.txt --editable '.[all]'
+	@$(PYTHON) -c 'import sys; sys.exit(0 if (3, 10) <= sys.version_info[:2] <= (3, 13) else "werrimbi_odom needs Python 3.10 to 3.13 (the ROS 2 Jazzy wheels do); try: make PYTHON=python3.12 " + " ".join(sys.argv[1:]))'
+	@echo "Setting up $(VENV): ROS 2 Jazzy, scipy, MuJoCo, NiceGUI and what tests need come from PyPI, once:"
+	@echo "some $$(grep -c == constraints.txt) packages, about 1.2 GB when unpacked, two minutes. All of pip's words: $(VENV)/setup.log"
+	@$(PYTHON) -m venv $(VENV)
+	@{ $(BIN)/python -m pip install --no-input --disable-pip-version-check --progress-bar off \
+	    --constraint constraints.txt --editable '.[all]' 2>&1; echo "pip ended with $$?"; } \
+	  | tee $(VENV)/setup.log | awk -v tty="$$(test -t 2 && echo 1)" "$$PROGRESS" \
+	  || { tail -n 20 $(VENV)/setup.log; exit 1; }
 	@touch $@
 
-demo: setup  ## recorded ticks through the real node; ROBOT=robot.yaml RUN=folder-or-bag for your own
+# What pip says, as one line that counts.
+define PROGRESS
+function told(words) { if (tty) printf "\r  %-74s", words; else print "  " words; fflush() }
+/^ *Downloading / && !/\.metadata/ {
+    total += substr($$(NF - 1), 2) * ($$NF == "MB)" ? 1 : $$NF == "kB)" ? 0.001 : 0)
+}
+/^(Collecting|Processing) / {
+    count++
+    if (tty || count % 25 == 0) told(sprintf("%d packages, %.0f MB downloaded", count, total))
+}
+/^Installing collected packages/ {
+    told(sprintf("%d packages, %.0f MB downloaded; unpacking them ...", count, total))
+}
+/^ERROR/ { print (tty ? "\n" : "") $$0 }
+/^pip ended with / { code = $$NF }
+END { if (tty) print ""; if (code) print "pip could not do it; its last words:"; exit code }
+endef
+export PROGRESS
+
+demo: setup  ## ticks through the real node, then a hidden effect found and added; ROBOT=robot.yaml RUN=folder-or-bag for your own
 	$(BIN)/python -m werrimbi_odom.demo $(if $(ROBOT),--robot '$(ROBOT)') $(if $(RUN),--run '$(RUN)') --out demo
 
 test: setup lint  ## linters, then all tests but the long ones
