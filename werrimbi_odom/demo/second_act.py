@@ -18,7 +18,7 @@ from werrimbi_odom.cli.progress import share_done
 from werrimbi_odom.demo.pictures import save_and_tell
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.report.adding.words import value_told
-from werrimbi_odom.report.printed import pairs
+from werrimbi_odom.report.text import pairs
 
 if TYPE_CHECKING:
     from werrimbi_odom.api.result import Result
