@@ -8,6 +8,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from werrimbi_odom.cli.packages import refuse_without
 from werrimbi_odom.demo.second_act import second_act
 from werrimbi_odom.demo.through_node import RECORDING, first_act
 from werrimbi_odom.errors import InputError
@@ -26,9 +27,12 @@ def main(argv: list[str] | None = None) -> int:
     parser.add_argument("--out", type=Path, default=Path("demo"), help="folder for the pictures")
     parser.add_argument("--first-act", action="store_true", help="the node alone")
     arguments = parser.parse_args(argv)
+    both = not arguments.first_act and arguments.run == RECORDING
     try:
+        for package in ("rclpy", "plotly", "rich", *(("scipy", "mujoco") if both else ())):
+            refuse_without(package, "it")
         first_act(arguments.robot, arguments.run, arguments.out)
-        if not arguments.first_act and arguments.run == RECORDING:
+        if both:
             second_act(arguments.out)
     except InputError as error:
         print(f"demo: {error}", file=sys.stderr)
