@@ -19,7 +19,7 @@ setup: $(READY)  ## the environment .venv with everything in it
 $(READY): setup.py setup.cfg constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(0 if (3, 10) <= sys.version_info[:2] <= (3, 13) else "werrimbi_odom needs Python 3.10 to 3.13 (the ROS 2 Jazzy wheels do); try: make PYTHON=python3.12 " + " ".join(sys.argv[1:]))'
 	@echo "Setting up $(VENV): ROS 2 Jazzy, scipy, MuJoCo, NiceGUI and what tests need come from PyPI, once:"
-	@echo "some $$(grep -c == constraints.txt) packages, about 1.2 GB when unpacked, two minutes. All of pip's words: $(VENV)/setup.log"
+	@echo "some $$(grep -c == constraints.txt) packages, about 1.4 GB when unpacked, two minutes. All of pip's words: $(VENV)/setup.log"
 	@$(PYTHON) -m venv $(VENV)
 	@{ $(BIN)/python -m pip install --no-input --disable-pip-version-check --progress-bar off \
 	    --constraint constraints.txt --editable '.[all]' 2>&1; echo "pip ended with $$?"; } \
