@@ -19,30 +19,38 @@ setup: $(READY)  ## the environment .venv with everything in it
 $(READY): setup.py setup.cfg constraints.txt
 	@$(PYTHON) -c 'import sys; sys.exit(0 if (3, 10) <= sys.version_info[:2] <= (3, 13) else "werrimbi_odom needs Python 3.10 to 3.13 (the ROS 2 Jazzy wheels do); try: make PYTHON=python3.12 " + " ".join(sys.argv[1:]))'
 	@echo "Setting up $(VENV): ROS 2 Jazzy, scipy, MuJoCo, NiceGUI and what tests need come from PyPI, once:"
-	@echo "some $$(grep -c == constraints.txt) packages, about 1.4 GB when unpacked, two minutes. All of pip's words: $(VENV)/setup.log"
+	@echo "some 260 packages, about 1.4 GB when unpacked, two minutes. All of pip's words: $(VENV)/setup.log"
 	@$(PYTHON) -m venv $(VENV)
 	@{ $(BIN)/python -m pip install --no-input --disable-pip-version-check --progress-bar off \
 	    --constraint constraints.txt --editable '.[all]' 2>&1; echo "pip ended with $$?"; } \
-	  | tee $(VENV)/setup.log | awk -v tty="$$(test -t 2 && echo 1)" "$$PROGRESS" \
+	  | tee $(VENV)/setup.log | $(PYTHON) -u -c "$$PROGRESS" \
 	  || { tail -n 20 $(VENV)/setup.log; exit 1; }
 	@touch $@
 
 # What pip says, as one line that counts.
 define PROGRESS
-function told(words) { if (tty) printf "\r  %-74s", words; else print "  " words; fflush() }
-/^ *Downloading / && !/\.metadata/ {
-    total += substr($$(NF - 1), 2) * ($$NF == "MB)" ? 1 : $$NF == "kB)" ? 0.001 : 0)
-}
-/^(Collecting|Processing) / {
-    count++
-    if (tty || count % 25 == 0) told(sprintf("%d packages, %.0f MB downloaded", count, total))
-}
-/^Installing collected packages/ {
-    told(sprintf("%d packages, %.0f MB downloaded; unpacking them ...", count, total))
-}
-/^ERROR/ { print (tty ? "\n" : "") $$0 }
-/^pip ended with / { code = $$NF }
-END { if (tty) print ""; if (code) print "pip could not do it; its last words:"; exit code }
+import sys
+unit = {"MB)": 1.0, "kB)": 1e-3, "bytes)": 1e-6}
+screen, count, megabytes, code = sys.stderr.isatty(), 0, 0.0, 0
+
+def tell(words):
+    here = f"{count} packages, {megabytes:.0f} MB downloaded{words}"
+    print(f"\r  {here:74}" if screen else f"  {here}", end="" if screen else "\n")
+
+for line in sys.stdin:
+    words = line.split()
+    if words[:1] == ["Downloading"] and ".metadata" not in line and words[-1] in unit:
+        megabytes += float(words[-2].strip("(")) * unit[words[-1]]
+    elif line.startswith(("Collecting ", "Processing ")):
+        count += 1
+        if screen or count % 25 == 0:
+            tell("")
+    elif line.startswith("Installing collected packages"):
+        tell("; unpacking them ...")
+    elif line.startswith("pip ended with "):
+        code = int(words[-1])
+print("" if not code else "\npip could not do it; its last words:")
+sys.exit(code)
 endef
 export PROGRESS
 
