@@ -17,14 +17,44 @@ help:  ## this list
 setup: $(READY)  ## the environment .venv with everything in it
 
 $(READY): setup.py setup.cfg constraints.txt
-	$(PYTHON) -c 'import sys; sys.exit(0 if (3, 10) <= sys.version_info[:2] <= (3, 13) else "werrimbi_odom needs Python 3.10 to 3.13 (the ROS 2 Jazzy wheels do); try: make PYTHON=python3.12 " + " ".join(sys.argv[1:]))'
-	$(PYTHON) -m venv $(VENV)
-	@echo "Setting up $(VENV): ROS 2 Jazzy, scipy, MuJoCo, NiceGUI and what tests need come from PyPI once,"
-	@echo "and fill about 1.2 GB; that takes some minutes. pip shows how far it is."
-	$(BIN)/python -m pip install --disable-pip-version-check --constraint constraints.txt --editable '.[all]'
+	@$(PYTHON) -c 'import sys; sys.exit(0 if (3, 10) <= sys.version_info[:2] <= (3, 13) else "werrimbi_odom needs Python 3.10 to 3.13 (the ROS 2 Jazzy wheels do); try: make PYTHON=python3.12 " + " ".join(sys.argv[1:]))'
+	@echo "Setting up $(VENV): ROS 2 Jazzy, scipy, MuJoCo, NiceGUI and what tests need come from PyPI, once:"
+	@echo "some 260 packages, about 1.4 GB when unpacked, two minutes. All of pip's words: $(VENV)/setup.log"
+	@$(PYTHON) -m venv $(VENV)
+	@{ $(BIN)/python -m pip install --no-input --disable-pip-version-check --progress-bar off \
+	    --constraint constraints.txt --editable '.[all]' 2>&1; echo "pip ended with $$?"; } \
+	  | tee $(VENV)/setup.log | $(PYTHON) -u -c "$$PROGRESS" \
+	  || { tail -n 20 $(VENV)/setup.log; exit 1; }
 	@touch $@
 
-demo: setup  ## recorded ticks through the real node; ROBOT=robot.yaml RUN=folder-or-bag for your own
+# What pip says, as one line that counts.
+define PROGRESS
+import sys
+unit = {"MB)": 1.0, "kB)": 1e-3, "bytes)": 1e-6}
+screen, count, megabytes, code = sys.stderr.isatty(), 0, 0.0, 0
+
+def tell(words):
+    here = f"{count} packages, {megabytes:.0f} MB downloaded{words}"
+    print(f"\r  {here:74}" if screen else f"  {here}", end="" if screen else "\n")
+
+for line in sys.stdin:
+    words = line.split()
+    if words[:1] == ["Downloading"] and ".metadata" not in line and words[-1] in unit:
+        megabytes += float(words[-2].strip("(")) * unit[words[-1]]
+    elif line.startswith(("Collecting ", "Processing ")):
+        count += 1
+        if screen or count % 25 == 0:
+            tell("")
+    elif line.startswith("Installing collected packages"):
+        tell("; unpacking them ...")
+    elif line.startswith("pip ended with "):
+        code = int(words[-1])
+print("" if not code else "\npip could not do it; its last words:")
+sys.exit(code)
+endef
+export PROGRESS
+
+demo: setup  ## ticks through the real node, then a hidden effect found and added; ROBOT=robot.yaml RUN=folder-or-bag for your own
 	$(BIN)/python -m werrimbi_odom.demo $(if $(ROBOT),--robot '$(ROBOT)') $(if $(RUN),--run '$(RUN)') --out demo
 
 test: setup lint  ## linters, then all tests but the long ones

@@ -20,6 +20,7 @@ TOOLS = [
     "scipy>=1.11",
     "plotly>=6.1",
     "kaleido>=1.0",
+    "matplotlib>=3.6",  # plain pictures where there is no browser
     "threadpoolctl>=3.1",
 ]
 WORKBENCH = [*TOOLS, "nicegui>=3.18"]

@@ -14,8 +14,8 @@ Reading order
 4. `effects`: one physical effect a file; travel passes through those that the robot holds.
 5. `inference.fitting`, `inference.comparison`: legs, predictions, fits; then `inference.diagnosis`:
    `diagnosis.diagnose` is the search for what is missing, told in one function.
-6. `files`, `ros`, `report`, `workbench`, `fleet`, `cli`: shells that read, write and show, of one
-   robot or of many.
+6. `api`: the verbs, for `import werrimbi_odom as wo`; `cli`, `workbench` and `fleet` are shells
+   over them, of one robot or of many; `files`, `ros` and `report` read, write and show.
 7. `simulation`: a robot in a physics engine; imports nothing of ours, so that tests are honest.
 """
 

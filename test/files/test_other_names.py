@@ -8,10 +8,14 @@ from pathlib import Path
 
 import pytest
 
+from werrimbi_odom.api.odometry import odometry
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import read_robot_file, write_robot_file
 from werrimbi_odom.ros.parameters import settings_of
 
+RECORDINGS = Path(__file__).parents[2] / "werrimbi_odom" / "recordings"
+TICKS_PER_REVOLUTION = ("left_ticks_per_revolution", "right_ticks_per_revolution")
 CONTROLLERS = """\
 controller_manager:
   ros__parameters:
@@ -85,11 +89,33 @@ def test_a_controllers_file_is_read_and_it_is_said_what_is_not_needed(tmp_path: 
     assert "publish_rate: 50.0" in out.read_text()
 
 
-def test_what_it_lacks_is_all_that_is_said_of_it(tmp_path: Path) -> None:
-    assert refused(tmp_path / "controllers.yaml", CONTROLLERS) == (
-        ": diffbot_base_controller must also give left_ticks_per_revolution (ticks), "
-        "right_ticks_per_revolution (ticks)"
+@pytest.mark.parametrize("text", [CONTROLLERS, TURTLEBOT])
+def test_without_ticks_positions_in_radians_are_read_and_counts_refused(
+    tmp_path: Path, text: str
+) -> None:
+    """The same path as with the encoder's ticks, but for the size of a count."""
+    path = tmp_path / "robot.yaml"
+    path.write_text(text)
+    alone = read_robot_file(path)
+    joints = write_robot_file(
+        alone,
+        {"left_wheel_names": ("left_wheel_joint",), "right_wheel_names": ("right_wheel_joint",)},
+        tmp_path / "joints.yaml",
     )
+    assert any("positions must come in radians" in remark for remark in joints.remarks)
+    bag = RECORDINGS / "square_bag"
+    both = [joints]
+    both.append(write_robot_file(
+        joints, dict.fromkeys(TICKS_PER_REVOLUTION, 2000.0), tmp_path / "with_ticks.yaml"
+    ))  # fmt: skip
+    ends = []
+    for robot in both:
+        ticks = read_run(bag, robot).ticks
+        found = odometry(robot, ticks.time, ticks.left, ticks.right)
+        ends.append((found.x[-1], found.y[-1], found.yaw[-1]))
+    assert ends[0] == pytest.approx(ends[1], abs=1e-3)
+    with pytest.raises(InputError, match=r"ticks\.csv holds counts, and .* does not say how many"):
+        read_run(RECORDINGS / "square", joints)
 
 
 def test_the_node_reads_it_too() -> None:
@@ -98,11 +124,19 @@ def test_the_node_reads_it_too() -> None:
     assert values["wheel_separation"] == 0.1
 
 
-def test_turtlebots_file_is_told_what_to_write(tmp_path: Path) -> None:
-    said = refused(tmp_path / "burger.yaml", TURTLEBOT)
-    assert "line 5: wheels is of TurtleBot3's driver; write in its place" in said
-    assert "wheel_separation: 0.16 and wheel_radius: 0.033" in said
-    assert "must also give" in said
+def test_turtlebots_file_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "burger.yaml"
+    path.write_text(TURTLEBOT)
+    found = read_robot_file(path)
+    assert (found.robot.wheel_separation, found.robot.wheel_radius) == (0.16, 0.033)
+    assert found.remarks[:2] == (
+        "of TurtleBot3's driver; not needed here: opencr",
+        "wheels is of TurtleBot3's driver; read as wheel_separation 0.16 and wheel_radius 0.033",
+    )
+    written = write_robot_file(found, {"wheel_separation": 0.162}, tmp_path / "new.yaml")
+    assert written.robot.wheel_separation == 0.162
+    assert "separation: 0.160" in (tmp_path / "new.yaml").read_text(), "its own block stays"
+    assert refused(path, TURTLEBOT.replace("0.033", "-1.0")).startswith(", line 5: wheel_radius")
 
 
 def test_everything_wrong_is_said_at_once(tmp_path: Path) -> None:

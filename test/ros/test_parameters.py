@@ -20,10 +20,9 @@ from rcl_interfaces.srv import DescribeParameters, GetParameters, ListParameters
 
 from werrimbi_odom.effects import collection, find
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.parameters import PARAMETERS
+from werrimbi_odom.files.parameters import PARAMETERS, VIRTUAL_TICKS_PER_REVOLUTION
 from werrimbi_odom.ros.parameters import (
     CHANGEABLE,
-    VIRTUAL_TICKS_PER_REVOLUTION,
     checked,
     settings_of,
 )

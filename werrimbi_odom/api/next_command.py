@@ -75,7 +75,7 @@ def _paths(runs: Sequence[Run]) -> str:
     """Paths as given; all of one folder as FOLDER/*."""
     paths = [run.path for run in runs]
     folders = {path.parent for path in paths}
-    if len(paths) > 1 and len(folders) == 1:
+    if len(paths) > 1 and len(folders) == 1 and paths[0].exists():
         (folder,) = folders
         there = {path.name for path in folder.iterdir() if not path.name.startswith(".")}
         if there == {path.name for path in paths}:

@@ -14,6 +14,7 @@ EXTRAS = {
     "plotly": "tools",
     "kaleido": "tools",
     "rosbags": "tools",
+    "rclpy": "ros",
     "threadpoolctl": "tools",
     "rich": "tools",
     "nicegui": "workbench",

@@ -105,10 +105,11 @@ def ticks_collector(path: Path, source: Wheels, robot_file: RobotFile) -> TicksC
     """The collector for a kind of source."""
     if source.kind == JOINT_STATE:
         return JointStates(path, source.name, robot_file)
-    if source.kind == MULTI_ARRAY:
-        return MultiArrays(path, source.name)
     if source.kind == ODOMETRY:
         return OdometryTurnedBack(path, source.name, robot_file)
+    robot_file.refuse_counts(f"{path}, {source.name}")
+    if source.kind == MULTI_ARRAY:
+        return MultiArrays(path, source.name)
     if source.kind in COUNTERS:
         return Counters(path, source, robot_file)
     return Pairs(path, source, robot_file)

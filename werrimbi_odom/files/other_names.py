@@ -3,12 +3,14 @@
 """Names of other drivers' parameter files, which a robot file may begin as, and what they are here.
 
 diff_drive_controller (ros2_controllers) names the geometry as we do; the rest of its parameters are
-about commands, and mean nothing to odometry from counts. TurtleBot3 names it otherwise.
+about commands, and mean nothing to odometry. TurtleBot3 names it otherwise. Neither says how many
+counts a turn has, for their wheels' positions come in radians.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 DIFF_DRIVE = "diff_drive_controller"
 OF_DIFF_DRIVE = frozenset(
@@ -37,6 +39,8 @@ OF_DIFF_DRIVE = frozenset(
 
 TURTLEBOT = "wheels"
 """Block of TurtleBot3's file that holds the geometry."""
+OF_TURTLEBOT = frozenset(("motors", "opencr", "sensors"))
+"""Its other blocks."""
 _TURTLEBOT = {"separation": "wheel_separation", "radius": "wheel_radius"}
 
 
@@ -45,15 +49,21 @@ def is_of_diff_drive(name: object) -> bool:
     return isinstance(name, str) and name.partition(".")[0] in OF_DIFF_DRIVE
 
 
-def remark_on(names: Iterable[str]) -> tuple[str, ...]:
+def remark_on(names: Iterable[str], whose: str = DIFF_DRIVE) -> tuple[str, ...]:
     """What is said of names that are not needed; nothing where there are none."""
     listed = ", ".join(names)
-    return (f"of {DIFF_DRIVE}; not needed here: {listed}",) if listed else ()
+    return (f"of {whose}; not needed here: {listed}",) if listed else ()
 
 
-def translated(block: object) -> str:
-    """What to write in the place of TurtleBot3's `wheels`; "" where it is another block."""
-    if not isinstance(block, Mapping) or not set(block) & set(_TURTLEBOT):
-        return ""
-    lines = (f"{ours}: {block[theirs]}" for theirs, ours in _TURTLEBOT.items() if theirs in block)
-    return f"wheels is of TurtleBot3's driver; write in its place {' and '.join(lines)}"
+def translated(block: Mapping[Any, Any]) -> dict[str, Any]:
+    """What TurtleBot3's `wheels` holds, by our names; empty where it is not its file.
+
+    Parameters
+    ----------
+    block
+        All parameters of a node.
+    """
+    wheels = block.get(TURTLEBOT)
+    if not isinstance(wheels, Mapping):
+        return {}
+    return {ours: wheels[theirs] for theirs, ours in _TURTLEBOT.items() if theirs in wheels}

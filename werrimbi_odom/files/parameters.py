@@ -18,6 +18,10 @@ from werrimbi_odom.model.stretch import PieceTolerance
 Kind = Literal["float", "integer", "boolean", "string", "strings"]
 Value = float | int | bool | str | tuple[str, ...]
 
+TICKS = ("left_ticks_per_revolution", "right_ticks_per_revolution")
+VIRTUAL_TICKS_PER_REVOLUTION = 2.0e6 * math.pi
+"""Counts of a microradian, for wheel angles whose encoder is not known: no quantisation."""
+
 
 @dataclass(frozen=True, slots=True)
 class Parameter:
@@ -321,3 +325,8 @@ def limits_of(values: Mapping[str, Value]) -> EncoderLimits:
         max_wheel_speed=float(values["max_wheel_speed"]),  # type: ignore[arg-type]
         gap_duration=float(values["gap_duration"]),  # type: ignore[arg-type]
     )
+
+
+def needs_no_ticks(values: Mapping[str, Value]) -> bool:
+    """Whether wheel positions come in radians, so that a count is but their resolution."""
+    return values["input_type"] == "joint_state" and values["position_unit"] == "radians"

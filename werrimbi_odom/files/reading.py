@@ -34,6 +34,7 @@ def read_run(
     try:
         if path.is_dir():
             if (path / TICKS).exists():
+                robot_file.refuse_counts(path / TICKS)
                 return read_run_folder(path)
             bag = _bag_in(path)
         elif path.exists():

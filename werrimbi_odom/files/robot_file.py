@@ -23,14 +23,23 @@ from werrimbi_odom.files.effect_parameters import (
     named_effects,
     parameters_of,
 )
-from werrimbi_odom.files.other_names import TURTLEBOT, is_of_diff_drive, remark_on, translated
+from werrimbi_odom.files.other_names import (
+    OF_TURTLEBOT,
+    TURTLEBOT,
+    is_of_diff_drive,
+    remark_on,
+    translated,
+)
 from werrimbi_odom.files.parameters import (
     PARAMETERS,
+    TICKS,
+    VIRTUAL_TICKS_PER_REVOLUTION,
     Parameter,
     Value,
     defaults,
     find,
     limits_of,
+    needs_no_ticks,
     robot_of,
     tolerance_of,
 )
@@ -74,6 +83,20 @@ class RobotFile:
     def robot(self) -> Robot:
         """Geometry, encoders, noise and physical effects."""
         return robot_of(self.values, self.effects)
+
+    def refuse_counts(self, what: str | Path) -> None:
+        """Whether it says what a count is.
+
+        Raises
+        ------
+        InputError
+            When positions in radians alone can be used with it, and `what` holds counts.
+        """
+        if self.values[TICKS[0]] == VIRTUAL_TICKS_PER_REVOLUTION:
+            raise InputError(
+                f"{what} holds counts, and {self.path} does not say how many there are in a turn; "
+                f"add {' and '.join(TICKS)} to it"
+            )
 
     @property
     def tolerance(self) -> PieceTolerance:
@@ -219,6 +242,9 @@ def _understood(text: str, path: Path, find_effect: Find | None = None) -> Robot
     given: dict[str, Value] = {}
     wrong: list[tuple[int, str]] = []
     unused: list[str] = []
+    of_turtlebot: list[str] = []
+    turtlebot = translated(block)
+    taken = {own: raw for own, raw in turtlebot.items() if own not in block}
     effects = None
     try:
         names = plain(block.get(EFFECTS, []))
@@ -232,8 +258,12 @@ def _understood(text: str, path: Path, find_effect: Find | None = None) -> Robot
         try:
             if is_of_diff_drive(name):
                 unused.append(name)
-            elif name == TURTLEBOT and translated(raw):
-                wrong.append((line, translated(raw)))
+            elif turtlebot and name in (TURTLEBOT, *OF_TURTLEBOT):
+                if name == TURTLEBOT:
+                    for own in taken:
+                        given[own] = find(own).checked(_as_ros_reads(find(own), taken[own]))
+                else:
+                    of_turtlebot.append(name)
             elif _is_of_effect(name, raw, effects):
                 if effects is not None:  # else it is not known which of them are named
                     _take_effect(effects, name, raw)
@@ -245,17 +275,27 @@ def _understood(text: str, path: Path, find_effect: Find | None = None) -> Robot
         except InputError as error:
             wrong.append((line, str(error)))
     told = [f"line {line}: {words}" for line, words in sorted(wrong)]
+    remarks = [*remark_on(unused), *remark_on(of_turtlebot, "TurtleBot3's driver")]
+    if taken:
+        read = " and ".join(f"{own} {raw}" for own, raw in taken.items())
+        remarks.append(f"wheels is of TurtleBot3's driver; read as {read}")
+    values = {**defaults(), **given}
+    if remarks and needs_no_ticks(values) and not any(name in block for name in TICKS):
+        values.update(dict.fromkeys(TICKS, VIRTUAL_TICKS_PER_REVOLUTION))
+        remarks.append(
+            f"{' and '.join(TICKS)} are not given: wheel positions must come in radians, and are "
+            "taken as exact to a microradian"
+        )
     missing = ", ".join(
         f"{item.name} ({item.unit})"
         for item in PARAMETERS
-        if item.default is None and item.name not in block
+        if item.name not in values and item.name not in block
     )
     if missing:
         told.append(f"{node} must also give {missing}")
     if effects is None or told:
         place = f"{path}, " if wrong else f"{path}: "
         raise InputError(f"{place}{'; '.join(told)}")
-    values = MappingProxyType({**defaults(), **given})
     try:
         robot_of(values)
     except ValueError as error:  # of what values make together, each of which is well
@@ -264,7 +304,8 @@ def _understood(text: str, path: Path, find_effect: Find | None = None) -> Robot
         worst = max(named, key=lambda name: abs(math.log(float(values[name]))))  # type: ignore[arg-type]
         raise InputError(f"{path}, line {line_of(block, worst)}: {error}") from None
     found = effects.applied()
-    return RobotFile(path, node, values, tuple(given), text, found, remark_on(unused))
+    values_of_all = MappingProxyType(values)
+    return RobotFile(path, node, values_of_all, tuple(given), text, found, tuple(remarks))
 
 
 def _parameter_block(content: CommentedMap, path: Path) -> tuple[str, CommentedMap]:

@@ -7,7 +7,6 @@ Types, ranges and words come from `werrimbi_odom.files.parameters`; here they ar
 
 from __future__ import annotations
 
-import math
 import sys
 from collections.abc import Mapping
 from dataclasses import replace
@@ -46,10 +45,6 @@ CHANGEABLE = frozenset(
 )
 """What is believed of the robot may be mended while it drives; how it is wired may not."""
 
-VIRTUAL_TICKS_PER_REVOLUTION = 2.0e6 * math.pi
-"""Counts of a microradian, for wheel angles whose encoder is not known: no quantisation."""
-
-_TICKS = ("left_ticks_per_revolution", "right_ticks_per_revolution")
 _QOS = "qos_overrides."
 
 Changeable = Mapping[str, table.Parameter]
@@ -166,11 +161,11 @@ def settings_of(given: Mapping[str, object], node_name: str = "/odom_node") -> S
         except InputError as error:
             wrong.append(str(error))
     wrong += _without_channels(effects)
-    without_ticks = _needs_no_ticks(values) and not any(name in given for name in _TICKS)
+    without_ticks = table.needs_no_ticks(values) and not any(name in given for name in table.TICKS)
     if without_ticks:
-        values.update(dict.fromkeys(_TICKS, VIRTUAL_TICKS_PER_REVOLUTION))
+        values.update(dict.fromkeys(table.TICKS, table.VIRTUAL_TICKS_PER_REVOLUTION))
         if values["encoder_bits"]:
-            wrong.append("encoder_bits needs " + " and ".join(_TICKS))
+            wrong.append("encoder_bits needs " + " and ".join(table.TICKS))
     missing = [
         f"{item.name} ({item.unit})"
         for item in table.PARAMETERS
@@ -193,7 +188,7 @@ def settings_of(given: Mapping[str, object], node_name: str = "/odom_node") -> S
 
 def has_virtual_ticks(values: Mapping[str, Value]) -> bool:
     """Whether the wheel angles come without the resolution of their encoders."""
-    return values[_TICKS[0]] == VIRTUAL_TICKS_PER_REVOLUTION
+    return values[table.TICKS[0]] == table.VIRTUAL_TICKS_PER_REVOLUTION
 
 
 def leftover_qos_overrides(node: Node) -> list[str]:
@@ -281,10 +276,6 @@ def _without_channels(effects: Named) -> list[str]:
         for effect in effects.effects
         if effect.channels
     ]
-
-
-def _needs_no_ticks(values: Mapping[str, Value]) -> bool:
-    return values["input_type"] == "joint_state" and values["position_unit"] == "radians"
 
 
 def _plain(value: object) -> object:

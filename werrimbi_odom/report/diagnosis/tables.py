@@ -56,7 +56,7 @@ def _ranking(diagnosis: Diagnosis) -> str:
     if not any(row[2] for row in rows):
         return table("Effects, best first", heads[:2], [row[:2] for row in rows])
     of = "heading" if diagnosis.holdout.unit == "rad" else "position"
-    title = f"Effects, best first ({of} error of legs without it and with it)"
+    title = f"Effects, best first (chance without a cause; {of} error without it, with it)"
     return table(title, heads, rows)
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`make demo`: recorded ticks through the real `odom_node` over DDS, and how far off it ends.
+"""First act: recorded ticks through the real `odom_node` over DDS, and how far off it ends.
 
 The recording that comes with us is of a robot in a physics engine; its reference is the truth.
 
@@ -10,7 +10,6 @@ faster than real time; everything printed comes from the messages that the node 
 
 from __future__ import annotations
 
-import argparse
 import math
 import os
 import shlex
@@ -27,6 +26,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from werrimbi_odom.demo.pictures import save_and_tell
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
@@ -35,7 +35,6 @@ from werrimbi_odom.files.start_pose import start_pose
 from werrimbi_odom.model.pose import Pose, wrap
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.path_figure import PathDrawing, path_figure
-from werrimbi_odom.report.save import save_page, save_png
 
 if TYPE_CHECKING:
     from rich.table import Table
@@ -47,7 +46,7 @@ EXPLAINED = 3.4
 
 TOPICS = ("joint_states", "set_pose", "odom", "~/pieces")
 
-RECORDING = Path(__file__).parent / "recordings" / "square"
+RECORDING = Path(__file__).parents[1] / "recordings" / "square"
 
 
 @dataclass(frozen=True, slots=True)
@@ -86,21 +85,7 @@ class Ending:
         return float(np.sqrt(part @ np.linalg.pinv(block, hermitian=True) @ part))
 
 
-def main(argv: list[str] | None = None) -> int:
-    """Run the demo; 0 on success, 2 for input that cannot be used."""
-    parser = argparse.ArgumentParser(prog="make demo", description=__doc__)
-    parser.add_argument("--robot", type=Path, default=RECORDING / "robot.yaml")
-    parser.add_argument("--run", type=Path, default=RECORDING, help="folder or bag")
-    parser.add_argument("--out", type=Path, default=Path("demo"), help="folder for the picture")
-    arguments = parser.parse_args(argv)
-    try:
-        return demonstrate(arguments.robot, arguments.run, arguments.out)
-    except InputError as error:
-        print(f"demo: {error}", file=sys.stderr)
-        return 2
-
-
-def demonstrate(robot_path: Path, run_path: Path, out: Path) -> int:
+def first_act(robot_path: Path, run_path: Path, out: Path) -> None:
     """Play a run to a node of its own, print what came back, draw it."""
     robot_file = read_robot_file(robot_path)
     run = read_run(run_path, robot_file)
@@ -120,7 +105,6 @@ def demonstrate(robot_path: Path, run_path: Path, out: Path) -> int:
         words = ["werrimbi", "diagnose", "--robot", str(robot_path), str(run_path)]
         print(f"Next:\n    {shlex.join(words)}")
     _draw(run, start, answers, ending, out)
-    return 0
 
 
 def measured_at(reference: Reference, time: float) -> Pose:
@@ -286,13 +270,4 @@ def _draw(run: Run, start: Pose, answers: Answers, ending: Ending, out: Path) ->
         magnified=1.0 if deviation is not None and deviation > EXPLAINED else None,
     )
     figure = path_figure(drawing)
-    save_page(figure, out / "path.html")
-    print(f"\npicture: {out / 'path.html'} (interactive)")
-    if save_png(figure, out / "path.png"):
-        print(f"         {out / 'path.png'}")
-    else:
-        print("         (no PNG: it needs Chrome or Chromium, e.g. apt install chromium)")
-
-
-if __name__ == "__main__":
-    sys.exit(main())
+    save_and_tell(figure, out / "path")
