@@ -29,7 +29,7 @@ sys.meta_path.insert(0, Absent())
 NOT_BY_ROSDEP = {
     *("ament_flake8", "ament_pep257", "atheris", "axe_playwright_python", "catkin_pkg", "dask"),
     *("distributed", "filterpy", "flake8", "kaleido", "mpmath", "mujoco", "nicegui", "playwright"),
-    *("plotly", "pydocstyle", "rosbags", "threadpoolctl", "xdist"),
+    *("plotly", "pydocstyle", "pyproj", "rosbags", "threadpoolctl", "xdist"),
 }
 
 
