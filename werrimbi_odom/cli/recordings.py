@@ -159,13 +159,14 @@ def how_of(arguments: argparse.Namespace) -> How:
     """The options that say how drives are read and judged."""
     from werrimbi_odom.files.asked import How
 
+    topics = tuple(arguments.reference_topic or ())
     return How(
         arguments.reference_kind,
         arguments.leg,
         arguments.reference_sigma_xy,
         arguments.reference_sigma_yaw,
         arguments.ticks_topic,
-        arguments.reference_topic,
+        topics if len(topics) > 1 else next(iter(topics), None),
         tuple(arguments.effects),
         tuple(arguments.reference),
         arguments.force,

@@ -24,7 +24,9 @@ from werrimbi_odom.inference.rules import (
     CIRCLE_DELAYS,
     CIRCLE_EXACT,
     CIRCLE_FEWEST,
+    CIRCLE_STEPS,
     CIRCLE_WAY,
+    CIRCLE_WHOLE,
 )
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
@@ -161,15 +163,14 @@ def _rounding(run: Run, robot: Robot) -> float:
         if steps.size == 0:
             return 0.0
         quantum = float(steps.min())
-        steps = steps[steps <= 10.0 * quantum]  # angles of 32 bits are whole but for rounding
-        whole = np.abs(steps / quantum - np.rint(steps / quantum)) < _WHOLE
+        steps = steps[
+            steps <= CIRCLE_STEPS * quantum
+        ]  # angles of 32 bits are whole but for rounding
+        whole = np.abs(steps / quantum - np.rint(steps / quantum)) < CIRCLE_WHOLE
         if not whole.all():
             return 0.0
         squares.append((quantum * tick) ** 2 / 6.0)
     return 0.5 * float(np.sqrt(sum(squares)))
-
-
-_WHOLE = 0.02
 
 
 def _small(length: float) -> str:

@@ -153,10 +153,15 @@ CIRCLE_DELAYS = tuple(0.01 * step for step in range(-30, 31))
 CIRCLE_EXACT = 0.1
 """Share of what the counters round off, below which a reference was made from the same counts.
 Somebody who looks at the robot sees the part of a count that was rounded off, and so is off by all
-of it: the median of 20 such errors is below a seventh of their deviation less than once in 10^9
+of it: the median of 20 such errors is below a tenth of what is usual less than once in 10^7
 times."""
 
 CIRCLE_APART = 0.012
 """Usual difference of a way [m], beyond which even what is called odometry is no odometry of these
 wheels. Stamps that jitter by 40 ms at 0.3 m/s, or the lag of a filter, make as much; what differs
 by more was measured."""
+
+CIRCLE_STEPS, CIRCLE_WHOLE = 10.0, 0.02
+"""Steps of a counter, in units of its smallest one, that are asked whether they are whole, and by
+how much they may be off: angles of 32 bits are whole but for a hundredth of a count at a thousand
+turns. Counters that are none round nothing off, and by numbers alone nothing is refused then."""
