@@ -29,8 +29,8 @@ sys.meta_path.insert(0, Absent())
 NOT_BY_ROSDEP = {
     *("ament_flake8", "ament_pep257", "atheris", "axe_playwright_python", "catkin_pkg", "dask"),
     *("distributed", "filterpy", "flake8", "kaleido", "mpmath", "mujoco", "nicegui", "playwright"),
-    *("ipykernel", "nbclient", "nbformat", "plotly", "pydocstyle", "rosbags", "threadpoolctl"),
-    *("sphinx", "xdist"),
+    *("ipykernel", "nbclient", "nbformat", "plotly", "pydocstyle", "pyproj", "rosbags"),
+    *("sphinx", "threadpoolctl", "xdist"),
 }
 
 

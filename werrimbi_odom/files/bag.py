@@ -73,7 +73,8 @@ class Bag:
         except Exception as error:  # as above
             problem = _in_a_line(error)
             raise InputError(
-                f"{self.path}: a message of {raw.topic} ({raw.kind}) cannot be read: {problem}"
+                f"{self.path} cannot be read as a bag: a message of {raw.topic} ({raw.kind}): "
+                f"{problem}"
             ) from error
 
     def firsts(self, topics: Sequence[str]) -> dict[str, Any]:
@@ -116,7 +117,9 @@ def opened_bag(path: Path) -> Iterator[Bag]:
         topics = _topics((each.topic, each.msgtype, each.msgcount) for each in reader.connections)
         definitions = {each.msgtype: each.msgdef.data for each in reader.connections}
     except Exception as error:  # as above
-        scanned = None if isinstance(error, InputError) else _scanned(path, ros1)
+        scanned = None
+        if not isinstance(error, InputError) and _is_cut_off(path):
+            scanned = _scanned(path, ros1)
         if scanned is None:
             raise _unreadable(path, error) from error
         yield scanned
@@ -165,6 +168,21 @@ def _scanned(path: Path, ros1: bool) -> Bag | None:
     told = f"the bag is cut off or was never finished; read up to t_s {last / 1e9:.1f}"
     topics = _topics((name, kind, number) for (name, kind), number in counts.items())
     return Bag(path, topics, (told,), raw, Types(ros1, definitions))
+
+
+def _is_cut_off(path: Path) -> bool:
+    """Whether a file of a bag is spoilt, or metadata were never written; not if these are."""
+    from rosbags.rosbag2 import Reader
+
+    if not path.is_dir() or not (path / "metadata.yaml").exists():
+        return True
+    for file in _files(path):
+        try:
+            with Reader(file):
+                pass
+        except Exception:  # as above
+            return True
+    return False
 
 
 def _files(path: Path) -> list[Path]:

@@ -13,8 +13,9 @@ import io
 import sqlite3
 import struct
 from collections.abc import Callable, Iterator, Sequence
+from importlib import import_module
 from pathlib import Path
-from typing import IO, NamedTuple
+from typing import IO, Any, NamedTuple
 
 from werrimbi_odom.files.bag_scan_sqlite import described, rows_of
 
@@ -101,17 +102,26 @@ def _decompressed(data: bytes, compression: str, size: int) -> bytes:
     if size > LARGEST:
         raise SpoiltError
     try:
-        if compression == "lz4":
-            from lz4.frame import LZ4FrameDecompressor
-
-            return bytes(LZ4FrameDecompressor().decompress(data, size))
-        if compression == "bz2":
-            return bz2.BZ2Decompressor().decompress(data, size)
-        from rosbags.rosbag2.storage_mcap import DECOMPRESSORS
-
-        return bytes(DECOMPRESSORS[compression](data, size))
+        return bytes(_decompressor(compression).decompress(data, size))
     except Exception as error:  # each library has its own
         raise SpoiltError from error
+
+
+def _decompressor(compression: str) -> Any:
+    """What gives so many bytes at the most, and those before a cut; all of one form."""
+    if compression == "bz2":
+        return bz2.BZ2Decompressor()
+    if compression == "lz4":
+        from lz4.frame import LZ4FrameDecompressor
+
+        return LZ4FrameDecompressor()
+    if compression != "zstd":
+        raise SpoiltError
+    try:
+        zstd = import_module("compression.zstd")  # from Python 3.14 on
+    except ModuleNotFoundError:
+        zstd = import_module("backports.zstd")
+    return zstd.ZstdDecompressor()
 
 
 def _ros1(file: Path) -> Iterator[Raw]:

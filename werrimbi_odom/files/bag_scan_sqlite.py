@@ -18,6 +18,8 @@ from typing import NamedTuple
 
 LEAF = 0x0D
 """First byte of a page with rows of a table."""
+MOST = 10_000
+"""Topics that a recording is believed to have."""
 
 
 class Row(NamedTuple):
@@ -35,15 +37,21 @@ def described(file: Path) -> tuple[dict[int, tuple[str, str]], dict[str, str]]:
     try:
         # Without it a file that is shorter than its header says is not read at all.
         database.execute("PRAGMA writable_schema=ON")
-        found = database.execute("SELECT id, name, type FROM topics")
-        topics = {key: (name, kind) for key, name, kind in found}
+        found = database.execute("SELECT name FROM sqlite_master WHERE type = 'table' LIMIT 100")
+        tables = {name for (name,) in found}  # a view may be a program that never ends
+        if "topics" not in tables:
+            return {}, {}
+        rows = database.execute(f"SELECT id, name, type FROM topics LIMIT {MOST}")
+        topics = {key: (name, kind) for key, name, kind in rows}
         definitions: dict[str, str] = {}
-        with suppress(sqlite3.Error):  # before ROS 2 Iron there are none
-            definitions.update(
-                database.execute(
-                    "SELECT topic_type, encoded_message_definition FROM message_definitions"
+        if "message_definitions" in tables:  # from ROS 2 Iron on
+            with suppress(sqlite3.Error):
+                definitions.update(
+                    database.execute(
+                        "SELECT topic_type, encoded_message_definition FROM message_definitions "
+                        f"LIMIT {MOST}"
+                    )
                 )
-            )
         return topics, definitions
     finally:
         database.close()
@@ -103,14 +111,16 @@ class _Pages:
 
     def _payload(self, length: int, at: int) -> bytes | None:
         """A row's bytes, those on pages of their own among them; None where some are missing."""
+        if length > len(self._held):
+            return None
         most = self._usable - 35
         if length <= most:
-            found = self._held[at : at + length]
-            return found if len(found) == length else None
+            row = self._held[at : at + length]
+            return row if len(row) == length else None
         least = (self._usable - 12) * 32 // 255 - 23
         here = least + (length - least) % (self._usable - 4)
         here = here if here <= most else least
-        found = self._held[at : at + here]
+        found = bytearray(self._held[at : at + here])
         page = int.from_bytes(self._held[at + here : at + here + 4], "big")
         while page and len(found) < length:
             start = (page - 1) * self._size
@@ -119,7 +129,7 @@ class _Pages:
                 return None
             page = int.from_bytes(block[:4], "big")
             found += block[4:]
-        return found[:length] if len(found) >= length else None
+        return bytes(found[:length]) if len(found) >= length else None
 
     def _number(self, at: int) -> tuple[int, int]:
         return _varint(self._held, at)
