@@ -36,6 +36,7 @@ from werrimbi_odom.inference.rules import (
     SUSPECT_STRAIGHT,
     SUSPECT_STRETCH,
     SUSPECT_STRETCHES,
+    SUSPECT_TURNED,
     SUSPECT_TURNS_AGREE,
 )
 from werrimbi_odom.model.pose import Floats, wrap_all
@@ -272,7 +273,7 @@ def _metre(cuts: list[_Cuts]) -> Iterator[ReferenceRemark]:
     """Radii and base off by one and the same factor: lengths are off, and turns are not."""
     share = np.concatenate([own.share for own in cuts]) if cuts else np.zeros(0)
     by_wheels, measured = (sum(own.turns[side] for own in cuts) for side in (0, 1))
-    if share.size < SUSPECT_CUTS * SUSPECT_STRETCHES or by_wheels < 2.0 * np.pi:
+    if share.size < SUSPECT_CUTS * SUSPECT_STRETCHES or by_wheels < SUSPECT_TURNED:
         return
     usual = float(np.median(share))
     scatter = MEDIAN_TO_SIGMA * float(np.median(np.abs(share - usual)))

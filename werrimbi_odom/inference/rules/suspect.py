@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import math
+
 SUSPECT_CUT, SUSPECT_STRETCH = 0.25, 2.0
 """Lengths in legs: of a cut, over which direction and length of the reference's path are read, and
 of a stretch, of whose cuts the median counts. Eight cuts a stretch: three failed matches do not
@@ -45,3 +47,7 @@ tyres make 1 to 2 %, and a base that is off by the same is no wear."""
 
 SUSPECT_TURNS_AGREE = 0.01
 """Share within which turns agree then: a quarter turn to 1 degree."""
+
+SUSPECT_TURNED = 2.0 * math.pi
+"""Turning of all drives [rad] from which on that is judged: of a whole turn 1 % is 4 degrees, more
+than references of metres err by."""
