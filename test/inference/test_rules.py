@@ -57,6 +57,7 @@ ELSEWHERE = {
     },
     "diagnosis/cross_validation.py": {"_RANK": "a rank"},
     "diagnosis/evidence.py": {"BATCH": "size of a block", "_BLOCK": "size of a block"},
+    "comparison/suspect.py": {"_PAIRED": "time that it takes"},
     "diagnosis/response.py": {
         "PARTS": "of a figure",
         "_UNTOLD": "of a figure: which error bars are too long to draw",

@@ -10,6 +10,7 @@ import os
 import shutil
 import sys
 import tempfile
+import zlib
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict
@@ -19,7 +20,7 @@ from typing import TYPE_CHECKING, TypeVar
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.simulation import Hidden
+    from werrimbi_odom.simulation import Hidden, Recording, TrueRobot
 
 Item = TypeVar("Item")
 
@@ -55,6 +56,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "by default counters start anywhere, as after switching on",
     )
     parser.add_argument(
+        "--like",
+        choices=("laboratory", "field"),
+        default="laboratory",
+        help="laboratory: counters and motion capture, in run folders; field: bags (rosbag2) with "
+        "joint states, a gyro, /odom and /tf of a localiser, and the robot held and carried in "
+        "between (when, stands in truth.json)",
+    )
+    parser.add_argument(
         "--list", action="store_true", help="list what can be hidden, with units, and stop"
     )
 
@@ -84,6 +93,14 @@ def run(arguments: argparse.Namespace) -> int:
         counters_keep_zero=arguments.counters_keep_zero,
     )
     odd = [each.peculiarity for each in hidden]
+    if arguments.like == "field":
+        unseen = [each.entry.name for each in hidden if not _seen(each)]
+        if unseen:
+            raise InputError(
+                f"--like field cannot hide {', '.join(unseen)}: it is made in the records of "
+                "counters or motion capture, which are not recorded so"
+            )
+    seen: dict[str, dict[str, object]] = {}
     with _new_folder(arguments.out) as folder:
         written = robot
         for each in odd:
@@ -92,15 +109,38 @@ def run(arguments: argparse.Namespace) -> int:
         runs = simulation.session(robot, arguments.seed, hidden=odd)
         try:
             for name, recording in _with_progress(runs, len(simulation.drives(arguments.seed))):
-                simulation.write_run(recording, folder / name)
+                if arguments.like == "field":
+                    seen[name] = _in_the_field(recording, written, arguments.seed, folder / name)
+                else:
+                    simulation.write_run(recording, folder / name)
         except (simulation.UnstableError, ValueError) as error:
             raise InputError(f"no such robot can be built: {str(error).splitlines()[0]}") from error
         truth = _truth(hidden, arguments.seed, robot)
+        if seen:
+            truth["field"] = seen
         (folder / "truth.json").write_text(json.dumps(truth, indent=2) + "\n", encoding="utf-8")
     out = arguments.out
     print(f"{out}: robot.yaml, 7 runs in train, 4 in holdout; what is hidden stands in truth.json")
     print(f"next: werrimbi compare --robot {out}/robot.yaml {out}/train/*")
     return 0
+
+
+def _seen(hidden: Hidden) -> bool:
+    from werrimbi_odom.simulation import seen_in_the_field
+
+    return seen_in_the_field(hidden.peculiarity)
+
+
+def _in_the_field(
+    recording: Recording, robot: TrueRobot, seed: int, folder: Path
+) -> dict[str, object]:
+    """Write a drive as a bag; what of it nobody told the robot."""
+    from werrimbi_odom import simulation
+
+    number = zlib.crc32(folder.name.encode() + folder.parent.name.encode())
+    drive = simulation.as_in_the_field(recording, robot, seed=1000 * seed + number, robot_seed=seed)
+    simulation.write_field_bag(drive, robot, folder)
+    return drive.truth
 
 
 def _chosen(wishes: Sequence[str], seed: int) -> list[Hidden]:

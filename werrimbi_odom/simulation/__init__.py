@@ -16,6 +16,8 @@ happens), `wheel_noise`, `sensors` (what is seen of it), `recorder` (one drive),
 """
 
 from .engine import Pose, TruePath, UnstableError
+from .field import FieldDrive, FieldSensors, as_in_the_field, seen_in_the_field
+from .field_bag import write_field_bag
 from .hidden import CATALOGUE, Hidden, Peculiarity, StrengthError, UnknownEffectError, hide
 from .manoeuvre import Manoeuvre, Pace, moves
 from .manoeuvres import (
@@ -40,6 +42,8 @@ from .sessions import drives, session
 
 __all__ = [
     "CATALOGUE",
+    "FieldDrive",
+    "FieldSensors",
     "Hidden",
     "Manoeuvre",
     "Nominal",
@@ -54,6 +58,7 @@ __all__ = [
     "UnknownEffectError",
     "UnstableError",
     "arcs",
+    "as_in_the_field",
     "chain",
     "drives",
     "figure_eight",
@@ -63,11 +68,13 @@ __all__ = [
     "out_and_back",
     "pivots",
     "record",
+    "seen_in_the_field",
     "session",
     "spin",
     "spins",
     "square",
     "start_stop",
+    "write_field_bag",
     "write_robot_file",
     "write_run",
 ]

@@ -54,14 +54,14 @@ def write_robot_file(robot: TrueRobot, path: str | Path) -> Path:
         right_ticks_per_revolution=_real(robot.right_ticks_per_revolution),
         left_wheel_noise=_real(robot.left_wheel_noise),
         right_wheel_noise=_real(robot.right_wheel_noise),
-        left_wheel_names=", ".join(_joints("left", robot.wheels_a_side)),
-        right_wheel_names=", ".join(_joints("right", robot.wheels_a_side)),
+        left_wheel_names=", ".join(joints("left", robot.wheels_a_side)),
+        right_wheel_names=", ".join(joints("right", robot.wheels_a_side)),
     )
     path.write_text(text, encoding="utf-8")
     return path
 
 
-def _joints(side: str, count: int) -> list[str]:
+def joints(side: str, count: int) -> list[str]:
     """Names of a side's wheel joints."""
     if count == 1:
         return [f"{side}_wheel_joint"]

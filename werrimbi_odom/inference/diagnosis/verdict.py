@@ -15,6 +15,7 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
 from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
+from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge
@@ -82,6 +83,8 @@ class Diagnosis:
     """Heading error on the held-out runs [rad]: a reference of headings alone is judged by it."""
     left_out: tuple[LeftOut, ...] = ()
     """Stretches of all runs that none of it is about."""
+    remarks: tuple[ReferenceRemark, ...] = ()
+    """What is suspect about the reference of the fitted runs."""
     misfit: Misfit | None = None
     """What is left because a law's form is not quite nature's, or beside everything found."""
 
@@ -160,6 +163,7 @@ def told(
         Sides(start.holdout_median, last.holdout_median, start.unit),
         Sides(start.holdout_yaw, last.holdout_yaw, "rad"),
         judge.left_out,
+        remarks_on(judge.train),
     )
 
 

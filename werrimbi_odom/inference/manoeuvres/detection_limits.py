@@ -22,6 +22,7 @@ import numpy as np
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference.calibration_sizes import base_name, name_of_base
 from werrimbi_odom.inference.chances import noncentrality
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.selection import Fitted
@@ -66,12 +67,18 @@ class DetectionLimit:
 def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[DetectionLimit, ...]:
     """For all effects that are not in the model, in the library's order."""
     final, tried = diagnosis.final, diagnosis.rounds[-1].number
-    held = {applied.name for applied in final.point.model.robot.effects}
+    robot = final.point.model.robot
+    held = {applied.name for applied in robot.effects}
+    if name_of_base(robot) in held:
+        held.add("track_width")  # its base is told by that name
     measured = set.intersection(*(set(run.counters.channels) for run in diagnosis.runs.runs))
     candidates = [
         _typical(effect)
         for effect in effects
-        if not effect.is_mistake and effect.name not in held and set(effect.channels) <= measured
+        if not effect.is_mistake
+        and effect.name not in held
+        and set(effect.channels) <= measured
+        and base_name(effect) is None
     ]
     seen = _seen(Experiment(diagnosis.runs, final.point, diagnosis.kind), candidates, final, tried)
     hidden = [item for item in candidates if seen[item.name].hidden]
@@ -176,7 +183,9 @@ def _limits(
     if effect.quadrature is not None:  # the phase that shows least
         names, information = [effect.quadrature[0]], information.min(keepdims=True)
     else:
-        names = [name for name, item in effect.parameters.items() if not item.tries]
+        names = [
+            name for name, item in effect.parameters.items() if not (item.tries or item.as_base)
+        ]
     for name, of_step in zip(names, information.tolist(), strict=True):
         item = effect.parameters[name]
         size = STEP * item.scale * math.sqrt(wanted / of_step) if of_step > 0.0 else math.inf

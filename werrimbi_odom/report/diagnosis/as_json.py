@@ -20,6 +20,7 @@ from werrimbi_odom.inference.manoeuvres.told import beyond_chance, one_each, sig
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.numbers import picked
 from werrimbi_odom.report.phrases import left_out_json
+from werrimbi_odom.report.suspect import remarks_json
 
 
 def json_of(
@@ -63,6 +64,7 @@ def json_of(
         ],
         "train": _sides(diagnosis.train),
         "holdout": _sides(diagnosis.holdout, diagnosis.headings),
+        "reference_remarks": remarks_json(diagnosis.remarks),
         "left_out": left_out_json(diagnosis.left_out),
         "remaining": [_cell(cell) for cell in one_each(beyond_chance(diagnosis.remaining))],
         "misfit": None

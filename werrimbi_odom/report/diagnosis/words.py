@@ -31,6 +31,7 @@ from werrimbi_odom.report.diagnosis.phrases import (
 )
 from werrimbi_odom.report.numbers import chance_words, error_words, listed
 from werrimbi_odom.report.phrases import jumps_words, left_out_words
+from werrimbi_odom.report.suspect import remark_words
 from werrimbi_odom.report.text import filled
 
 
@@ -56,7 +57,8 @@ def words_of(told: Told, steps: NextSteps) -> str:
         "unknown": _unknown,
     }[diagnosis.verdict]
     paragraphs = [*tell(told, steps), *otherwise(diagnosis)]
-    left_out = [*left_out_words(diagnosis.left_out), *jumps_words(diagnosis.left_out)]
+    suspect = [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
+    left_out = [*suspect, *left_out_words(diagnosis.left_out), *jumps_words(diagnosis.left_out)]
     last = (index for index, text in enumerate(paragraphs) if text.startswith("Next: "))
     place = next(last, len(paragraphs))
     paragraphs[place:place] = left_out

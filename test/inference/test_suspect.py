@@ -1,0 +1,120 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A reference that does what nothing on wheels can do is told; a sound one never is."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run_folder import read_run_folder
+from werrimbi_odom.inference.comparison.judged_legs import prepare
+from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.suspect import remark_words, remarks_json
+from werrimbi_odom.simulation import Peculiarity, TrueRobot, free, hide, record, start_stop
+
+ROBOT = Robot(0.35, 0.05, 2000.0, 2000.0)
+RECORDED = Path(os.environ.get("WERRIMBI_DATA", Path(__file__).parents[3] / "shared" / "data"))
+
+
+@cache
+def drives(*hidden: Peculiarity) -> list[Run]:
+    """Free driving and hard starts and stops, by the engine."""
+    true = TrueRobot(left_wheel_noise=4e-4, right_wheel_noise=5.8e-4)
+    found = []
+    for number, way in enumerate((free(80.0, seed=5, speed=0.7, yaw_rate=1.0), start_stop(4))):
+        seen = record(true, way, seed=number + 1, hidden=list(hidden))
+        reference = Reference(
+            seen.reference_t_s, seen.reference_x_m, seen.reference_y_m, seen.reference_yaw_rad
+        )
+        ticks = Ticks(seen.t_s, seen.left_ticks.astype(float), seen.right_ticks.astype(float))
+        found.append(Run(f"run_{number}", Path(f"run_{number}"), ticks, reference))
+    return found
+
+
+def remarks(
+    spoil: Callable[[Reference], Reference] = lambda it: it, *hidden: Peculiarity
+) -> dict[str, ReferenceRemark]:
+    runs = [replace(run, reference=spoil(run.reference)) for run in drives(*hidden)]  # type: ignore[arg-type]
+    return {each.what: each for each in remarks_on(prepare(runs, ROBOT))}
+
+
+def test_a_sound_reference_has_no_remark() -> None:
+    assert remarks() == {}
+
+
+@pytest.mark.parametrize(
+    ("name", "strength"),
+    [
+        ("reference_delay", 0.1),
+        ("reference_lever_arm", 0.15),
+        ("left_missed_ticks", 0.05),
+    ],
+)
+def test_what_a_robot_has_is_no_fault_of_its_reference(name: str, strength: float) -> None:
+    assert remarks(lambda it: it, hide(name, strength, seed=2).peculiarity) == {}
+
+
+def test_a_heading_askew_of_its_path() -> None:
+    found = remarks(lambda it: replace(it, yaw=it.yaw + np.radians(6.0)))
+    assert set(found) == {"sideways"}
+    assert np.degrees(found["sideways"].size) == pytest.approx(-6.0, abs=0.2)
+    assert "sideways to its own heading by 6.0°" in remark_words(found["sideways"])
+
+
+def test_a_heading_that_drifts_from_its_path() -> None:
+    found = remarks(lambda it: replace(it, yaw=it.yaw + np.radians(0.2) * it.time))
+    assert "apart" in found
+    assert np.degrees(abs(found["apart"].size)) == pytest.approx(0.2 * 80.0, rel=0.2)
+
+
+def test_a_heading_that_is_wrong_in_places() -> None:
+    found = remarks(lambda it: replace(it, yaw=it.yaw + np.where(it.x > 0.5, 0.2, 0.0)))
+    assert "sideways_by_place" in found
+    assert len(found["sideways_by_place"].stretches) > 1
+
+
+def test_a_path_that_is_short_by_place() -> None:
+    found = remarks(lambda it: replace(it, x=np.where(it.x > 0.0, 0.7 * it.x, it.x)))
+    assert found["short"].size < -0.1
+    assert "shorter" in remark_words(found["short"])
+    (told,) = remarks_json([found["short"]])
+    assert told["stretches"][0]["to_s"] > told["stretches"][0]["from_s"]
+
+
+def test_a_metre_that_is_none() -> None:
+    found = remarks(lambda it: replace(it, x=0.93 * it.x, y=0.93 * it.y))
+    assert set(found) == {"metre"}
+    assert found["metre"].size == pytest.approx(-0.07, abs=0.005)
+
+
+def recorded(name: str, leg: float) -> list[str]:
+    folder = RECORDED / "robots" / name
+    if not folder.is_dir():
+        pytest.skip("no recorded robots here")
+    robot = read_robot_file(folder / "robot.yaml")
+    runs = [read_run_folder(part) for part in sorted(folder.iterdir()) if part.is_dir()]
+    kind = "absolute" if name in ("optitrack_robot", "labyrinth") else "incremental"
+    found = remarks_on(prepare(runs, robot.robot, kind, leg=leg, limits=robot.limits))
+    return [each.what for each in found]
+
+
+@pytest.mark.parametrize(
+    ("name", "leg"),
+    [("optitrack_robot", 0.5), ("khepera_laser_moved", 0.1), ("labyrinth", 0.5)],
+)
+def test_recorded_references_that_are_sound(name: str, leg: float) -> None:
+    assert recorded(name, leg) == []
+
+
+def test_a_students_scan_matcher_is_short_by_place() -> None:
+    assert "short" in recorded("upenn_skid_icp", 1.0)

@@ -1,0 +1,142 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Drives as ordinary robots record them: held, carried, jittered, and true in between."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ElementTree
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from rosbags.highlevel import AnyReader
+
+from werrimbi_odom.cli.main import main
+from werrimbi_odom.simulation import (
+    FieldDrive,
+    Recording,
+    TrueRobot,
+    as_in_the_field,
+    free,
+    hide,
+    record,
+    seen_in_the_field,
+    write_field_bag,
+)
+from werrimbi_odom.simulation.bag import EPOCH
+
+ROBOT = TrueRobot()
+
+
+@cache
+def recorded() -> Recording:
+    return record(ROBOT, free(40.0, seed=3, yaw_rate=1.0), seed=4)
+
+
+@cache
+def seen() -> FieldDrive:
+    return as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6)
+
+
+def stretch(name: str) -> tuple[float, float]:
+    ((begin, end),) = seen().truth[name]  # type: ignore[misc]
+    return begin - EPOCH, end - EPOCH
+
+
+def within(table: np.ndarray, name: str, inset: float = 0.1) -> np.ndarray:
+    begin, end = stretch(name)
+    return np.asarray(table[(table[:, 0] > begin + inset) & (table[:, 0] < end - inset)])
+
+
+def test_while_it_is_held_its_wheels_turn_and_it_does_not() -> None:
+    wheels, imu = within(seen().wheels, "held"), within(seen().imu, "held")
+    assert np.abs(wheels[-1, 2:] - wheels[0, 2:]).max() > 2.0
+    bias = seen().truth["gyro"]["bias_rad_per_s"]  # type: ignore[index]
+    assert imu[:, 2].mean() == pytest.approx(bias, abs=1.5e-3)
+
+
+def test_while_it_is_carried_it_moves_and_its_wheels_do_not() -> None:
+    wheels, imu = within(seen().wheels, "carried"), within(seen().imu, "carried")
+    assert np.ptp(wheels[:, 2:], axis=0).max() < 5e-3
+    assert abs(imu[1:, 2] @ np.diff(imu[:, 0])) > 0.4
+    places = within(seen().localiser, "carried")
+    assert np.hypot(*(places[-1, 2:4] - places[0, 2:4])) > 0.3
+
+
+def test_elsewhere_wheels_and_gyro_turn_alike() -> None:
+    """Up to the gyro's own scale and bias, which are fitted and come out as they were made."""
+    imu, odometry, wheels = seen().imu, seen().odometry, seen().wheels
+    by_wheels = np.gradient(np.interp(imu[:, 0], wheels[:, 0], odometry[:, 2]), imu[:, 0])
+    still = np.convolve(by_wheels, np.ones(9) / 9.0, "same")
+    gyro = np.convolve(imu[:, 2], np.ones(9) / 9.0, "same")
+    free_of = np.ones(len(imu), dtype=bool)
+    for name in ("held", "carried"):
+        begin, end = stretch(name)
+        free_of &= (imu[:, 0] < begin - 0.3) | (imu[:, 0] > end + 0.3)
+    free_of[:10] = free_of[-10:] = False
+    scale, bias = np.polyfit(still[free_of], gyro[free_of], 1)
+    true = seen().truth["gyro"]
+    assert scale == pytest.approx(true["scale"], abs=0.02)  # type: ignore[index]
+    assert bias == pytest.approx(true["bias_rad_per_s"], abs=2e-3)  # type: ignore[index]
+
+
+def test_stamps_scatter_and_stay_in_order() -> None:
+    for table in (seen().wheels, seen().imu, seen().localiser):
+        assert np.all(np.diff(table[:, 0]) > 0.0)
+        assert np.all(np.diff(table[:, 1]) >= 0.0)
+    assert 2e-3 < np.diff(seen().wheels[:, 0]).std() < 12e-3
+
+
+def test_the_same_seeds_the_same_drive() -> None:
+    again = as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6)
+    np.testing.assert_array_equal(again.imu, seen().imu)
+    assert again.truth == seen().truth
+
+
+def test_the_bag_holds_what_was_seen(tmp_path: Path) -> None:
+    folder = write_field_bag(seen(), ROBOT, tmp_path / "bag")
+    found: dict[str, list[object]] = {}
+    with AnyReader([folder]) as reader:
+        for connection, _, data in reader.messages():
+            message = reader.deserialize(data, connection.msgtype)
+            found.setdefault(connection.topic, []).append(message)
+    assert set(found) == {"/joint_states", "/imu", "/odom", "/tf", "/robot_description"}
+    assert len(found["/joint_states"]) == len(seen().wheels)
+    root = ElementTree.fromstring(found["/robot_description"][0].data)  # type: ignore[attr-defined]
+    origins = [joint.find("origin").attrib["xyz"] for joint in root.iter("joint")]  # type: ignore[union-attr]
+    ys = sorted(float(each.split()[1]) for each in origins)
+    assert ys == pytest.approx([-0.175, 0.175])
+    radii = {float(each.attrib["radius"]) for each in root.iter("cylinder")}
+    assert radii == {0.05}
+    # map -> odom after odom -> base_link is where the localiser thinks that the robot is.
+    parts = [message.transforms[0] for message in found["/tf"]]  # type: ignore[attr-defined]
+    frames = {(part.header.frame_id, part.child_frame_id) for part in parts}
+    assert frames == {("map", "odom"), ("odom", "base_link")}
+
+
+def test_a_localiser_is_read_as_a_chain_of_transforms(tmp_path: Path) -> None:
+    from werrimbi_odom.files.robot_file import read_robot_file
+    from werrimbi_odom.simulation import write_robot_file
+
+    folder = write_field_bag(seen(), ROBOT, tmp_path / "bag")
+    robot = write_robot_file(ROBOT, tmp_path / "robot.yaml")
+    out = tmp_path / "odom.csv"
+    assert main(["odom", "--robot", str(robot), str(folder), "--reference-topic",
+                 "/tf:map:base_link", "--out", str(out)]) == 0  # fmt: skip
+    assert read_robot_file(robot).robot.wheel_separation == 0.35
+    first = np.loadtxt(out, delimiter=",", skiprows=1)[0]
+    true = recorded().true_path
+    assert np.hypot(first[1] - true.x_m[0], first[2] - true.y_m[0]) < 0.2
+
+
+def test_what_is_made_in_records_is_refused(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert seen_in_the_field(hide("track_width", seed=1).peculiarity)
+    assert not seen_in_the_field(hide("left_missed_ticks", seed=1).peculiarity)
+    code = main(
+        ["simulate", "--like", "field", "--hide", "encoder_skew", "--out", str(tmp_path / "x")]
+    )
+    assert code == 2
+    assert "encoder_skew" in capsys.readouterr().err

@@ -1,0 +1,285 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Whether a reference moves as something on wheels can.
+
+A robot on wheels goes where it faces (the nonholonomic constraint), so on straight stretches the
+path's direction is the heading, up to one constant angle of the mount; and its length is the
+wheels' way, up to one constant factor. What differs from stretch to stretch is not the robot's
+geometry but the reference, or wheels that slipped there. Medians of short cuts count, so failed
+matches and jumps have no say.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
+from werrimbi_odom.inference.comparison.judged_legs import Prepared
+from werrimbi_odom.inference.comparison.reference_noise import Residual
+from werrimbi_odom.inference.legs.cutting import leg_ends
+from werrimbi_odom.inference.rules import (
+    ASKEW,
+    SUSPECT_ANGLE,
+    SUSPECT_CUT,
+    SUSPECT_CUTS,
+    SUSPECT_DRIFT_LEFT,
+    SUSPECT_METRE,
+    SUSPECT_SHARE,
+    SUSPECT_SIGMA,
+    SUSPECT_STILL,
+    SUSPECT_STRAIGHT,
+    SUSPECT_STRETCH,
+    SUSPECT_STRETCHES,
+    SUSPECT_TURNED,
+    SUSPECT_TURNS_AGREE,
+)
+from werrimbi_odom.model.pose import Floats, wrap_all
+
+_PAIRED = 100
+"""Stretches of a drive of which every two make a slope."""
+
+What = Literal["short", "sideways", "sideways_by_place", "apart", "metre"]
+"""short: its path is shorter (or longer) in places; sideways: it goes askew of its heading, all
+along; sideways_by_place: now and then; apart: ever more; metre: it measures in another metre."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stretch:
+    """Some metres of a run."""
+
+    run: Path
+    begin: float
+    """[s]"""
+    end: float
+    size: float
+    """Of what is remarked."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceRemark:
+    """What is suspect about a reference."""
+
+    what: What
+    size: float
+    """short, metre: share of the path, negative where it is shorter; else an angle [rad]."""
+    usual: float = 0.0
+    """The same where nothing is odd."""
+    stretches: tuple[Stretch, ...] = ()
+    """Where; empty: all along."""
+
+
+@dataclass(frozen=True, slots=True)
+class _Looked:
+    """The stretches of all runs; arrays of shape (k,)."""
+
+    run: NDArray[np.intp]
+    begin: Floats
+    end: Floats
+    value: Floats
+    sigma: Floats
+
+
+def remarks_on(prepared: Prepared) -> tuple[ReferenceRemark, ...]:
+    """What is suspect about the reference of some runs; nothing where it measures headings alone.
+
+    Legs are those that were prepared, and the wheels' way is that of the robot file as given: one
+    factor on it, whatever its size, changes nothing but what is said of the metre.
+    """
+    paths: list[tuple[Path, Residual, NDArray[np.bool_]]] = []
+    for group in prepared.groups:
+        for index, item, run in zip(group.index, group.plain, group.every.runs, strict=True):
+            if np.isfinite(item.measured).sum() > 1:
+                paths.append((prepared.runs[index].path, item, run.gap))
+    if not paths:
+        return ()
+    cuts = [_cuts(item, gap, prepared.leg) for _, item, gap in paths]
+    runs = [path for path, _, _ in paths]
+    return (*_lengths(runs, cuts, prepared.leg), *_angles(runs, cuts, prepared.leg), *_metre(cuts))
+
+
+@dataclass(frozen=True, slots=True)
+class _Cuts:
+    """Cuts of one run that bend little; arrays of shape (m,)."""
+
+    begin: Floats
+    end: Floats
+    way: Floats
+    """Of the wheels until its end [m]."""
+    share: Floats
+    """The reference's way over the wheels', both as chords."""
+    bend: Floats
+    """Turn over way ahead [1/m]: a lever arm turns and stretches the path in proportion to it."""
+    surge: Floats
+    """Gain of speed over way ahead [1/s]: a late reference stretches the path in proportion."""
+    angle: Floats
+    """From the reference's heading to its path, robots that drive backwards turned [rad]; NaN."""
+    turns: tuple[float, float]
+    """Of all cuts, turning ones too: what the wheels turned, and what was measured, both times the
+    sign of the wheels'."""
+
+
+def _cuts(item: Residual, gap: NDArray[np.bool_], leg: float) -> _Cuts:
+    rolled = np.nan_to_num(item.relative)
+    way = np.concatenate([[0.0], np.cumsum(np.hypot(rolled[:, 0], rolled[:, 1]))])
+    length = SUSPECT_CUT * leg
+    ends = leg_ends(way, gap, length)
+    way_of = np.diff(way[ends])
+    ahead = np.diff(np.concatenate([[0.0], np.cumsum(rolled[:, 0])])[ends])
+    speed = np.gradient(np.concatenate([[0.0], np.cumsum(rolled[:, 0])]), item.time)[ends]
+    by_wheels = np.diff(np.concatenate([[0.0], np.cumsum(rolled[:, 2])])[ends])
+    moved = np.diff(item.measured[ends])
+    yaw = item.measured_yaw[ends]
+    turned = wrap_all(np.diff(yaw))
+    whole = np.diff(np.concatenate([[0], np.cumsum(gap)])[ends]) == 0
+    turn = np.where(np.isfinite(turned), turned, by_wheels)
+    share = np.abs(moved) / np.maximum(np.abs(ahead), 1e-12)
+    straight = whole & (np.abs(turn) < SUSPECT_STRAIGHT) & (np.abs(ahead) > 0.5 * length)
+    straight &= np.abs(ahead) > np.cos(SUSPECT_STRAIGHT) * way_of  # not to and fro within it
+    straight &= (share > SUSPECT_STILL) & (share < 1.0 / SUSPECT_STILL)
+    facing = np.exp(-1j * (yaw[:-1] + 0.5 * turned))
+    with np.errstate(invalid="ignore"):
+        angle = np.angle(moved * np.sign(ahead) * facing)
+    known = whole & np.isfinite(turned)
+    sense = np.sign(by_wheels[known])
+    return _Cuts(
+        item.time[ends][:-1][straight],
+        item.time[ends][1:][straight],
+        way[ends][1:][straight],
+        share[straight],
+        turn[straight] / ahead[straight],
+        (np.diff(speed) / ahead)[straight],
+        angle[straight],
+        (float(np.sum(sense * by_wheels[known])), float(np.sum(sense * turned[known]))),
+    )
+
+
+def _without(values: list[Floats], causes: list[Floats]) -> list[Floats]:
+    """Values less what goes with a cause in all runs alike: the line of least absolute errors."""
+    cause, value = np.concatenate(causes), np.concatenate(values)
+    acts = np.isfinite(value) & (np.abs(cause) > 0.0)
+    if not acts.any():
+        return values
+    slopes = (value[acts] - np.nanmedian(value)) / cause[acts]
+    order = np.argsort(slopes)
+    weight = np.cumsum(np.abs(cause[acts])[order])
+    slope = float(slopes[order][np.searchsorted(weight, 0.5 * weight[-1])])
+    return [each - slope * own for own, each in zip(causes, values, strict=True)]
+
+
+def _stretches(cuts: list[_Cuts], values: list[Floats], leg: float) -> _Looked:
+    """Medians of stretches, and their standard deviations from the cuts' own scatter."""
+    rows = []
+    for causes in ([own.surge for own in cuts], [own.bend for own in cuts]):
+        values = _without(values, causes)
+    for run, (own, value) in enumerate(zip(cuts, values, strict=True)):
+        number = np.floor(own.way / (SUSPECT_STRETCH * leg)).astype(int)
+        for stretch in np.unique(number):
+            here = (number == stretch) & np.isfinite(value)
+            count = int(here.sum())
+            if count < SUSPECT_CUTS:
+                continue
+            middle = float(np.median(value[here]))
+            scatter = MEDIAN_TO_SIGMA * float(np.median(np.abs(value[here] - middle)))
+            sigma = np.sqrt(0.5 * np.pi / count) * scatter  # of a median
+            rows.append((run, own.begin[here][0], own.end[here][-1], middle, sigma))
+    table = np.array(rows, dtype=np.float64).reshape(-1, 5)
+    return _Looked(table[:, 0].astype(np.intp), *table[:, 1:].T)
+
+
+def _odd(looked: _Looked, off: Floats, least: float) -> NDArray[np.intp]:
+    """Stretches that are off by more than `least` and than their own and a usual deviation."""
+    sigma = np.maximum(looked.sigma, np.median(looked.sigma))
+    return np.flatnonzero(np.abs(off) > np.maximum(least, SUSPECT_SIGMA * sigma))
+
+
+def _told(
+    runs: list[Path], looked: _Looked, size: Floats, rows: NDArray[np.intp]
+) -> Iterator[Stretch]:
+    for row in rows[np.argsort(-np.abs(size[rows]))]:
+        yield Stretch(
+            runs[looked.run[row]],
+            float(looked.begin[row]),
+            float(looked.end[row]),
+            float(size[row]),
+        )
+
+
+def _lengths(runs: list[Path], cuts: list[_Cuts], leg: float) -> Iterator[ReferenceRemark]:
+    looked = _stretches(cuts, [own.share for own in cuts], leg)
+    if looked.value.size <= SUSPECT_STRETCHES:
+        return
+    usual = float(np.median(looked.value))
+    off = looked.value / usual - 1.0
+    odd = _odd(looked, off, SUSPECT_SHARE)
+    if odd.size >= SUSPECT_STRETCHES:
+        yield ReferenceRemark(
+            "short", float(np.median(off[odd])), usual - 1.0, tuple(_told(runs, looked, off, odd))
+        )
+
+
+def _angles(runs: list[Path], cuts: list[_Cuts], leg: float) -> Iterator[ReferenceRemark]:
+    known = [own.angle[np.isfinite(own.angle)] for own in cuts]
+    if not sum(each.size for each in known):
+        return
+    axis = np.angle(np.mean(np.exp(1j * np.concatenate(known))))
+    looked = _stretches(cuts, [wrap_all(own.angle - axis) for own in cuts], leg)
+    if looked.value.size <= SUSPECT_STRETCHES:
+        return
+    usual = float(np.median(looked.value))
+    off = looked.value - usual
+    drift = _drifting(looked, off)
+    odd = _odd(looked, off, SUSPECT_ANGLE)
+    if drift is not None:
+        yield ReferenceRemark("apart", drift)
+    elif odd.size >= SUSPECT_STRETCHES:
+        size = float(np.median(np.abs(off[odd])))
+        yield ReferenceRemark("sideways_by_place", size, 0.0, tuple(_told(runs, looked, off, odd)))
+    mount = float(wrap_all(np.array([axis + usual]))[0])
+    sure = SUSPECT_SIGMA * float(np.median(looked.sigma))
+    if max(SUSPECT_ANGLE, sure) < abs(mount) < ASKEW and drift is None:
+        yield ReferenceRemark("sideways", mount)
+
+
+def _drifting(looked: _Looked, off: Floats) -> float | None:
+    """How far the angle goes in the drive in which it goes farthest [rad]; None where it stays."""
+    found = []
+    left = off.copy()
+    for run in np.unique(looked.run):
+        own = looked.run == run
+        if own.sum() <= 2 * SUSPECT_STRETCHES:
+            continue
+        time = 0.5 * (looked.begin + looked.end)[own]
+        some = np.unique(np.linspace(0, time.size - 1, _PAIRED).astype(int))
+        one, other = (some[index] for index in np.triu_indices(some.size, 1))
+        slope = float(np.median((off[own][other] - off[own][one]) / (time[other] - time[one])))
+        left[own] = off[own] - np.median(off[own]) - slope * (time - np.median(time))
+        found.append(slope * float(np.ptp(time)))
+    if not found:
+        return None
+    farthest = max(found, key=abs)
+    spread, rest = (float(np.median(np.abs(each - np.median(each)))) for each in (off, left))
+    sure = SUSPECT_SIGMA * float(np.median(looked.sigma))
+    steady = rest < SUSPECT_DRIFT_LEFT * spread
+    return farthest if steady and abs(farthest) > max(SUSPECT_ANGLE, sure) else None
+
+
+def _metre(cuts: list[_Cuts]) -> Iterator[ReferenceRemark]:
+    """Radii and base off by one and the same factor: lengths are off, and turns are not."""
+    share = np.concatenate([own.share for own in cuts]) if cuts else np.zeros(0)
+    by_wheels, measured = (sum(own.turns[side] for own in cuts) for side in (0, 1))
+    if share.size < SUSPECT_CUTS * SUSPECT_STRETCHES or by_wheels < SUSPECT_TURNED:
+        return
+    usual = float(np.median(share))
+    scatter = MEDIAN_TO_SIGMA * float(np.median(np.abs(share - usual)))
+    sigma = np.sqrt(0.5 * np.pi / share.size) * scatter
+    off = abs(usual - 1.0)
+    if off > max(SUSPECT_METRE, SUSPECT_SIGMA * sigma) and (
+        abs(measured / by_wheels - 1.0) < SUSPECT_TURNS_AGREE
+    ):
+        yield ReferenceRemark("metre", usual - 1.0)

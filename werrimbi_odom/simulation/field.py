@@ -1,0 +1,264 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a robot without motion capture leaves behind: counters, a gyro, a localiser's idea of it.
+
+The drive is the engine's. In between somebody holds the robot while its wheels turn, and carries
+it while they stand; then everything is seen as an ordinary robot sees it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .bag import EPOCH
+from .engine import PERIOD, TruePath
+from .hidden.peculiarity import Peculiarity
+from .recording import Recording
+from .robot import TrueRobot
+from .sensors import count, sampling_times
+
+Floats = NDArray[np.float64]
+
+HELD, CARRIED = 4.0, 5.0
+"""How long the robot is held and carried [s]."""
+
+
+@dataclass(frozen=True)
+class FieldSensors:
+    """What is on board, and how bad it is.
+
+    Parameters
+    ----------
+    wheels_hz, imu_hz, localiser_hz : float
+        Messages a second of wheel angles, gyro, and localiser.
+    stamp_jitter : float
+        Standard deviation of header stamps about the instant of measuring [s].
+    latency : float
+        Mean time from a stamp until the message is received [s], exponential.
+    gyro_noise : float
+        Standard deviation of a reading [rad/s].
+    gyro_bias, gyro_scale : float
+        Range of the bias [rad/s] and of the scale's deviation from 1, drawn anew for each robot.
+    wander_xy, wander_yaw, wander_time : float
+        Standard deviations of the localiser's error [m, rad], and its time constant [s].
+    jumps, jump_xy, jump_yaw : float
+        How often a drive it jumps, and by how much [m, rad] (standard deviations).
+    """
+
+    wheels_hz: float = 20.0
+    imu_hz: float = 50.0
+    localiser_hz: float = 10.0
+    stamp_jitter: float = 4e-3
+    latency: float = 8e-3
+    gyro_noise: float = 3e-3
+    gyro_bias: float = 5e-3
+    gyro_scale: float = 0.02
+    wander_xy: float = 0.03
+    wander_yaw: float = 0.015
+    wander_time: float = 15.0
+    jumps: int = 2
+    jump_xy: float = 0.15
+    jump_yaw: float = 0.08
+
+
+@dataclass(frozen=True)
+class FieldDrive:
+    """One drive as ordinary sensors see it; all times since the simulation's clock began [s].
+
+    Parameters
+    ----------
+    wheels, imu, localiser : ndarray, shapes (n, 4), (m, 3), (k, 5)
+        Header stamp, received, and: angles of both wheels [rad]; turn rate [rad/s]; x, y [m] and
+        yaw [rad] of base_link in the map.
+    odometry : ndarray, shape (n, 3)
+        The robot's own x, y [m] and yaw [rad] by its nominal numbers, with each row of `wheels`.
+    truth : mapping
+        For truth.json: what nobody told the robot; times in the clock of the bag.
+    """
+
+    name: str
+    wheels: Floats
+    imu: Floats
+    localiser: Floats
+    odometry: Floats
+    truth: dict[str, object] = field(default_factory=dict)
+
+
+def as_in_the_field(
+    recording: Recording,
+    robot: TrueRobot,
+    *,
+    seed: int,
+    robot_seed: int = 0,
+    sensors: FieldSensors | None = None,
+) -> FieldDrive:
+    """See a drive with ordinary sensors, after somebody has held and carried the robot in it.
+
+    Parameters
+    ----------
+    seed, robot_seed : int
+        Of this drive, and of what is the robot's in all its drives (the gyro's bias and scale).
+    """
+    sensors = sensors or FieldSensors()
+    rng = np.random.default_rng([seed, 77])
+    own = np.random.default_rng([robot_seed, 78])
+    bias = float(own.uniform(-1.0, 1.0) * sensors.gyro_bias)
+    scale = float(1.0 + own.uniform(-1.0, 1.0) * sensors.gyro_scale)
+    path, held = _held(recording.true_path, rng)
+    path, carried = _carried(path, rng)
+    end = float(path.t_s[-1])
+
+    at = sampling_times(sensors.wheels_hz, end, rng)
+    zeros = rng.integers(-100_000, 100_000, 2)
+    sides = (
+        (path.left_angle_rad, robot.left_ticks_per_revolution),
+        (path.right_angle_rad, robot.right_ticks_per_revolution),
+    )
+    left, right = (
+        np.asarray(count(path.t_s, angle, at, ticks, int(zero)) * (2.0 * math.pi / ticks), float)
+        for (angle, ticks), zero in zip(sides, zeros, strict=True)
+    )
+    wheels = np.column_stack([*_stamped(at, sensors, rng), left, right])
+
+    at = sampling_times(sensors.imu_hz, end, rng)
+    rate = np.interp(at, path.t_s, np.gradient(path.yaw_rad, path.t_s))
+    rate = scale * rate + bias + sensors.gyro_noise * rng.standard_normal(at.size)
+    imu = np.column_stack([*_stamped(at, sensors, rng), rate])
+
+    at = sampling_times(sensors.localiser_hz, end, rng)
+    poses, jumped = _localised(path, at, sensors, rng)
+    localiser = np.column_stack([*_stamped(at, sensors, rng), poses])
+    truth: dict[str, object] = {
+        "held": [_by_the_bag(held)],
+        "carried": [_by_the_bag(carried)],
+        "localiser_jumps": _by_the_bag(jumped),
+        "gyro": {"bias_rad_per_s": bias, "scale": scale},
+    }
+    return FieldDrive(
+        recording.name, wheels, imu, localiser, _dead_reckoned(left, right, robot), truth
+    )
+
+
+def seen_in_the_field(odd: Peculiarity) -> bool:
+    """Whether a peculiarity is on the robot or its floor, so that this way of seeing shows it.
+
+    One that is made in the records of counters, or of motion capture, is not.
+    """
+    return (
+        type(odd).recording is Peculiarity.recording
+        and type(odd).reference is Peculiarity.reference
+    )
+
+
+def _by_the_bag(times: Sequence[float]) -> list[float]:
+    """Times in the clock of the bag [s], to the millisecond."""
+    return [round(EPOCH + time, 3) for time in times]
+
+
+def _stamped(at: Floats, sensors: FieldSensors, rng: np.random.Generator) -> tuple[Floats, Floats]:
+    """Header stamps, in order, and when messages come in."""
+    stamps = np.maximum.accumulate(at + sensors.stamp_jitter * rng.standard_normal(at.size))
+    stamps += 1e-6 * np.arange(at.size)  # no two alike
+    received = np.maximum(stamps, at) + rng.exponential(sensors.latency, at.size)
+    return stamps, np.maximum.accumulate(received)
+
+
+def _inserted(path: TruePath, row: int, more: Floats) -> TruePath:
+    """The path with `more` rows (x, y, yaw, left, right) after a row; what follows comes later."""
+    table = np.column_stack(
+        [path.x_m, path.y_m, path.yaw_rad, path.left_angle_rad, path.right_angle_rad]
+    )
+    table = np.vstack([table[: row + 1], more, table[row + 1 :]])
+    time = np.asarray(PERIOD * np.arange(len(table)), dtype=np.float64)
+    return TruePath(time, *np.ascontiguousarray(table.T))
+
+
+def _held(path: TruePath, rng: np.random.Generator) -> tuple[TruePath, list[float]]:
+    """Somebody holds the robot as it drives: its wheels go on, it does not."""
+    speed = np.abs(np.gradient(path.left_angle_rad + path.right_angle_rad))
+    row = _somewhere(speed > 0.5 * speed.max(), (0.2, 0.45), rng)
+    steps = round(HELD / PERIOD)
+    turned = [
+        angle[row] + (angle[row] - angle[row - 1]) * np.arange(1, steps + 1)
+        for angle in (path.left_angle_rad, path.right_angle_rad)
+    ]
+    still = np.tile([path.x_m[row], path.y_m[row], path.yaw_rad[row]], (steps, 1))
+    longer = _inserted(path, row, np.column_stack([still, *turned]))
+    on = row + 1 + steps  # the wheels have turned farther for the rest of the drive
+    gone = [each[-1] - angle[row] for each, angle in zip(turned, _angles(path), strict=True)]
+    left, right = longer.left_angle_rad.copy(), longer.right_angle_rad.copy()
+    left[on:] += gone[0]
+    right[on:] += gone[1]
+    longer = replace(longer, left_angle_rad=left, right_angle_rad=right)
+    return longer, [float(longer.t_s[row]), float(longer.t_s[row + steps])]
+
+
+def _angles(path: TruePath) -> tuple[Floats, Floats]:
+    return path.left_angle_rad, path.right_angle_rad
+
+
+def _carried(path: TruePath, rng: np.random.Generator) -> tuple[TruePath, list[float]]:
+    """Somebody lifts the robot as it stands, turns it, and puts it down elsewhere."""
+    speed = np.abs(np.gradient(path.left_angle_rad)) + np.abs(np.gradient(path.right_angle_rad))
+    row = _somewhere(speed <= np.quantile(speed, 0.02), (0.55, 0.9), rng)
+    steps = round(CARRIED / PERIOD)
+    share = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, steps + 1) / steps)
+    away = rng.uniform(0.5, 1.5) * np.exp(1j * rng.uniform(-np.pi, np.pi))
+    turn = float(rng.uniform(0.5, 2.5) * rng.choice([-1.0, 1.0]))
+    here = complex(path.x_m[row], path.y_m[row])
+    there = here + share * away
+    yaw = path.yaw_rad[row] + share * turn
+    stopped = np.tile([angle[row] for angle in _angles(path)], (steps, 1))
+    longer = _inserted(path, row, np.column_stack([there.real, there.imag, yaw, stopped]))
+    on = row + 1 + steps
+    place = longer.x_m + 1j * longer.y_m
+    place[on:] = here + away + (place[on:] - here) * np.exp(1j * turn)
+    heading = longer.yaw_rad.copy()
+    heading[on:] += turn
+    longer = replace(
+        longer, x_m=np.ascontiguousarray(place.real), y_m=place.imag.copy(), yaw_rad=heading
+    )
+    return longer, [float(longer.t_s[row]), float(longer.t_s[row + steps])]
+
+
+def _somewhere(where: NDArray[np.bool_], part: Sequence[float], rng: np.random.Generator) -> int:
+    """A row at which something is so, in a part of the drive; anywhere in it if nowhere."""
+    first, last = (int(share * where.size) for share in part)
+    rows = np.flatnonzero(where[first:last])
+    return first + int(rng.choice(rows) if rows.size else (last - first) // 2)
+
+
+def _localised(
+    path: TruePath, at: Floats, sensors: FieldSensors, rng: np.random.Generator
+) -> tuple[Floats, list[float]]:
+    """Poses in the map, (k, 3), with an error that wanders, and when it jumped [s]."""
+    sizes = np.array([sensors.wander_xy, sensors.wander_xy, sensors.wander_yaw])
+    kept = math.exp(-1.0 / (sensors.localiser_hz * sensors.wander_time))
+    steps = rng.standard_normal((at.size, 3)) * sizes * math.sqrt(1.0 - kept * kept)
+    rows = np.sort(rng.choice(np.arange(at.size // 10, at.size), sensors.jumps, replace=False))
+    jump = np.array([sensors.jump_xy, sensors.jump_xy, sensors.jump_yaw])
+    error, errors = sizes * rng.standard_normal(3), []
+    for row in range(at.size):
+        error = kept * error + steps[row]
+        if row in rows:
+            error = jump * rng.standard_normal(3)  # it has found itself anew, or lost itself
+        errors.append(error)
+    true = np.column_stack(
+        [np.interp(at, path.t_s, each) for each in (path.x_m, path.y_m, path.yaw_rad)]
+    )
+    return true + np.array(errors), [float(at[row]) for row in rows]
+
+
+def _dead_reckoned(left: Floats, right: Floats, robot: TrueRobot) -> Floats:
+    """What the robot's own driver makes of its wheels, (n, 3), from zero on."""
+    radius, base = robot.nominal.wheel_radius, robot.nominal.wheel_separation
+    gone, turned = (radius * np.diff(each) for each in (0.5 * (left + right), right - left))
+    yaw = np.concatenate([[0.0], np.cumsum(turned / base)])
+    middle = 0.5 * (yaw[1:] + yaw[:-1])
+    x, y = (np.concatenate([[0.0], np.cumsum(gone * f(middle))]) for f in (np.cos, np.sin))
+    return np.column_stack([x, y, yaw])

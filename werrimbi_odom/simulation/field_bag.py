@@ -1,0 +1,144 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Writing a drive in the field as the rosbag2 that its owner would have recorded."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import numpy as np
+from rosbags.rosbag2 import StoragePlugin, Writer
+from rosbags.typesys import Stores, get_typestore
+
+from .bag import EPOCH
+from .field import FieldDrive
+from .robot import TrueRobot
+from .robot_file import joints
+
+TOPICS = {
+    "/robot_description": "std_msgs/msg/String",
+    "/joint_states": "sensor_msgs/msg/JointState",
+    "/imu": "sensor_msgs/msg/Imu",
+    "/odom": "nav_msgs/msg/Odometry",
+    "/tf": "tf2_msgs/msg/TFMessage",
+}
+
+
+def urdf(robot: TrueRobot) -> str:
+    """The robot as its maker describes it: wheel joints where the nominal numbers put them."""
+    half, radius = robot.nominal.wheel_separation / 2, robot.nominal.wheel_radius
+    parts = ['<?xml version="1.0"?>', '<robot name="simulated">', '  <link name="base_link"/>']
+    for side, y in (("left", half), ("right", -half)):
+        names = joints(side, robot.wheels_a_side)
+        for number, name in enumerate(names):
+            x = 0.0 if len(names) == 1 else half * (1 - 2 * number)
+            link = name.removesuffix("_joint")
+            parts.append(
+                f'  <link name="{link}"><collision><geometry><cylinder radius="{radius}" '
+                f'length="0.02"/></geometry></collision></link>\n'
+                f'  <joint name="{name}" type="continuous"><parent link="base_link"/>'
+                f'<child link="{link}"/><origin xyz="{x} {y} 0"/><axis xyz="0 1 0"/></joint>'
+            )
+    return "\n".join([*parts, "</robot>"])
+
+
+def write_field_bag(drive: FieldDrive, robot: TrueRobot, folder: str | Path) -> Path:
+    """Write wheels, gyro, the robot's own odometry, both transforms of a localiser, and the URDF.
+
+    Parameters
+    ----------
+    folder : path
+        Of the bag; must not exist.
+    """
+    folder = Path(folder)
+    folder.parent.mkdir(parents=True, exist_ok=True)
+    store = get_typestore(Stores.ROS2_JAZZY)
+    types = store.types
+
+    def made(kind: str, *values: object) -> object:
+        return types[kind](*values)
+
+    def header(stamp: float, frame: str) -> object:
+        time = made("builtin_interfaces/msg/Time", *divmod(_nanoseconds(stamp), 10**9))
+        return made("std_msgs/msg/Header", time, frame)
+
+    def vector(x: float, y: float, z: float) -> object:
+        return made("geometry_msgs/msg/Vector3", x, y, z)
+
+    def facing(yaw: float) -> object:
+        half = 0.5 * yaw
+        return made("geometry_msgs/msg/Quaternion", 0.0, 0.0, math.sin(half), math.cos(half))
+
+    def transform(stamp: float, parent: str, child: str, pose: np.ndarray) -> object:
+        x, y, yaw = map(float, pose)
+        moved = made("geometry_msgs/msg/Transform", vector(x, y, 0.0), facing(yaw))
+        one = made("geometry_msgs/msg/TransformStamped", header(stamp, parent), child, moved)
+        return made("tf2_msgs/msg/TFMessage", [one])
+
+    def odometry(stamp: float, pose: np.ndarray) -> object:
+        x, y, yaw = map(float, pose)
+        point = made("geometry_msgs/msg/Point", x, y, 0.0)
+        unknown = np.zeros(36)
+        place = made("geometry_msgs/msg/Pose", point, facing(yaw))
+        still = made("geometry_msgs/msg/Twist", vector(0.0, 0.0, 0.0), vector(0.0, 0.0, 0.0))
+        return made(
+            "nav_msgs/msg/Odometry",
+            header(stamp, "odom"),
+            "base_link",
+            made("geometry_msgs/msg/PoseWithCovariance", place, unknown),
+            made("geometry_msgs/msg/TwistWithCovariance", still, unknown),
+        )
+
+    def imu(stamp: float, rate: float) -> object:
+        nothing = np.zeros(9)
+        unknown = np.array([-1.0, *np.zeros(8)])
+        return made(
+            "sensor_msgs/msg/Imu",
+            header(stamp, "imu_link"),
+            facing(0.0),
+            unknown,
+            vector(0.0, 0.0, rate),
+            nothing,
+            vector(0.0, 0.0, 9.81),
+            nothing,
+        )
+
+    sides = [joints(side, robot.wheels_a_side) for side in ("left", "right")]
+    nothing = np.zeros(0)
+    first = float(min(drive.wheels[0, 1], drive.imu[0, 1], drive.localiser[0, 1]))
+    messages = [(first, "/robot_description", made("std_msgs/msg/String", urdf(robot)))]
+    for (stamp, received, left, right), pose in zip(drive.wheels, drive.odometry, strict=True):
+        angles = np.repeat([left, right], [len(each) for each in sides])
+        names = [name for each in sides for name in each]
+        state = made("sensor_msgs/msg/JointState", header(stamp, ""), names, angles, *[nothing] * 2)
+        messages.append((received, "/joint_states", state))
+        messages.append((received, "/odom", odometry(stamp, pose)))
+        messages.append((received, "/tf", transform(stamp, "odom", "base_link", pose)))
+    for stamp, received, rate in drive.imu:
+        messages.append((received, "/imu", imu(stamp, float(rate))))
+    for stamp, received, *pose in drive.localiser:
+        between = _map_to_odom(drive, float(stamp), np.array(pose))
+        messages.append((received, "/tf", transform(stamp, "map", "odom", between)))
+    messages.sort(key=lambda message: message[0])
+    with Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
+        connections = {
+            topic: writer.add_connection(topic, kind, typestore=store)
+            for topic, kind in TOPICS.items()
+        }
+        for received, topic, message in messages:
+            data = store.serialize_cdr(message, TOPICS[topic])
+            writer.write(connections[topic], _nanoseconds(received), data)
+    return folder
+
+
+def _nanoseconds(time: float) -> int:
+    return EPOCH * 10**9 + round(float(time) * 1e9)
+
+
+def _map_to_odom(drive: FieldDrive, stamp: float, pose: np.ndarray) -> np.ndarray:
+    """What the localiser adds to the robot's own odometry for base_link to be where it thinks."""
+    own = [np.interp(stamp, drive.wheels[:, 0], drive.odometry[:, column]) for column in range(3)]
+    turn = pose[2] - own[2]
+    place = complex(pose[0], pose[1]) - complex(own[0], own[1]) * np.exp(1j * turn)
+    return np.array([place.real, place.imag, turn])
