@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.comparison.consistency import AtLength
 from werrimbi_odom.inference.comparison.jumps import jumped_legs, jumps_of
 from werrimbi_odom.inference.comparison.legs import (
     LegErrors,
@@ -377,16 +376,6 @@ def statistics_of(legs: Legs) -> LegStatistics:
     """The same of legs that were judged."""
     kept = statistics(legs.errors.chosen(~legs.outlier))
     return replace(kept, median_position_m=statistics(legs.errors).median_position_m)
-
-
-def consistency_by_length(prepared: Prepared, robot: Robot | Model) -> tuple[AtLength, ...]:
-    """What the legs of each length say of a robot's covariance, the shortest first."""
-    model = in_runs(prepared, robot)
-    found = []
-    for leg in sorted(prepared.cuts):
-        figures = statistics_of(judged_legs(prepared, model, leg))
-        found.append(AtLength(leg, figures.count, figures.nees, figures.freedom))
-    return tuple(found)
 
 
 def paths(prepared: Prepared, model: Model) -> tuple[Residual, ...]:
