@@ -42,6 +42,8 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
     if name == IN_DEGREES:
         return {}
     if name in CALIBRATED:
+        if name not in diagnosis.found and diagnosis.train.unit == "rad":
+            return _as_twin(diagnosis, name)
         value = _calibrated(diagnosis, name)
         if math.isclose(value.value, value.null, rel_tol=1e-6):  # a rival that no model here holds
             return {}
@@ -92,6 +94,30 @@ def _calibrated(diagnosis: Diagnosis, name: str) -> Value:
         spread = diagnosis.final.covariance[np.ix_(where, where)]
         std = size * std_as_effect(name, diagnosis.robot, spread)
     return Value(size, std, item.unit, item.says, item.null)
+
+
+def _as_twin(diagnosis: Diagnosis, name: str) -> dict[str, Value]:
+    """A size that no fit holds, by what was found in its place; empty where that says nothing."""
+    for found in diagnosis.found:
+        twin = next(
+            (item for item in find(found).indistinguishable_from if item.name == name), None
+        )
+        if twin is None or found not in CALIBRATED or not twin.values:
+            continue
+        values = values_of(diagnosis, found)
+        same = twin.same_as({own: item.value for own, item in values.items()})
+        parameters = find(name).parameters
+        return {
+            parameter: Value(
+                value,
+                abs(value / values[own].value) * values[own].std,
+                parameters[parameter].unit,
+                parameters[parameter].says,
+                parameters[parameter].null,
+            )
+            for (parameter, value), (own, _) in zip(same.items(), twin.values.values(), strict=True)
+        }
+    return {}
 
 
 def _fit_with(diagnosis: Diagnosis, name: str) -> Fitted | None:
