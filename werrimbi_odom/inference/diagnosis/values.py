@@ -16,7 +16,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnos
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, knobs_of
 from werrimbi_odom.inference.rules import ONE_WHEEL
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUpFinding
 
@@ -35,6 +35,13 @@ class Value:
     per_run: bool = False
     is_shape: bool = False
     """Whether it is a length or a threshold of the law, which has no null of its own."""
+    determined: bool = True
+    """Whether the drives hold it: else what a fit says of it is no number to be told."""
+
+    @property
+    def told(self) -> bool:
+        """Whether there is one number to tell of all drives."""
+        return self.determined and not self.per_run
 
 
 def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
@@ -55,6 +62,7 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
     applied = next(item for item in model.robot.effects if item.name == name)
     spread = _spreads(fit)
     anew = set(model.own[0]) if model.own else set()
+    limits = {knob.name: knob.undetermined for knob in knobs_of(applied.effect)}
     found = {}
     for parameter, item in applied.effect.parameters.items():
         if item.as_base:
@@ -65,14 +73,16 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
             continue
         per_run = f"{name}.{parameter}" in anew
         untold = f"{name}.{parameter}" in fit.held
+        std = math.nan if per_run else spread.get(f"{name}.{parameter}", math.nan)
         found[parameter] = Value(
             math.nan if per_run else float(applied.values[parameter]),
-            math.nan if per_run or untold else spread.get(f"{name}.{parameter}", math.nan),
+            math.nan if untold else std,
             item.unit,
             item.says,
             item.null,
             per_run,
             bool(item.tries),
+            not untold and not std > limits.get(f"{name}.{parameter}", math.inf),
         )
     return found
 

@@ -62,6 +62,9 @@ def _sizes(added: Added) -> list[str]:
 
 def value_told(item: FittedParameter) -> str:
     """A value with its standard deviation, to the digits that this leaves, and its unit."""
+    if item.remark == "undetermined" and not item.written:
+        usual = quantity(item.declared.null, math.nan, item.declared.unit)
+        return f"not determined by these drives, left at {usual}"
     if item.value is None:
         return "another one in each drive"
     std = math.nan if item.std is None else item.std
@@ -72,7 +75,7 @@ def remark_told(item: FittedParameter) -> str:
     """What is to be known of a value, beside the value."""
     if item.remark == "null":
         return "; these drives show none of it, so it stays at null"
-    if item.remark == "undetermined":
+    if item.remark == "undetermined" and item.written:
         return "; THESE DRIVES DO NOT DETERMINE IT"
     if item.remark == "bound":
         return "; AT THE LIMIT OF WHAT IS PHYSICALLY POSSIBLE"

@@ -39,6 +39,7 @@ def json_of(
         ],
         "rivals": list(diagnosis.rivals),
         "rivals_by_halves": list(diagnosis.torn),
+        "rivals_of_held": {name: list(each) for name, each in diagnosis.rivals_of_held.items()},
         "depends_on": [_cell(cell) for cell in significant(diagnosis)],
         "next_manoeuvre": None if manoeuvre is None else asdict(manoeuvre),
         "found": [
@@ -109,8 +110,8 @@ def _sides(sides: Sides | None, headings: Sides | None = None) -> dict[str, Any]
 def _parameters(diagnosis: Diagnosis, name: str) -> dict[str, Any]:
     return {
         parameter: {
-            "value": value.value,
-            "std": value.std,
+            "value": value.value if value.determined else None,
+            "std": value.std if value.determined else None,
             "unit": value.unit,
             "per_run": value.per_run,
         }

@@ -60,7 +60,7 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
     parts = [
         f"{parameter} is another one in each drive ({value.says})"
         if value.per_run
-        else f"{parameter} = {_value(value)} ({value.says})"
+        else f"{parameter} {'=' if value.determined else 'is'} {_value(value)} ({value.says})"
         for parameter, value in values.items()
     ]
     unseen = [key for key in every if key not in values]
@@ -84,7 +84,7 @@ def _deviations(diagnosis: Diagnosis, name: str) -> str:
     far = {
         parameter: abs(value.value - value.null) / value.std
         for parameter, value in values_of(diagnosis, name).items()
-        if value.std > 0.0 and math.isfinite(value.value)
+        if value.std > 0.0 and math.isfinite(value.value) and value.determined
     }
     if not far:
         return ""
@@ -98,11 +98,13 @@ def sizes(diagnosis: Diagnosis, name: str, *, believed: bool = False) -> str:
     return ", ".join(
         f"{parameter} {_value(value)}"
         for parameter, value in values.items()
-        if not value.per_run and not (believed and value.std > abs(value.value - value.null))
+        if value.told and not (believed and value.std > abs(value.value - value.null))
     )
 
 
 def _value(value: Value) -> str:
+    if not value.determined:
+        return "not determined by these drives"
     return quantity(value.value, value.std, value.unit)
 
 

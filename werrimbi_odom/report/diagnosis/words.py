@@ -8,6 +8,8 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
@@ -99,6 +101,7 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
         lines.append(
             f"Its errors on {judged(told)} are {error_words(errors, diagnosis.holdout.unit)}{like}."
         )
+    lines += _instead_of_held(diagnosis)
     if wanders:
         lines.append(
             "But: for seconds together the errors are alike, more than noise is, and the parts of "
@@ -288,6 +291,16 @@ def _law(told: Told) -> list[str]:
     ]
 
 
+def _instead_of_held(diagnosis: Diagnosis) -> list[str]:
+    """What the drives cannot tell from an effect that the file holds, and what can."""
+    return [
+        f"But: that it is {name}, which the robot file holds, these drives do not show: "
+        f"{listed(others, 'or')} in its place would explain them as well. `werrimbi explain` says "
+        "how each is checked on the robot; a reference that measures more often tells them apart."
+        for name, others in diagnosis.rivals_of_held.items()
+    ]
+
+
 def _at_bounds(diagnosis: Diagnosis) -> list[str]:
     return [
         f"But: {name} would lower the error too, only with {value}, the limit of what physics "
@@ -320,10 +333,13 @@ def _not_shown(told: Told) -> list[str]:
         )
     needing = [sight.effect for sight in hidden if sight.needs_more]
     if needing:
-        lines.append(
-            f"No drive shows {listed(needing)} with such a reference; one that measures positions "
-            "and headings does (motion capture, a scan matcher)."
+        poses = bool(np.isfinite(told.diagnosis.runs.start).all(axis=1).any())
+        better = (
+            "one that measures more finely, and more often, does (motion capture)"
+            if poses
+            else "one that measures positions and headings does (motion capture, a scan matcher)"
         )
+        lines.append(f"No drive shows {listed(needing)} with such a reference; {better}.")
     return lines
 
 
