@@ -20,7 +20,7 @@ from werrimbi_odom.inference.calibration_sizes import (
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob, Model
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob, Model, is_determined
 from werrimbi_odom.inference.rules import CALIBRATION_KNOWN, SIGNIFICANT
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter
 from werrimbi_odom.model.robot import Robot
@@ -86,7 +86,7 @@ def parameters_of(effect: Effect, fit: Fitted, given: Robot) -> dict[str, Fitted
 def _remark(value: float, std: float, knob: Knob, effect: Effect) -> Remark:
     name = knob.name.rpartition(".")[2]
     is_phase = effect.quadrature is not None and name == effect.quadrature[1]
-    if std > knob.undetermined:
+    if not is_determined(effect.parameters[name], value, std):
         return "undetermined"
     return "bound" if not is_phase and _at_bound(value, effect.parameters[name]) else "fitted"
 

@@ -16,7 +16,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnos
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, knobs_of
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, is_determined
 from werrimbi_odom.inference.rules import ONE_WHEEL
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUpFinding
 
@@ -62,7 +62,6 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
     applied = next(item for item in model.robot.effects if item.name == name)
     spread = _spreads(fit)
     anew = set(model.own[0]) if model.own else set()
-    limits = {knob.name: knob.undetermined for knob in knobs_of(applied.effect)}
     found = {}
     for parameter, item in applied.effect.parameters.items():
         if item.as_base:
@@ -82,7 +81,7 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
             item.null,
             per_run,
             bool(item.tries),
-            not untold and not std > limits.get(f"{name}.{parameter}", math.inf),
+            not untold and is_determined(item, float(applied.values[parameter]), std),
         )
     return found
 
