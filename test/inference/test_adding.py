@@ -48,6 +48,23 @@ def test_the_held_out_error_falls_to_the_noise(creep: Added) -> None:
     assert creep.holdout.sides.after < 1.25 * creep.noise_alone(creep.holdout)
 
 
+def test_noise_is_what_remains_only_where_compare_says_so_too(creep: Added) -> None:
+    """As where all legs together are as promised, and the spins among them are not."""
+    assert creep.verdict.good
+    assert "What remains is noise" in words_of(creep)
+    main = creep.compared.main
+    few = replace(main.by_motion["arc"].figures, count=3, nees=30.0)
+    spins = {**main.by_motion, "spin": replace(main.by_motion["spin"], figures=few)}
+    lengths = tuple(
+        replace(item, by_motion=spins) if item is main else item for item in creep.compared.lengths
+    )
+    found = replace(creep, compared=replace(creep.compared, lengths=lengths))
+    assert found.covariance == creep.covariance == "honest"
+    words = " ".join(words_of(found).split())
+    assert "What remains is noise" not in words
+    assert "The model's errors are larger than it promises in spins." in words
+
+
 def test_words_and_json_tell_the_same(creep: Added) -> None:
     words, figures = words_of(creep), json_of(creep)
     assert max(map(len, words.splitlines())) <= 80

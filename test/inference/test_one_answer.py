@@ -27,6 +27,7 @@ from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import figures_of, prepare
 from werrimbi_odom.inference.comparison.legs import LegStatistics
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.workbench.opened import opened
 
@@ -130,23 +131,30 @@ def test_a_phase_is_learnt_by_compare_as_well() -> None:
     assert learnt < 0.9 * without
 
 
-def test_the_files_say_the_same_by_every_verb(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    """Through the command line: drives with gaps, a robot file whose phase is not known."""
-    robot = tmp_path / "robot.yaml"
-    robot.write_text(
+def _written_robot(path: Path, base: float = 1.0, effect: Effect | None = None) -> Path:
+    held = (
+        f"    effects: [{effect.name}]\n    {effect.name}:\n      amplitude: 0.002\n"
+        if effect
+        else ""
+    )
+    path.write_text(
         "odom_node:\n  ros__parameters:\n"
         f"    wheel_separation: {ROBOT.wheel_separation}\n"
-        "    wheel_separation_multiplier: 1.01\n"
+        f"    wheel_separation_multiplier: {base}\n"
         f"    wheel_radius: {ROBOT.wheel_radius}\n"
         f"    left_ticks_per_revolution: {ROBOT.left_ticks_per_revolution}\n"
         f"    right_ticks_per_revolution: {ROBOT.right_ticks_per_revolution}\n"
         f"    left_wheel_noise: {ROBOT.left_wheel_noise}\n"
-        f"    right_wheel_noise: {ROBOT.right_wheel_noise}\n"
-        "    effects: [eccentric_left_wheel]\n"
-        "    eccentric_left_wheel:\n      amplitude: 0.002\n"
+        f"    right_wheel_noise: {ROBOT.right_wheel_noise}\n" + held
     )
+    return path
+
+
+def test_the_files_say_the_same_by_every_verb(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Through the command line: drives with gaps, a robot file whose phase is not known."""
+    robot = _written_robot(tmp_path / "robot.yaml", 1.01, ECCENTRIC)
     folders = []
     for run in drives((50, 51, 52), UNKNOWN_PHASE):
         folders.append(str(tmp_path / run.name))
@@ -180,3 +188,44 @@ def test_the_files_say_the_same_by_every_verb(
     assert set(first) >= {"run", "from_s", "to_s", "why"}
     assert " ".join(words.split()).count("the reference is silent while the robot") >= 3
     assert "the reference is silent while the robot" in " ".join(capsys.readouterr().out.split())
+
+
+def reeling(run: Run) -> Run:
+    """After a spin on the spot the robot stands a little askew, now to one side, now the other."""
+    reference, random = run.reference, np.random.default_rng(5)
+    assert reference is not None
+    place = reference.x + 1j * reference.y
+    gone, turned = np.diff(place) * np.exp(-1j * reference.yaw[:-1]), np.diff(reference.yaw)
+    spins = (np.abs(gone) < 0.02) & (np.abs(turned) > 0.05)
+    ends = spins & ~np.append(spins[1:], False)
+    turned = turned + np.where(ends, random.normal(0.0, 0.005, turned.size), 0.0)
+    yaw = reference.yaw[0] + np.concatenate([[0.0], np.cumsum(turned)])
+    place = place[0] + np.concatenate([[0.0], np.cumsum(gone * np.exp(1j * yaw[:-1]))])
+    return replace(run, reference=replace(reference, x=place.real, y=place.imag, yaw=yaw))
+
+
+def test_add_says_of_what_remains_what_compare_says_of_the_written_file(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Nothing more is seen in the fitted drives, and those held out err more than is promised."""
+    slip = find("lateral_slip").using(creep=0.02)
+    given = _written_robot(tmp_path / "robot.yaml")
+    folders = []
+    for seed in range(50, 56):
+        run = run_of(replace(ROBOT, effects=(slip,)), seed, 60)
+        folders.append(str(tmp_path / run.name))
+        write_run(tmp_path / run.name, reeling(run) if seed > 52 else run)
+    out, json_of_both = tmp_path / "new.yaml", [tmp_path / "add.json", tmp_path / "compare.json"]
+    words = ["add", "lateral_slip", "--robot", str(given), *folders[:3], "--holdout", *folders[3:]]
+    assert main([*words, "--out", str(out), "--json", str(json_of_both[0])]) == 0
+    said = " ".join(capsys.readouterr().out.split())
+    words = ["compare", "--robot", str(out), *folders[3:], "--json", str(json_of_both[1])]
+    assert main(words) == 0
+    of_compare = " ".join(capsys.readouterr().out.split())
+    added, compared = (json.loads(path.read_text()) for path in json_of_both)
+    headline = of_compare.partition(" - ")[0]
+    assert "its errors are larger than it promises" in headline
+    assert added["explains"] is compared["verdict"]["good"] is False
+    assert added["covariance"] == compared["verdict"]["covariance"] == "too small"
+    assert "What remains is noise" not in said
+    assert f"of the new file says of the held-out drives: {headline}" in said

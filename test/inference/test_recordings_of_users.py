@@ -16,10 +16,19 @@ from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.effects.collection import load_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.drafting import draft_effect
+from werrimbi_odom.inference.comparison.compare import compare
+from werrimbi_odom.inference.comparison.legs import statistics
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, diagnose
+from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence
 from werrimbi_odom.inference.diagnosis.values import values_of
+from werrimbi_odom.inference.diagnosis.variables import Variable, curve_knots, variables_of
+from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.rules import DRIFT_LEGS
 from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.diagnosis.dependence import dependence_words, strength_words
 
 
 def headings_of(run: Run) -> Run:
@@ -91,13 +100,67 @@ def test_a_file_whose_multiplier_mends_a_factor_is_fitted_as_any_other(factor: f
     assert found.robot.wheel_separation_multiplier == pytest.approx(true, rel=0.003)
 
 
-def test_a_rival_that_no_model_holds_has_no_size_to_check() -> None:
-    """Of headings alone the radii are the base's rival: "multiplier 1" was printed for them."""
-    runs = [headings_of(run) for run in runs_of(as_turning(ROBOT, 1.95), [1, 2])]
+def test_the_rival_that_headings_alone_leave_is_told_with_the_inverse() -> None:
+    """Of headings alone the radii are the base's rival: "multiplier 1 ± 6e-12" was printed."""
+    runs = [
+        headings_of(run)
+        for run in runs_of(
+            replace(as_turning(ROBOT, 1.95), right_wheel_radius_multiplier=1.01), [1, 2]
+        )
+    ]
     found = diagnose(runs, ROBOT, LIBRARY, holdout=runs)
     assert found.rivals == ("track_width", "wheel_radius_scale")
-    assert values_of(found, "track_width")["multiplier"].value == pytest.approx(1.95, rel=0.03)
-    assert values_of(found, "wheel_radius_scale") == {}
+    base = values_of(found, "track_width")["multiplier"]
+    radii = values_of(found, "wheel_radius_scale")["multiplier"]
+    assert base.value == pytest.approx(1.95, rel=0.03)
+    assert radii.value == pytest.approx(1.0 / base.value)
+    assert radii.std / radii.value == pytest.approx(base.std / base.value)
+
+
+def test_a_drift_of_a_gyro_is_not_learnt_from_one_leg() -> None:
+    """It took the leg's whole error: "falls from 0.00° to 0.00°"."""
+    run = headings_of(run_of(as_turning(ROBOT, 1.3), 4, 30))
+    assert run.reference is not None
+    rows = np.flatnonzero(run.reference.time < run.reference.time[0] + 2.5)
+    short = replace(run, reference=run.reference.chosen(rows))
+    for some, fewest in ((short, 1), (run, DRIFT_LEGS)):
+        legs = compare([some], ROBOT, leg=0.5).legs
+        assert legs.run.size >= fewest
+        assert (legs.run.size < DRIFT_LEGS) == (some is short)
+        assert statistics(legs.errors).rmse_yaw_rad > 0.05
+
+
+def test_nothing_goes_with_an_acceleration_that_no_wheel_can_make() -> None:
+    """Stamps that wander make it, and errors went with -43 m/s^2."""
+    run, random = run_of(ROBOT, 4, 30), np.random.default_rng(4)
+    late = replace(run.ticks, time=run.ticks.time + random.uniform(0.0, 0.045, run.ticks.time.size))
+    for ticks, told in ((run.ticks, True), (late, False)):
+        laid = together(match_finely([replace(run, ticks=ticks)], ROBOT, 1.0))
+        names = {item.name for item in variables_of(laid, Model(ROBOT, ({},)))}
+        assert ("acceleration" in names) == told
+        assert "speed" in names
+
+
+def test_sizes_that_are_told_are_those_that_occurred() -> None:
+    """An error per metre where the robot stands is none: it was told as where it is highest."""
+    random = np.random.default_rng(5)
+    speed = np.concatenate([np.zeros(480), random.uniform(0.2, 1.0, 2000)])
+    variable = Variable("speed", "m/s", speed, speed)
+    knots = curve_knots(speed)
+    cell = Dependence(
+        Amount("along", "travel"),
+        variable,
+        "curve",
+        np.where(knots < 0.1, 0.4, 0.02 * knots),
+        gain=100.0,
+        degrees=6,
+        p_value=1e-9,
+        shares=(speed, speed),
+    )
+    assert strength_words(cell) == "±0.75 %"
+    assert "lowest at 0.2" in dependence_words(cell)
+    assert "highest at 1 m/s" in dependence_words(cell)
+    assert strength_words(replace(cell, shares=None)) == "±20 %"
 
 
 SQUASH = '''

@@ -42,7 +42,9 @@ def radii_over_base(name: str) -> Twin:
         "positions",
         manoeuvre="out_and_back",
         minutes=2.0,
+        values={"multiplier": ("multiplier", 1.0)},
         of_headings=True,
+        inverse=True,
     )
 
 

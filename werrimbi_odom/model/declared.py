@@ -84,6 +84,8 @@ class Twin:
         empty where they are not in proportion.
     of_headings : bool
         They are one only where the reference measures headings alone.
+    inverse : bool
+        Values are in proportion to the reciprocals of this effect's.
     """
 
     name: str
@@ -93,10 +95,12 @@ class Twin:
     minutes: float = 0.0
     values: Mapping[str, tuple[str, float]] = field(default_factory=dict)
     of_headings: bool = False
+    inverse: bool = False
 
     def same_as(self, values: Mapping[str, float]) -> dict[str, float]:
         """The twin's values that do the same as `values` of this effect."""
-        return {name: factor * values[own] for name, (own, factor) in self.values.items()}
+        power = -1.0 if self.inverse else 1.0
+        return {name: factor * values[own] ** power for name, (own, factor) in self.values.items()}
 
 
 DRAWINGS: Mapping[str, int] = {

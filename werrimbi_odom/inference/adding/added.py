@@ -10,9 +10,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.inference.adding.values import FittedParameter
-from werrimbi_odom.inference.comparison.consistency import AtLength, Consistency, of_all
+from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.comparison.consistency import Consistency
 from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
 from werrimbi_odom.inference.comparison.legs import LegStatistics
+from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.pairs import Sides, Unit, error_of, sides_of
@@ -24,6 +26,8 @@ from werrimbi_odom.inference.rules import UNUSUAL_PROMISE
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
+
+WHEEL_NOISES = ("left_wheel_noise", "right_wheel_noise")
 
 
 @dataclass(frozen=True)
@@ -114,23 +118,27 @@ class Added:
     """By effect, why it should not be added; empty where nothing speaks against any."""
     left_out: tuple[LeftOut, ...]
     """Stretches of all runs that none of it is about."""
-    lengths: tuple[AtLength, ...]
-    """What the held-out legs of each length say of its covariance."""
+    compared: Comparison
+    """The robot as it is written over the held-out drives, or all where none were given: what
+    `compare` of that file says."""
 
     @property
     def changes(self) -> dict[str, float]:
         """Parameters of the robot file to be written: sizes, and noise where it is some."""
-        found = {name: float(getattr(self.robot, name)) for name in MULTIPLIERS}
+        names = [*MULTIPLIERS]
         if self.explained:
-            for name in ("left_wheel_noise", "right_wheel_noise"):
-                if self.noises[name].determined:
-                    found[name] = float(f"{self.noises[name].value:.4g}")
-        return found
+            names += [name for name in WHEEL_NOISES if self.noises[name].determined]
+        return {name: float(getattr(self.robot, name)) for name in names}
+
+    @property
+    def verdict(self) -> Verdict:
+        """What `compare` says of the written file."""
+        return verdict_of(self.compared)
 
     @property
     def covariance(self) -> Consistency:
-        """Whether the final model's is honest on the held-out drives."""
-        return of_all(self.lengths)
+        """Whether the written file's is honest, by `compare`."""
+        return self.verdict.covariance
 
     @property
     def name(self) -> str:

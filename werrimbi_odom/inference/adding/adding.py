@@ -9,38 +9,34 @@ the user's own will puts it in.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.adding.added import Added, Side
-from werrimbi_odom.inference.adding.fits import Fits, Show, fits_of
-from werrimbi_odom.inference.adding.objection import Worth, objection
+from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, Side
+from werrimbi_odom.inference.adding.fits import Show, fits_of
 from werrimbi_odom.inference.adding.start import (
     Drives,
     drives_of,
     with_set_up,
 )
 from werrimbi_odom.inference.adding.values import (
-    FittedParameter,
     parameters_of,
     std_of,
     to_write,
 )
+from werrimbi_odom.inference.adding.worth import Question
 from werrimbi_odom.inference.calibration_sizes import base_name
-from werrimbi_odom.inference.chances import chi2_above
+from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import (
     Legs,
     Prepared,
-    consistency_by_length,
     in_runs,
     judged_legs,
 )
-from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
-from werrimbi_odom.inference.diagnosis.diagnosis import chance
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
@@ -57,7 +53,7 @@ from werrimbi_odom.inference.fitting.knobs import (
 )
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
 from werrimbi_odom.inference.fitting.together import together
-from werrimbi_odom.inference.rules import STRANGE_NOISE, SURE, SURE_WHEN_ASKED
+from werrimbi_odom.inference.rules import STRANGE_NOISE, SURE
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -153,25 +149,9 @@ def add_effects(
     fit = with_sizes(drives.laid, kind, fit, robot, sizes)
     show(0.75, "judging")
     train, kept = _judged(judge, fits.none, fit)
-    chances = {effect.name: _chance(effect, fits, also) for effect in effects}
     alone = {name: _at_home(judge, each, kept) for name, each in fits.without.items()}
-    objections = {}
-    for effect in effects:
-        name = effect.name
-        others = tuple(other.name for other in effects if other is not effect)
-        found = parameters_of(effect, fit, robot)
-        without = sides_of(kept.calibrated, kept.after, kept.unit)
-        worth = Worth(
-            kept.sides,
-            None if name in also else alone.get(name, without),
-            _asked_for(effect, fits, drives, found),
-            chances[name],
-            name in held,
-            others,
-        )
-        against = objection(effect, found, worth, set_up)
-        if against is not None:
-            objections[name] = against
+    question = Question(tuple(effects), drives, fits, fit, robot, also, kept, alone, set_up)
+    chances, objections = question.chances, question.objections
     noises, remaining, explained = _noise(drives, fit, sigma)
     model = fit.point.model
     per_run = tuple(sorted(set(model.own[0]) - set(NUISANCES))) if model.own else ()
@@ -180,7 +160,19 @@ def add_effects(
         show(0.9, "all runs")
         written = _on_all(judge, drives, fit, robot, runs, limits, sizes)
     final = to_write(written.point.model, robot)
-    final = with_noise(final, noises) if explained else _with_noise_of(final, robot)
+    final = _with_noise_of(final, robot)
+    if explained:
+        final = with_noise(final, {name: _told(noises[name]) for name in WHEEL_NOISES})
+    show(0.95, "comparing")
+    compared = compare(
+        judge.kept_back if holdout else runs,
+        final,
+        kind,
+        leg=leg,
+        limits=limits,
+        sigma_xy=sigma_xy,
+        sigma_yaw=sigma_yaw,
+    )
     return Added(
         effects=tuple(effects),
         fitted={effect.name: parameters_of(effect, written, robot) for effect in effects},
@@ -202,7 +194,7 @@ def add_effects(
         chances=chances,
         objections=objections,
         left_out=judge.left_out,
-        lengths=consistency_by_length(judge.holdout, judge.at_home(_noisy(fit)).model),
+        compared=compared,
     )
 
 
@@ -211,13 +203,6 @@ def _calibrations_wanted(effects: Sequence[Effect], set_up: SetUp) -> set[str]:
     names = {effect.name for effect in effects} | {item.effect for item in set_up.findings}
     as_base = {effect.name for effect in effects if base_name(effect) is not None}
     return (names | ({"track_width"} if as_base else set())) & set(CALIBRATED)
-
-
-def _chance(effect: Effect, fits: Fits, also: tuple[str, ...]) -> float | None:
-    """Of as much of a better fit with an effect; None for what is not judged by its fit alone."""
-    if effect.name in CALIBRATED or effect.name in also:
-        return None
-    return chance(fits.all, fits.without.get(effect.name, fits.none), 1)
 
 
 def _refuse_unmeasured(effect: Effect, runs: Sequence[Run]) -> None:
@@ -262,21 +247,6 @@ def _at_home(judge: Judge, without: Fitted, kept: Side) -> Sides:
     return sides_of(legs, kept.after, kept.unit)
 
 
-def _asked_for(
-    effect: Effect, fits: Fits, drives: Drives, found: Mapping[str, FittedParameter]
-) -> bool:
-    """Whether the fitted drives want an effect, by legs left out of the fits as in a diagnosis.
-
-    A size, which is in every fit, by how far it is from what the file says.
-    """
-    if effect.name not in CALIBRATED:
-        before = fits.without.get(effect.name, fits.none)
-        return holds_when_cross_validated(drives.laid, before, fits.all)
-    [size] = found.values()
-    away = ((size.value or 0.0) - size.declared.null) / size.std if size.std else 0.0
-    return chi2_above(away**2, 1) < SURE_WHEN_ASKED
-
-
 def _noisy(fit: Fitted) -> Model:
     """The fitted model with the wheels' noise that was fitted with it."""
     model, variances = fit.point.model, fit.point.variances
@@ -301,9 +271,14 @@ def _noise(
     noises = noise_estimates(costs, fit.point.variances, held)
     found = dependences(drives.laid, fit.point, drives.kind, (*CALIBRATION, *fit.knobs))
     remaining = tuple(cell for cell in found if cell.p_value < SURE)
-    wheels = [noises[name] for name in ("left_wheel_noise", "right_wheel_noise")]
+    wheels = [noises[name] for name in WHEEL_NOISES]
     sane = all(not item.determined or item.value < STRANGE_NOISE for item in wheels)
     return noises, remaining, not remaining and sane
+
+
+def _told(noise: NoiseEstimate) -> NoiseEstimate:
+    """To as many digits as a file says."""
+    return replace(noise, value=float(f"{noise.value:.4g}"))
 
 
 def _with_noise_of(robot: Robot, given: Robot) -> Robot:

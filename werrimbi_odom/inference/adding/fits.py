@@ -17,7 +17,12 @@ from werrimbi_odom.inference.adding.start import (
     start_of_held,
     starts,
 )
-from werrimbi_odom.inference.adding.values import parameters_of, weakest, without_phases_stuck
+from werrimbi_odom.inference.adding.values import (
+    parameters_of,
+    undetermined,
+    weakest,
+    without_phases_stuck,
+)
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import Model, changed
@@ -142,13 +147,19 @@ def _well(drives: Drives, start: Start, given: Robot) -> Fitted:
 
 
 def _pruned(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitted:
-    """The fit without parameters that are not worth the price of a number, one after the other."""
+    """The fit without parameters that are not worth the price of a number, one after the other.
+
+    A length or threshold that the drives do not hold at all is left as it usually is.
+    """
     limit = math.sqrt(fit.price_of_one)
-    while (name := weakest(effect, parameters_of(effect, fit, given), limit)) is not None:
+    while True:
+        found = parameters_of(effect, fit, given)
+        name = undetermined(effect, found) or weakest(effect, found, limit)
+        if name is None:
+            return fit
         key = f"{effect.name}.{name}"
         model = fit.point.model
         at_null = changed(model.robot, {key: effect.parameters[name].null})
         knobs = tuple(knob for knob in fit.knobs if knob.name != key)
         point = replace(fit.point, model=Model(at_null, model.own))
         fit = drives.fit(point, fit.names, knobs, given)
-    return fit

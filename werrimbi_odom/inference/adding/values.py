@@ -20,7 +20,7 @@ from werrimbi_odom.inference.calibration_sizes import (
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob, Model
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob, Model, is_determined
 from werrimbi_odom.inference.rules import CALIBRATION_KNOWN, SIGNIFICANT
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter
 from werrimbi_odom.model.robot import Robot
@@ -43,6 +43,11 @@ class FittedParameter:
     """Values of the fitted runs, where each has its own."""
 
     @property
+    def written(self) -> bool:
+        """Whether the file's value is one that the drives gave."""
+        return self.std is not None
+
+    @property
     def significant(self) -> bool:
         """Whether it surely differs from null."""
         if self.value is None or not self.std:
@@ -63,6 +68,8 @@ def parameters_of(effect: Effect, fit: Fitted, given: Robot) -> dict[str, Fitted
         knob = knobs.get(key)
         if item.as_base:
             found[name] = _as_base(applied, item, fit, given)
+        elif knob is None and item.tries:
+            found[name] = FittedParameter(item, None, None, "undetermined")
         elif knob is None:
             found[name] = FittedParameter(item, applied.values[name], None, "null")
         elif knob.per_run:
@@ -79,7 +86,7 @@ def parameters_of(effect: Effect, fit: Fitted, given: Robot) -> dict[str, Fitted
 def _remark(value: float, std: float, knob: Knob, effect: Effect) -> Remark:
     name = knob.name.rpartition(".")[2]
     is_phase = effect.quadrature is not None and name == effect.quadrature[1]
-    if std > knob.undetermined:
+    if not is_determined(effect.parameters[name], value, std):
         return "undetermined"
     return "bound" if not is_phase and _at_bound(value, effect.parameters[name]) else "fitted"
 
@@ -117,6 +124,18 @@ def _as_base(applied: AppliedEffect, item: Parameter, fit: Fitted, given: Robot)
     base = _calibrated(find("track_width"), fit, given)
     std = None if base.value is None or base.std is None else base.std / base.value * value
     return FittedParameter(item, value, std, base.remark)
+
+
+def undetermined(effect: Effect, found: Mapping[str, FittedParameter]) -> str | None:
+    """A length or threshold of a law of which the drives say nothing at all; or None."""
+    return next(
+        (
+            name
+            for name, item in found.items()
+            if item.remark == "undetermined" and item.written and effect.parameters[name].tries
+        ),
+        None,
+    )
 
 
 def to_write(model: Model, given: Robot) -> Robot:

@@ -16,7 +16,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.comparison.consistency import AtLength
 from werrimbi_odom.inference.comparison.jumps import jumped_legs, jumps_of
 from werrimbi_odom.inference.comparison.legs import (
     LegErrors,
@@ -51,6 +50,7 @@ from werrimbi_odom.inference.legs.cutting import (
 )
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.rules import (
+    DRIFT_LEGS,
     FAR_ABOVE_NOISE,
     LEG_LENGTHS,
     LEGS_OF_A_LENGTH,
@@ -379,16 +379,6 @@ def statistics_of(legs: Legs) -> LegStatistics:
     return replace(kept, median_position_m=statistics(legs.errors).median_position_m)
 
 
-def consistency_by_length(prepared: Prepared, robot: Robot | Model) -> tuple[AtLength, ...]:
-    """What the legs of each length say of a robot's covariance, the shortest first."""
-    model = in_runs(prepared, robot)
-    found = []
-    for leg in sorted(prepared.cuts):
-        figures = statistics_of(judged_legs(prepared, model, leg))
-        found.append(AtLength(leg, figures.count, figures.nees, figures.freedom))
-    return tuple(found)
-
-
 def paths(prepared: Prepared, model: Model) -> tuple[Residual, ...]:
     """Measured and dead-reckoned path of every run, in their order."""
     found: dict[int, Residual] = {}
@@ -409,7 +399,8 @@ def _with_drifts(model: Model, runs: Together) -> Model:
     """The model with the drift of each run's gyro, which is no error of the robot.
 
     That is the slope of the heading errors over time that most legs have (least absolute values: a
-    median of slopes, weighed by the legs' durations), as fits have a drift of every run free.
+    median of slopes, weighed by the legs' durations), as fits have a drift of every run free. A run
+    of fewer than `DRIFT_LEGS` has none: it would take the whole error of one leg for it.
     """
     seen = legs_shown(model, runs)[:, 2]
     error = wrap_all(runs.finish[:, 2] - runs.start[:, 2] - seen)
@@ -421,7 +412,7 @@ def _with_drifts(model: Model, runs: Together) -> Model:
         order = np.argsort(slopes)
         weight = np.cumsum(runs.duration[rows][order])
         middle = int(np.searchsorted(weight, 0.5 * weight[-1])) if rows.size else 0
-        drift = float(slopes[order][middle]) if rows.size else 0.0
+        drift = float(slopes[order][middle]) if rows.size >= DRIFT_LEGS else 0.0
         own.append({**mine, YAW_DRIFT: drift})
     return Model(model.robot, tuple(own))
 

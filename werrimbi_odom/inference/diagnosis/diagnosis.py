@@ -12,7 +12,7 @@ that are held out have no part in any of it: they report.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 
 from werrimbi_odom.files.run import ReferenceKind, Run
@@ -20,6 +20,7 @@ from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.holdout import begin
+from werrimbi_odom.inference.diagnosis.in_place_of_held import rivals_of_held
 from werrimbi_odom.inference.diagnosis.lasting import lasting, lasting_effect
 from werrimbi_odom.inference.diagnosis.search import (
     Instead,
@@ -122,7 +123,10 @@ def diagnose(
         certain = [cell for cell in remaining if cell.p_value < VERY_SURE]
         misfit = misfit_of_found(fit, certain, laid, kind)
     found = told(begun, robot, tuple(rounds), fit, beyond, remaining, laid, kind, instead)
-    return replace(found, misfit=misfit)
+    held: Mapping[str, tuple[str, ...]] = {}
+    if found.verdict == "none" and misfit is None:
+        held = rivals_of_held(laid, fit, kind, effects, set_up.robot, sigma)
+    return replace(found, misfit=misfit, rivals_of_held=held)
 
 
 def _best(this: Round, runs: Together, kind: ReferenceKind) -> Fitted | None:

@@ -91,6 +91,9 @@ class Dependence:
     degrees: int
     p_value: float
     """Corrected for the number of cells looked at (Bonferroni)."""
+    shares: tuple[Floats, Floats] | None = None
+    """How much of what the error is in proportion to was gone in each step, for left and right
+    wheel, (n,): an error per metre is none while the robot stands. None: as much in each."""
 
     @property
     def channel(self) -> str:
@@ -145,6 +148,8 @@ def dependences(
             tested = _tested([own[here, part] for part in rows], products[:, here])
             if tested is not None:
                 found.append((amount, cell.variable, cell.form, tested))
+    path, drive = path_of(point.model, runs), runs.drive(point.model.robot)
+    shares = {amount: _shares(path, drive.duration, amount) for amount in AMOUNTS}
     cells = [
         Dependence(
             amount,
@@ -156,6 +161,7 @@ def dependences(
             test.gain,
             test.degrees,
             min(1.0, chi2_above(test.gain, test.degrees) * len(found)),
+            shares[amount],
         )
         for amount, variable, form, test in found
     ]
@@ -244,29 +250,46 @@ def pushes_of(
     Where the amount belongs to the robot, the second is zero.
     """
     robot = point.model.robot
-    travel, motion = path.travel, path.motion
     levers = runs.of_steps(
         point.model, "levers", lambda: _levers(runs, path, view_of(robot.effects))
     )
-    nothing = np.zeros((motion.turn.size, 3))
+    nothing = np.zeros((path.motion.turn.size, 3))
+    left, right = _bases(path, runs.drive(robot).duration, amount)
     if amount.of_wheels:
-        left = travel.left if amount.per == "travel" else np.abs(travel.left)
-        right = travel.right if amount.per == "travel" else np.abs(travel.right)
         return (
             nothing if amount.channel == "right" else levers.seen(0.5 * left, -left / robot.track),
             nothing if amount.channel == "left" else levers.seen(0.5 * right, right / robot.track),
         )
+    base = left
+    if amount.channel == "along":
+        return levers.seen(base, None), nothing
+    if amount.channel == "sideways":
+        return levers.seen(np.asarray(1j * base), None), nothing
+    return levers.seen(None, base), nothing
+
+
+def _bases(path: DrivenPath, duration: Floats, amount: Amount) -> tuple[Floats, Floats]:
+    """What an error is in proportion to in each step, of left and right wheel, (n,)."""
+    travel, motion = path.travel, path.motion
+    if amount.of_wheels:
+        if amount.per == "travel":
+            return travel.left, travel.right
+        return np.abs(travel.left), np.abs(travel.right)
     base = {
         "travel": motion.along,
         "path": np.abs(motion.along),
         "turn": motion.turn,
-        "duration": runs.drive(robot).duration,
+        "duration": duration,
     }[amount.per]
-    if amount.channel == "along":
-        return levers.seen(base, None), nothing
-    if amount.channel == "sideways":
-        return levers.seen(1j * base, None), nothing
-    return levers.seen(None, base), nothing
+    return base, base
+
+
+def _shares(path: DrivenPath, duration: Floats, amount: Amount) -> tuple[Floats, Floats]:
+    left, right = _bases(path, duration, amount)
+    return (
+        np.zeros(0) if amount.channel == "right" else np.abs(left),
+        np.zeros(0) if amount.channel == "left" else np.abs(right),
+    )
 
 
 class _Levers(NamedTuple):

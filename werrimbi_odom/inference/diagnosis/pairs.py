@@ -37,7 +37,7 @@ class Sides:
     unit: Unit = "m"
     """Radians where headings alone were measured, and errors are those of the heading."""
     chance: float = 1.0
-    """How often chance would raise the errors of these legs as much; 1 where nobody asked."""
+    """How often chance would raise the errors of these legs as much; 1 where none rose."""
 
     @property
     def fell(self) -> bool:
@@ -58,7 +58,10 @@ def sides_of(before: Legs, after: Legs, unit: Unit) -> Sides:
     unit
         "m" for errors of position, "rad" for those of heading.
     """
-    return Sides(error_of(before, unit), error_of(after, unit), unit, _chance(before, after, unit))
+    errors = error_of(before, unit), error_of(after, unit)
+    if not errors[1] > errors[0] * (1.0 + HELD_OUT_FALL):
+        return Sides(*errors, unit)
+    return Sides(*errors, unit, _chance(before, after, unit))
 
 
 def error_of(legs: Legs, unit: Unit) -> float:

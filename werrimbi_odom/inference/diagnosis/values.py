@@ -16,7 +16,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnos
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, is_determined
 from werrimbi_odom.inference.rules import ONE_WHEEL
 from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUpFinding
 
@@ -35,6 +35,13 @@ class Value:
     per_run: bool = False
     is_shape: bool = False
     """Whether it is a length or a threshold of the law, which has no null of its own."""
+    determined: bool = True
+    """Whether the drives hold it: else what a fit says of it is no number to be told."""
+
+    @property
+    def told(self) -> bool:
+        """Whether there is one number to tell of all drives."""
+        return self.determined and not self.per_run
 
 
 def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
@@ -42,6 +49,8 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
     if name == IN_DEGREES:
         return {}
     if name in CALIBRATED:
+        if name not in diagnosis.found and diagnosis.train.unit == "rad":
+            return _as_twin(diagnosis, name)
         value = _calibrated(diagnosis, name)
         if math.isclose(value.value, value.null, rel_tol=1e-6):  # a rival that no model here holds
             return {}
@@ -63,14 +72,16 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
             continue
         per_run = f"{name}.{parameter}" in anew
         untold = f"{name}.{parameter}" in fit.held
+        std = math.nan if per_run else spread.get(f"{name}.{parameter}", math.nan)
         found[parameter] = Value(
             math.nan if per_run else float(applied.values[parameter]),
-            math.nan if per_run or untold else spread.get(f"{name}.{parameter}", math.nan),
+            math.nan if untold else std,
             item.unit,
             item.says,
             item.null,
             per_run,
             bool(item.tries),
+            not untold and is_determined(item, float(applied.values[parameter]), std),
         )
     return found
 
@@ -92,6 +103,30 @@ def _calibrated(diagnosis: Diagnosis, name: str) -> Value:
         spread = diagnosis.final.covariance[np.ix_(where, where)]
         std = size * std_as_effect(name, diagnosis.robot, spread)
     return Value(size, std, item.unit, item.says, item.null)
+
+
+def _as_twin(diagnosis: Diagnosis, name: str) -> dict[str, Value]:
+    """A size that no fit holds, by what was found in its place; empty where that says nothing."""
+    for found in diagnosis.found:
+        twin = next(
+            (item for item in find(found).indistinguishable_from if item.name == name), None
+        )
+        if twin is None or found not in CALIBRATED or not twin.values:
+            continue
+        values = values_of(diagnosis, found)
+        same = twin.same_as({own: item.value for own, item in values.items()})
+        parameters = find(name).parameters
+        return {
+            parameter: Value(
+                value,
+                abs(value / values[own].value) * values[own].std,
+                parameters[parameter].unit,
+                parameters[parameter].says,
+                parameters[parameter].null,
+            )
+            for (parameter, value), (own, _) in zip(same.items(), twin.values.values(), strict=True)
+        }
+    return {}
 
 
 def _fit_with(diagnosis: Diagnosis, name: str) -> Fitted | None:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.prediction import anchors, headings_of, path_of, right_handed
 from werrimbi_odom.inference.fitting.together import Together
-from werrimbi_odom.inference.rules import CURVE_KNOTS, FLOOR_CELL, FLOOR_CELLS
+from werrimbi_odom.inference.rules import CURVE_KNOTS, FLOOR_CELL, FLOOR_CELLS, GRIP, SELDOM_BEYOND
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
@@ -128,6 +128,8 @@ def variables_of(runs: Together, model: Model) -> tuple[Variable, ...]:
         found.append(Variable("position", "m", place[0], place[1], "place", ("x", "y")))
     for name, span in drive.channels.items():
         found.append(robots(name, "", _mean(span), name))
+    if np.mean(np.abs(acceleration) > GRIP) > SELDOM_BEYOND:
+        found = [item for item in found if item.name != "acceleration"]
     return tuple(item for item in found if item.name == CONSTANT or np.ptp(item.left) > 0.0)
 
 

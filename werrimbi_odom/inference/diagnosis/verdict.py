@@ -5,7 +5,8 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy as np
@@ -87,6 +88,9 @@ class Diagnosis:
     """What is suspect about the reference of the fitted runs."""
     misfit: Misfit | None = None
     """What is left because a law's form is not quite nature's, or beside everything found."""
+    rivals_of_held: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """Where nothing is missing: effects that would do as well in the place of one that the file
+    holds, by its name."""
 
     @property
     def robot(self) -> Robot:

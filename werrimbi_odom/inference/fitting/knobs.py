@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import cast
@@ -12,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.rules import CALIBRATION_BOUNDS, CALIBRATION_KNOWN
-from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.effect import Effect, Parameter
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -97,6 +98,18 @@ def knobs_of(effect: Effect, shared: Sequence[str] = ()) -> tuple[Knob, ...]:
         for name, item in effect.parameters.items()
         if not item.as_base
     )
+
+
+def is_determined(parameter: Parameter, value: float, std: float) -> bool:
+    """Whether a fit says anything of a parameter.
+
+    It does not where one deviation to either side is all that physics allows; nor of a length or
+    another scale of a law where one deviation is as much as itself, for then not even its order of
+    magnitude is known.
+    """
+    low, high = parameter.bounds
+    scale = abs(value) if parameter.tries and low > 0.0 else math.inf
+    return not std > min(0.5 * (high - low), scale)
 
 
 def shared_of(knobs: Sequence[Knob]) -> list[Knob]:

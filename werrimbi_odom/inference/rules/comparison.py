@@ -21,6 +21,10 @@ drift part by a root of 2, as far as a drive has them."""
 LEGS_OF_A_LENGTH, LEGS_OF_A_RUN = 8, 2
 """Legs that another length must give, in all and of each run on average, to be looked at."""
 
+DRIFT_LEGS = 3
+"""Legs of a run from which the drift of a gyro is told before its legs are judged: of fewer the
+median is one of them, which would then err by nothing at all."""
+
 LEGS_OF_A_PART = 6
 """Legs beyond what is fitted to them, for systematic parts and for the wheels' noise: Student's t
 of five degrees must be 11 for `SURE_OF_LEGS`, so fewer never tell."""

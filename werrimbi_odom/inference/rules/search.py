@@ -96,6 +96,12 @@ FLOOR_CELLS = 40
 """Cells of the floor, at the most: each is a number, and chi-squared of 40 degrees must be above 90
 for `VERY_SURE` before all other cells of the map are counted."""
 
+GRIP, SELDOM_BEYOND = 10.0, 0.1
+"""Acceleration [m/s^2] that no wheel passes on to the floor (a friction of one, times gravity), and
+share of the steps that may show more. Counts that come in bunches, or stamps that wander, make it:
+where it is more, the acceleration was not measured, and nothing is said to go with it. The real
+robots and the engine's are below 3 in nine steps of ten; one whose stamps wander is at 20."""
+
 NEIGHBOUR = 1.6
 """Widths of a floor's cell within which another cell is its neighbour: corners touch at 1.4, and
 steps are seldom in the very middle of their cell."""

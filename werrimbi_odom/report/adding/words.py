@@ -11,6 +11,7 @@ from typing import Any
 from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.values import FittedParameter
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.report.comparison.words import headline
 from werrimbi_odom.report.numbers import listed, picked, quantity, scaled_with_std
 from werrimbi_odom.report.phrases import jumps_words, left_out_json, left_out_words, sizes_words
 from werrimbi_odom.report.text import WIDTH, filled, table
@@ -61,6 +62,9 @@ def _sizes(added: Added) -> list[str]:
 
 def value_told(item: FittedParameter) -> str:
     """A value with its standard deviation, to the digits that this leaves, and its unit."""
+    if item.remark == "undetermined" and not item.written:
+        usual = quantity(item.declared.null, math.nan, item.declared.unit)
+        return f"not determined by these drives, left at {usual}"
     if item.value is None:
         return "another one in each drive"
     std = math.nan if item.std is None else item.std
@@ -71,7 +75,7 @@ def remark_told(item: FittedParameter) -> str:
     """What is to be known of a value, beside the value."""
     if item.remark == "null":
         return "; these drives show none of it, so it stays at null"
-    if item.remark == "undetermined":
+    if item.remark == "undetermined" and item.written:
         return "; THESE DRIVES DO NOT DETERMINE IT"
     if item.remark == "bound":
         return "; AT THE LIMIT OF WHAT IS PHYSICALLY POSSIBLE"
@@ -132,21 +136,18 @@ def _remarks(added: Added) -> list[str]:
 
 
 def _rest(added: Added) -> str:
-    nees = added.holdout.figures("after").nees
+    verdict = added.verdict
+    nees = added.compared.main.all.figures.nees
     if not added.remaining:
-        if added.covariance == "honest":
+        if verdict.good:
             return (
                 f"What remains is noise: nothing more is seen in the errors, and they are as large "
                 f"as the covariance says (NEES {nees:.2f}, honest is 1)."
             )
-        seen = "Nothing more is seen in the errors of the fitted drives"
-        off = [item for item in added.lengths if item.says == added.covariance != "unknown"]
-        if not off:
-            return f"{seen}; the held-out ones have too few legs to judge the covariance by."
-        worst = max(off, key=lambda item: abs(math.log(item.nees)))
+        which = "these" if added.set_aside else "the held-out"
         return (
-            f"{seen}; those of the held-out ones are {math.sqrt(worst.nees):.1f} times what the "
-            f"covariance says over legs of {worst.leg:g} m (NEES {worst.nees:.2f}, honest is 1)."
+            "Nothing more is seen in the errors of the fitted drives. But `werrimbi compare` of "
+            f"the new file says of {which} drives: {headline(added.compared, verdict)}"
         )
     first = added.remaining[0] if added.misfit is None else added.misfit.cell
     if added.misfit is not None and added.misfit.effect is not None:
@@ -230,6 +231,7 @@ def json_of(added: Added) -> dict[str, Any]:
         "objection": added.objection,
         "objections": dict(added.objections),
         "covariance": added.covariance,
+        "explains": added.verdict.good,
         "left_out": left_out_json(added.left_out),
     }
 

@@ -42,7 +42,7 @@ def words_of(
         If it is known already.
     """
     verdict = verdict or verdict_of(comparison)
-    paragraphs = [_headline(comparison, verdict)]
+    paragraphs = [headline(comparison, verdict)]
     if verdict.enough:
         paragraphs += _by_motion(comparison, verdict)
         if not verdict.gross:
@@ -53,7 +53,8 @@ def words_of(
     return "\n".join(filled(text) for text in paragraphs if text)
 
 
-def _headline(comparison: Comparison, verdict: Verdict) -> str:
+def headline(comparison: Comparison, verdict: Verdict) -> str:
+    """Whether the model is good, in a sentence."""
     count = comparison.main.all.figures.count
     if not verdict.enough:
         return (

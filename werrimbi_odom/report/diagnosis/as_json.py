@@ -41,6 +41,7 @@ def json_of(
         ],
         "rivals": list(diagnosis.rivals),
         "rivals_by_halves": list(diagnosis.torn),
+        "rivals_of_held": {name: list(each) for name, each in diagnosis.rivals_of_held.items()},
         "depends_on": [_cell(cell) for cell in significant(diagnosis)],
         "next_manoeuvre": None if manoeuvre is None else asdict(manoeuvre),
         "found": [
@@ -108,7 +109,12 @@ def _sides(sides: Sides | None, headings: Sides | None = None) -> dict[str, Any]
 
 def _parameters(diagnosis: Diagnosis, name: str) -> dict[str, Any]:
     return {
-        parameter: picked(value, "value std unit per_run")
+        parameter: {
+            "value": value.value if value.determined else None,
+            "std": value.std if value.determined else None,
+            "unit": value.unit,
+            "per_run": value.per_run,
+        }
         for parameter, value in values_of(diagnosis, name).items()
     }
 

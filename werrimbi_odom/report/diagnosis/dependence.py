@@ -58,6 +58,9 @@ _AMOUNTS = {
     ("heading", "duration"): "how far the robot turns as time goes by",
 }
 
+_RARE = 0.02
+"""Share of the way, at either end, that is too rare to be told of."""
+
 
 def short_name(variable: str) -> str:
     """A variable's name for tables and figures; the same wherever it stands."""
@@ -97,7 +100,7 @@ def strength_words(cell: Dependence) -> str:
     elif cell.form == "turns":
         size = float(np.median(np.hypot(*np.atleast_2d(cell.coefficients).T)))
     else:
-        low, high = np.quantile(values, (0.02, 0.98))
+        low, high = _quantiles(values, _weights(cell), np.array([_RARE, 1.0 - _RARE]))
         size = 0.5 * float(high - low)
     sign = "" if cell.variable.name == CONSTANT else "±"
     return f"{sign}{_in_unit(cell, size)}"
@@ -129,8 +132,9 @@ def _shape(cell: Dependence) -> str:
     if cell.form == "turns":
         return ", a wave"
     if cell.form == "curve":
-        at = np.quantile(variable.left, np.linspace(0.02, 0.98, 25))
-        nearest = [int(np.argmin(np.abs(variable.left - value))) for value in at]
+        went = _values(cell)
+        at = _quantiles(went, _weights(cell), np.linspace(_RARE, 1.0 - _RARE, 25))
+        nearest = [int(np.argmin(np.abs(went - value))) for value in at]
         values = _errors(cell)[nearest]
         bottom, top = (_round(float(at[index])) for index in (values.argmin(), values.argmax()))
         return f", a curve, lowest at {bottom} and highest at {top} {variable.unit}".rstrip()
@@ -148,9 +152,44 @@ def _round(value: float) -> str:
     return "0" if abs(value) < 1e-6 else f"{value:.2g}"
 
 
+def _sides(cell: Dependence) -> slice:
+    """Which wheels' steps are told: one side where both are alike, or where one alone errs."""
+    if cell.variable.shared or cell.form == "place":
+        return slice(0, 1)
+    only = {"left": slice(0, 1), "right": slice(1, 2)}
+    return only.get(cell.channel, slice(0, 2))
+
+
 def _errors(cell: Dependence) -> Floats:
     """The error by its amount at every step."""
     functions = functions_of(cell.variable)[cell.form]
     coefficients = np.atleast_2d(cell.coefficients)[0]
-    sides = functions[:1] if cell.variable.shared or cell.form == "place" else functions
-    return np.concatenate([side @ coefficients for side in sides])
+    return np.concatenate([side @ coefficients for side in functions[_sides(cell)]])
+
+
+def _values(cell: Dependence) -> Floats:
+    """The variable at the same steps."""
+    return np.concatenate([cell.variable.left, cell.variable.right][_sides(cell)])
+
+
+def _weights(cell: Dependence) -> Floats:
+    """How much each of those steps counts: by what it went of what the error is in proportion to.
+
+    What an error per metre is where the robot stands, or hardly ever was, has never been.
+    """
+    size = _errors(cell).size
+    if cell.shares is None:
+        return np.ones(size)
+    known = [side for side in cell.shares if side.size]
+    if cell.variable.shared or cell.form == "place":
+        return np.asarray(sum(known))
+    return np.concatenate(known)
+
+
+def _quantiles(values: Floats, weights: Floats, shares: Floats) -> Floats:
+    """Quantiles of values that count by their weights."""
+    order = np.argsort(values)
+    up_to = np.cumsum(weights[order])
+    if not up_to[-1] > 0.0:
+        return np.quantile(values, shares)
+    return np.asarray(values[order][np.searchsorted(up_to, shares * up_to[-1])])

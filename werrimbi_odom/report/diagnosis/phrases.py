@@ -6,6 +6,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.named import effect_named
@@ -62,7 +64,7 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
     parts = [
         f"{parameter} is another one in each drive ({value.says})"
         if value.per_run
-        else f"{parameter} = {_value(value)} ({value.says})"
+        else f"{parameter} {'=' if value.determined else 'is'} {_value(value)} ({value.says})"
         for parameter, value in values.items()
     ]
     unseen = [key for key in every if key not in values]
@@ -86,7 +88,7 @@ def _deviations(diagnosis: Diagnosis, name: str) -> str:
     far = {
         parameter: abs(value.value - value.null) / value.std
         for parameter, value in values_of(diagnosis, name).items()
-        if value.std > 0.0 and math.isfinite(value.value)
+        if value.std > 0.0 and math.isfinite(value.value) and value.determined
     }
     if not far:
         return ""
@@ -100,11 +102,13 @@ def sizes(diagnosis: Diagnosis, name: str, *, believed: bool = False) -> str:
     return ", ".join(
         f"{parameter} {_value(value)}"
         for parameter, value in values.items()
-        if not value.per_run and not (believed and value.std > abs(value.value - value.null))
+        if value.told and not (believed and value.std > abs(value.value - value.null))
     )
 
 
 def _value(value: Value) -> str:
+    if not value.determined:
+        return "not determined by these drives"
     return quantity(value.value, value.std, value.unit)
 
 
@@ -241,8 +245,11 @@ def not_shown(told: Told) -> list[str]:
         )
     needing = [sight.effect for sight in hidden if sight.needs_more]
     if needing:
-        lines.append(
-            f"No drive shows {listed(needing)} with such a reference; one that measures positions "
-            "and headings does (motion capture, a scan matcher)."
+        poses = bool(np.isfinite(told.diagnosis.runs.start).all(axis=1).any())
+        better = (
+            "one that measures more finely, and more often, does (motion capture)"
+            if poses
+            else "one that measures positions and headings does (motion capture, a scan matcher)"
         )
+        lines.append(f"No drive shows {listed(needing)} with such a reference; {better}.")
     return lines

@@ -33,9 +33,9 @@ def _parameters(diagnosis: Diagnosis) -> str:
         [
             f"{name}.{parameter}",
             *(
-                ("each drive its own", item.unit)
-                if item.per_run
-                else in_unit(item.value, item.std, item.unit)
+                in_unit(item.value, item.std, item.unit)
+                if item.told
+                else ("each drive its own" if item.per_run else "not determined", item.unit)
             ),
         ]
         for name in names

@@ -103,6 +103,7 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
         lines.append(
             f"Its errors on {judged(told)} are {error_words(errors, diagnosis.holdout.unit)}{like}."
         )
+    lines += _instead_of_held(diagnosis)
     if wanders:
         lines.append(
             "But: for seconds together the errors are alike, more than noise is, and the parts of "
@@ -255,6 +256,16 @@ def _set_up(diagnosis: Diagnosis) -> list[str]:
     return [
         *lines,
         *(f"This robot is a skid steer ({each.effect}): {each.words}." for each in skids),
+    ]
+
+
+def _instead_of_held(diagnosis: Diagnosis) -> list[str]:
+    """What the drives cannot tell from an effect that the file holds, and what can."""
+    return [
+        f"But: that it is {name}, which the robot file holds, these drives do not show: "
+        f"{listed(others, 'or')} in its place would explain them as well. `werrimbi explain` says "
+        "how each is checked on the robot; a reference that measures more often tells them apart."
+        for name, others in diagnosis.rivals_of_held.items()
     ]
 
 

@@ -1,0 +1,132 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Two poses a drive: what they cannot tell is said, before and after an effect is added."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from werrimbi_odom.report.diagnosis.told import Told
+
+from test.inference.driven import run_of
+from test.model.drives import read
+from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.adding.adding import Added, add_effect
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.trajectory import trajectory
+from werrimbi_odom.report.adding.words import json_of as json_of_added
+from werrimbi_odom.report.adding.words import words_of as words_of_added
+from werrimbi_odom.report.diagnosis.as_json import json_of
+from werrimbi_odom.report.diagnosis.tables import tables_of
+from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+
+PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
+KICKING = find("castor_kick").using(angle=0.0, alternating=0.008, length=0.04)
+SOME = [find(name) for name in ("castor_kick", "left_backlash", "right_backlash", "encoder_skew")]
+
+
+def by_tape(run: Run) -> Run:
+    """The first pose and the last."""
+    assert run.reference is not None
+    ends = np.array([0, run.reference.time.size - 1])
+    return replace(run, reference=replace(run.reference.chosen(ends)))
+
+
+def to_and_fro(seed: int) -> Run:
+    """Along a line, forwards and backwards, one to six times; a pose before and one after."""
+    random, rate = np.random.default_rng(seed), 20
+    speed = np.concatenate([np.full(4 * rate, 0.3 * (-1.0) ** leg) for leg in range(2 + seed % 6)])
+    speed = np.convolve(speed, np.ones(8) / 8.0, "same")
+    truth = replace(PLAIN, effects=(KICKING,))
+    ticks = read(PLAIN, float(rate), speed, np.zeros(speed.size))
+    path = trajectory(truth, *ticks)
+    ends = [0, path.x.size - 1]
+    noise = random.normal(0.0, 1.0, (3, 2)) * [[1e-3], [1e-3], [2e-3]]
+    seen = Reference(
+        path.time[ends], path.x[ends] + noise[0], path.y[ends] + noise[1], path.yaw[ends] + noise[2]
+    )
+    record = Ticks(ticks.time, ticks.left.astype(float), ticks.right.astype(float), {})
+    return Run(f"line_{seed}", Path(f"line_{seed}"), record, seen)
+
+
+@pytest.fixture(scope="module")
+def runs() -> list[Run]:
+    return [to_and_fro(seed) for seed in range(12)]
+
+
+def diagnosed(runs: list[Run], robot: Robot) -> Diagnosis:
+    return diagnose(runs[:9], robot, SOME, holdout=runs[9:])
+
+
+@pytest.fixture(scope="module")
+def first(runs: list[Run]) -> Diagnosis:
+    return diagnosed(runs, PLAIN)
+
+
+@pytest.fixture(scope="module")
+def kick(runs: list[Run]) -> Added:
+    return add_effect(find("castor_kick"), runs[:9], PLAIN, holdout=runs[9:])
+
+
+def test_a_length_that_they_do_not_hold_is_no_number(first: Diagnosis, kick: Added) -> None:
+    """It was printed and written as 0.15 m ± 1e+06 m."""
+    found = replace(first, found=("castor_kick",), rivals=())
+    assert "castor_kick.length not determined" in " ".join(tables_of(found).split())
+    parameters = json_of(found, None)["found"][0]["parameters"]
+    assert parameters["length"]["value"] is parameters["length"]["std"] is None
+    assert kick.parameters["length"].value is None
+    assert kick.robot.effects[0].values["length"] == find("castor_kick").nulls["length"]
+    assert "length = not determined by these drives, left at 40 mm" in words_of_added(kick)
+    figures = json_of_added(kick)["parameters"]["length"]
+    assert figures["value"] is figures["std"] is None
+
+
+def test_rivals_are_not_forgotten_when_one_of_them_is_added(
+    runs: list[Run], first: Diagnosis
+) -> None:
+    assert first.verdict == "ambiguous"
+    added = add_effect(find(first.rivals[0]), runs[:9], PLAIN, holdout=runs[9:])
+    later = diagnosed(runs, added.robot)
+    assert later.verdict == "none"
+    others = later.rivals_of_held[first.rivals[0]]
+    assert set(first.rivals[1:]) <= set(others)
+    words = " ".join(words_of(Told(later, None, ()), NextSteps()).split())
+    held = f"that it is {first.rivals[0]}, which the robot file holds, these drives do not show"
+    assert held in words
+    assert all(name in words for name in others)
+    assert json_of(later, None)["rivals_of_held"] == {first.rivals[0]: list(others)}
+
+
+def test_drives_that_tell_have_no_rivals_to_recall() -> None:
+    robot = replace(PLAIN, effects=(KICKING,))
+    runs = [run_of(robot, seed, 40) for seed in range(4)]
+    found = diagnose(runs[:3], robot, SOME, holdout=runs[3:])
+    assert found.verdict == "none"
+    assert found.rivals_of_held == {}
+
+
+@pytest.mark.parametrize("seed", [1, 2])
+def test_whatever_a_reference_says_no_number_is_beyond_sense(seed: int) -> None:
+    """Poses by chance: what is printed of them stays within what the parameters allow."""
+    random = np.random.default_rng(seed)
+    runs = []
+    for number in range(5):
+        run = by_tape(run_of(PLAIN, 10 * seed + number, 20))
+        assert run.reference is not None
+        x, y = random.uniform(-2.0, 2.0, (2, 2))
+        seen = replace(run.reference, x=x, y=y, yaw=random.uniform(-3.0, 3.0, 2))
+        runs.append(replace(run, reference=seen))
+    found = diagnose(runs[:4], PLAIN, LIBRARY, holdout=runs[4:])
+    said = words_of(Told(found, None, ()), NextSteps()) + tables_of(found)
+    assert "nan" not in said.lower()
+    assert not re.search(r"± \d(\.\d+)?e\+", said)
+    for item in json_of(found, None)["found"]:
+        for parameter, value in item["parameters"].items():
+            low, high = find(item["effect"]).parameters[parameter].bounds
+            assert value["std"] is None or not value["std"] > high - low

@@ -1,0 +1,84 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What else would do in the place of an effect that the robot file holds.
+
+A user to whom several effects were rivals adds one of them, and then nothing is missing. That is no
+proof of it: the same drives still cannot tell it from the others, and that must not be forgotten.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.diagnosis.search import best_of_each
+from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
+from werrimbi_odom.inference.fitting.candidates import (
+    CALIBRATED,
+    candidates,
+    knobs_of_candidate,
+    put_in,
+    scores,
+)
+from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import INSTEAD_FITTED, RIVAL, WORTH_A_FIT
+from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.robot import Robot
+
+Sigma = tuple[float | None, float | None]
+
+
+def rivals_of_held(
+    runs: Together,
+    fit: Fitted,
+    kind: ReferenceKind,
+    effects: Sequence[Effect],
+    given: Robot,
+    sigma: Sigma,
+) -> dict[str, tuple[str, ...]]:
+    """Effects that would explain the drives as well as one that the file holds, by its name."""
+    found = {}
+    for applied in fit.point.model.robot.effects:
+        if applied.effect.is_mistake or applied.name in CALIBRATED:
+            continue
+        rivals = _rivals(runs, fit, kind, effects, given, sigma, applied.effect)
+        if rivals:
+            found[applied.name] = rivals
+    return found
+
+
+def _rivals(
+    runs: Together,
+    fit: Fitted,
+    kind: ReferenceKind,
+    effects: Sequence[Effect],
+    given: Robot,
+    sigma: Sigma,
+    held: Effect,
+) -> tuple[str, ...]:
+    """Scored beside the held one where that is taken out; the best few are fitted in its place."""
+    model, mine = fit.point.model, f"{held.name}."
+    others = tuple(item for item in model.robot.effects if item.name != held.name)
+    own = tuple(
+        {name: value for name, value in each.items() if not name.startswith(mine)}
+        for each in model.own
+    )
+    point = replace(fit.point, model=Model(replace(model.robot, effects=others), own))
+    knobs = tuple(knob for knob in fit.knobs if not knob.name.startswith(mine))
+    channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
+    library = [held, *(effect for effect in effects if effect.name != held.name)]
+    tried = candidates(library, {item.name for item in others}, channels, len(runs.runs))
+    ordered = best_of_each(scores(runs, point, kind, (*CALIBRATION, *knobs), tried))
+    gains = {score.candidate.name: score.gain for score in ordered}
+    least = WORTH_A_FIT * gains.get(held.name, max(gains.values(), default=0.0))
+    near = [each for each in ordered if each.candidate.name != held.name and each.gain > least]
+    found = {}
+    for score in near[:INSTEAD_FITTED]:
+        start = replace(point, model=put_in(point.model, score))
+        free = (*knobs, *knobs_of_candidate(score.candidate))
+        other = fitted(runs, start, kind, (score.candidate.name,), free, given, sigma=sigma)
+        if other.told and not other.at_bound and other.total < fit.total + RIVAL * fit.scatter:
+            found[score.candidate.name] = other.total
+    return tuple(sorted(found, key=lambda name: found[name]))
