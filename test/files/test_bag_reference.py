@@ -124,7 +124,7 @@ def test_among_transforms_the_chain_to_the_base_or_the_frame_that_is_named(
     run = read_run(bag, robot(), reference_topic="/tf:base_link")
     assert run.notes[-1] == "reference from /tf (tf2_msgs/msg/TFMessage), odom -> base_link"
     assert run.circle.startswith("/tf:odom:base_link: odom -> base_link is the robot's own odometr")
-    assert "independent references in the bag: /tf:map:base_link (tf2_msgs" in run.circle
+    assert "independent references in the bag: /tf:map:base_link (poses)" in run.circle
     said = "/tf:odom is where the odometry starts, as a localiser corrects it, and no pose of the"
     with pytest.raises(InputError, match=re.escape(said)) as caught:
         read_run(bag, robot(), reference_topic="/tf:odom")

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
@@ -36,10 +37,12 @@ class Options(TypedDict, total=False):
     """The same in heading [rad]."""
     ticks_topic: str | None
     """Topic of the ticks, of bags that are still to be read."""
-    reference_topic: str | None
+    reference_topic: str | Sequence[str] | None
     """The same of the reference."""
     effects: Sequence[str | Path]
     """Files with effects of your own, which the robot file may name."""
+    force_reference: bool
+    """Take a reference that is made from the wheels."""
 
 
 def read_robot(path: str | Path, effects: Sequence[str | Path] = ()) -> RobotFile:
@@ -63,15 +66,21 @@ def read_run(
     robot: RobotFile,
     *,
     ticks_topic: str | None = None,
-    reference_topic: str | None = None,
+    reference_topic: str | Sequence[str] | None = None,
+    reference: str | Path | None = None,
+    force: bool = False,
     progress: Callable[[float], None] | None = None,
 ) -> Run:
-    """Read a recorded drive: a run folder, a rosbag2 or an .mcap.
+    """Read a recorded drive: a run folder, a rosbag2, an .mcap or a ROS 1 .bag.
 
     Parameters
     ----------
     ticks_topic, reference_topic
-        Of a bag with several.
+        Where wheels and reference are, in a bag with several; two references are judged as one.
+    reference
+        What holds the reference of this drive, where `path` does not.
+    force
+        Take a localiser's correction for poses of the robot.
     progress
         Told the share that is read.
 
@@ -85,6 +94,8 @@ def read_run(
         robot,
         ticks_topic=ticks_topic,
         reference_topic=reference_topic,
+        reference=reference,
+        force=force,
         progress=progress,
     )
 
@@ -115,11 +126,39 @@ def recordings_of(
         options.get("ticks_topic"),
         options.get("reference_topic"),
         tuple(Path(file) for file in options.get("effects", ())),
+        force=options.get("force_reference", False),
     )
     fitted, held = _several(runs), _several(holdout)
     if not fitted:
         raise InputError("no drives were given")
-    return gathered(robot, collection_of(how.effects), fitted, held, how)
+    found = gathered(robot, collection_of(how.effects), fitted, held, how)
+    for words in refuse_circles(found):
+        warnings.warn(words, stacklevel=3)
+    return found
+
+
+def refuse_circles(given: Recordings) -> list[str]:
+    """Whether the references measure the robot, and in words what there is to say of them.
+
+    Raises
+    ------
+    InputError
+        When one is made from the wheels, and is not asked for all the same.
+    """
+    from werrimbi_odom.inference.comparison.circle import refuse_circle
+
+    told = []
+    for run in (*given.runs, *given.holdout):
+        try:
+            words = refuse_circle(run, given.source.robot, given.source.limits)
+        except InputError as error:
+            if not given.how.force:
+                raise
+            words = (
+                f"{str(error).replace(' (--force takes it all the same)', '')}: taken all the same"
+            )
+        told += [words] if words else []
+    return told
 
 
 def _several(runs: Drives) -> list[Run | Path]:

@@ -40,6 +40,8 @@ def next_command(
         For the middle of a sentence.
     """
     words = ["werrimbi", *verb, "--robot", str(robot or given.source.path), *_options(given.how)]
+    if given.how.force and any(run.circle for run in given.runs):
+        words.append("--force")
     for file in dict.fromkeys((*given.how.effects, *effects)):
         words += ["--effects", str(file)]
     lines = [shlex.join(words), _paths(given.runs)]
@@ -63,12 +65,15 @@ def _options(how: How) -> Iterator[str]:
         ("reference-kind", how.kind, plain.kind),
         ("ticks-topic", how.ticks_topic, plain.ticks_topic),
         ("reference-topic", how.reference_topic, plain.reference_topic),
+        ("reference", how.references, plain.references),
         ("reference-sigma-xy", how.sigma_xy, plain.sigma_xy),
         ("reference-sigma-yaw", how.sigma_yaw, plain.sigma_yaw),
     ):
-        if value != default:
+        if value == default:
+            continue
+        for each in value if isinstance(value, list | tuple) else [value]:
             yield f"--{option}"
-            yield f"{value:g}" if isinstance(value, float) else str(value)
+            yield f"{each:g}" if isinstance(each, float) else str(each)
 
 
 def _paths(runs: Sequence[Run]) -> str:

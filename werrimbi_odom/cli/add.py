@@ -27,14 +27,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="EFFECT",
         help="its name, or several: A,B,C; werrimbi explain lists all",
     )
-    add_recording_arguments(parser, holdout=True)
-    parser.add_argument(
-        "--out", metavar="NEW", type=Path, required=True, help="robot file to write"
+    add_recording_arguments(
+        parser,
+        holdout=True,
+        force="write even an effect that does not help, and over an existing --out",
     )
     parser.add_argument(
-        "--force",
-        action="store_true",
-        help="write even an effect that does not help, and over an existing --out",
+        "--out", metavar="NEW", type=Path, required=True, help="robot file to write"
     )
 
 

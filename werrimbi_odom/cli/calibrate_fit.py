@@ -18,11 +18,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "recorded drives with a reference, several at once. What the driving does not determine is "
         "left alone; when calibration is not what is missing, that is said."
     )
-    add_recording_arguments(parser, holdout=True)
+    add_recording_arguments(parser, holdout=True, force="overwrite --out if it exists")
     parser.add_argument(
         "--out", metavar="NEW", type=Path, required=True, help="robot file to write"
     )
-    parser.add_argument("--force", action="store_true", help="overwrite --out if it exists")
 
 
 def run(arguments: argparse.Namespace) -> int:

@@ -25,14 +25,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "Where the diagnosis says unknown: writes a small package with one effect file, whose law "
         "is the dependence that the drives show, to be read, renamed and added."
     )
-    add_recording_arguments(parser, holdout=True)
-    parser.add_argument(
-        "--out", metavar="DIR", type=Path, required=True, help="folder for the package"
+    add_recording_arguments(
+        parser,
+        holdout=True,
+        force="draft whatever the verdict is, and over an existing package",
     )
     parser.add_argument(
-        "--force",
-        action="store_true",
-        help="draft whatever the verdict is, and over an existing package",
+        "--out", metavar="DIR", type=Path, required=True, help="folder for the package"
     )
 
 

@@ -21,6 +21,7 @@ def add_recording_arguments(
     holdout: bool = False,
     report: bool = True,
     required: bool = True,
+    force: str = "",
 ) -> None:
     """RUN..., --robot and how to read and judge them, --json and --report.
 
@@ -32,6 +33,8 @@ def add_recording_arguments(
         Offer --report.
     required : bool
         Whether RUN and --robot must be given; where not, the verb asks for them itself.
+    force : str
+        What --force means to the verb beside what it means to all.
     """
     parser.add_argument(
         "runs",
@@ -86,7 +89,24 @@ def add_recording_arguments(
     parser.add_argument(
         "--reference-topic",
         metavar="T",
-        help="topic of the reference, in a bag with several; T:CHILD_FRAME among transforms",
+        action="append",
+        help="topic of the reference, in a bag with several; /tf:PARENT:CHILD among transforms. "
+        "Given twice, for poses and for a gyro: the positions of the one with the headings of the "
+        "other",
+    )
+    parser.add_argument(
+        "--reference",
+        metavar="RUN",
+        action="append",
+        default=[],
+        type=Path,
+        help="what holds the reference of a drive, where RUN does not: another bag, or a folder "
+        "with reference.csv; once for each RUN, then for each of --holdout",
+    )
+    parser.add_argument(
+        "--force",
+        action="store_true",
+        help=f"{force}{'; ' if force else ''}take a reference that is made from the wheels",
     )
     parser.add_argument(
         "--effects",
@@ -114,6 +134,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     InputError
         When something cannot be used, or a run is given twice.
     """
+    from werrimbi_odom.api.drives import refuse_circles
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.files.asked import Asked, read
     from werrimbi_odom.files.judgeable import words_about
@@ -123,7 +144,8 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     collection = read_effects(arguments)
     with share_done("reading") as show:
         found = read(asked, collection, show)
-    remark(found.source, *words_about((*found.runs, *found.holdout)))
+    circles = refuse_circles(found)
+    remark(found.source, *words_about((*found.runs, *found.holdout)), *circles)
     return found
 
 
@@ -145,6 +167,8 @@ def how_of(arguments: argparse.Namespace) -> How:
         arguments.ticks_topic,
         arguments.reference_topic,
         tuple(arguments.effects),
+        tuple(arguments.reference),
+        arguments.force,
     )
 
 

@@ -30,14 +30,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "the new robot file. Reads and writes nothing but what is given here. Without --holdout "
         "some of the drives are put aside for judging."
     )
-    add_recording_arguments(parser, holdout=True, report=False)
+    add_recording_arguments(
+        parser, holdout=True, force="overwrite --out if it exists", report=False
+    )
     parser.add_argument(
         "--out",
         metavar="NEW",
         type=Path,
         help="robot file to save to; if not given, R_new.yaml beside R",
     )
-    parser.add_argument("--force", action="store_true", help="overwrite --out if it exists")
     parser.add_argument(
         "--port", metavar="N", type=_port, default=0, help="a free one if not given, or 0"
     )

@@ -17,6 +17,7 @@ from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.replacing import place_of
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.files.run_bag import Topics
 from werrimbi_odom.files.run_folder import TICKS
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
@@ -37,9 +38,13 @@ class How:
     sigma_yaw: float | None = None
     """The same of its heading [rad]."""
     ticks_topic: str | None = None
-    reference_topic: str | None = None
+    reference_topic: Topics = None
     effects: tuple[Path, ...] = ()
     """Files with effects of the user's own."""
+    references: tuple[Path, ...] = ()
+    """What holds the reference of each run and then of each held-out one; empty: they do."""
+    force: bool = False
+    """Take a reference that is made from the wheels."""
 
 
 class Judging(TypedDict):
@@ -136,6 +141,12 @@ def gathered(
         When something cannot be used, or a drive is given twice.
     """
     drives = [*runs, *holdout]
+    references: Sequence[Path | None] = how.references or [None] * len(drives)
+    if len(references) != len(drives):
+        raise InputError(
+            f"{len(references)} times --reference for {len(drives)} runs: give it once for each "
+            "RUN, then for each of --holdout, in their order"
+        )
     refuse_twice(drive for drive in drives if isinstance(drive, Path))
     found: list[Run] = []
     for number, drive in enumerate(drives):
@@ -145,14 +156,14 @@ def gathered(
                 raise InputError(f"{run.path} is given twice; a drive counts once")
         else:
             show(number / len(drives), f"reading {drive.name}")
-            run = _read(drive, source, how)
+            run = _read(drive, source, how, references[number])
         refuse_unjudgeable(run)
         found.append(without_held_poses(run, source.robot) if how.kind == "absolute" else run)
     count = len(runs)
     return Recordings(source, collection, tuple(found[:count]), tuple(found[count:]), how)
 
 
-def _read(path: Path, source: RobotFile, how: How) -> Run:
+def _read(path: Path, source: RobotFile, how: How, reference: Path | None) -> Run:
     if path.is_dir() and not any((path / name).exists() for name in (TICKS, BAG)):
         within = sorted(
             {found.parent.name for name in (TICKS, BAG) for found in path.glob(f"*/{name}")}
@@ -163,7 +174,14 @@ def _read(path: Path, source: RobotFile, how: How) -> Run:
                 f"{path} is no run but a folder of {len(within)} "
                 f"({', '.join(within[:_NAMED])}{more}); give each of them: {path}/*"
             )
-    return read_run(path, source, ticks_topic=how.ticks_topic, reference_topic=how.reference_topic)
+    return read_run(
+        path,
+        source,
+        ticks_topic=how.ticks_topic,
+        reference_topic=how.reference_topic,
+        reference=reference,
+        force=how.force,
+    )
 
 
 def refuse_twice(paths: Iterable[Path]) -> None:

@@ -4,14 +4,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import SUFFIXES
+from werrimbi_odom.files.choosing import NONE
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.files.run_bag import Progress, read_run_bag
-from werrimbi_odom.files.run_folder import TICKS, read_run_folder
+from werrimbi_odom.files.run_bag import (
+    FoundReference,
+    Progress,
+    Topics,
+    read_reference_bag,
+    read_run_bag,
+)
+from werrimbi_odom.files.run_folder import REFERENCE, TICKS, read_reference, read_run_folder
 
 
 def read_run(
@@ -19,22 +29,65 @@ def read_run(
     robot_file: RobotFile,
     *,
     ticks_topic: str | None = None,
-    reference_topic: str | None = None,
+    reference_topic: Topics = None,
+    reference: str | Path | None = None,
     force: bool = False,
     progress: Progress | None = None,
 ) -> Run:
     """Read a run; see `read_run_folder` and `read_run_bag`. Topics matter to bags alone.
+
+    Parameters
+    ----------
+    reference : path, optional
+        What holds the reference of this drive, where the run does not: another bag, or a folder
+        with reference.csv.
 
     Raises
     ------
     InputError
         When there is no run at `path`, or it cannot be used; the message says what is wrong where.
     """
-    path = Path(path)
+    own = reference_topic if reference is None else NONE
+    run: Run = _of_kind(
+        Path(path),
+        read_run_folder,
+        lambda bag: read_run_bag(
+            bag,
+            robot_file,
+            ticks_topic=ticks_topic,
+            reference_topic=own,
+            force=force,
+            progress=progress,
+        ),
+        TICKS,
+    )
+    if reference is None:
+        return run
+    found: FoundReference = _of_kind(
+        Path(reference),
+        _reference_folder,
+        lambda bag: read_reference_bag(bag, robot_file, reference_topic, force),
+        REFERENCE,
+    )
+    notes = (*run.notes, f"reference from {reference}", *found.notes)
+    return replace(
+        run, reference=found.reference, notes=notes, circle=found.circle, no_reference=""
+    )
+
+
+def _reference_folder(folder: Path) -> FoundReference:
+    reference, damage = read_reference(folder / REFERENCE)
+    return FoundReference(reference, damage, "")
+
+
+def _of_kind(
+    path: Path, of_folder: Callable[[Path], Any], of_bag: Callable[[Path], Any], table: str
+) -> Any:
+    """What a folder with a table, or a bag, holds."""
     try:
         if path.is_dir():
-            if (path / TICKS).exists():
-                return read_run_folder(path)
+            if (path / table).exists():
+                return of_folder(path)
             bag = _bag_in(path)
         elif path.exists():
             bag = _bag_file(path)
@@ -44,14 +97,7 @@ def read_run(
         if isinstance(error, InputError):
             raise
         raise InputError(f"{path} cannot be read: {error}") from error
-    return read_run_bag(
-        bag,
-        robot_file,
-        ticks_topic=ticks_topic,
-        reference_topic=reference_topic,
-        force=force,
-        progress=progress,
-    )
+    return of_bag(bag)
 
 
 def _bag_in(folder: Path) -> Path:

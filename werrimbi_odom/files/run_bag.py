@@ -4,21 +4,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import NamedTuple, Protocol
 
-from werrimbi_odom.files.bag import opened_bag, topic_in_words
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.bag import Bag, Message, opened_bag, topic_in_words
 from werrimbi_odom.files.bag_chain import ChainCollector
 from werrimbi_odom.files.bag_reference import ReferenceCollector, kinds_in_words
 from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
-from werrimbi_odom.files.choosing import Chosen, choose_reference, listed
-from werrimbi_odom.files.contents import contents_of_bag
+from werrimbi_odom.files.choosing import Chosen, choose_reference
+from werrimbi_odom.files.contents import Contents, Wheels, contents_of_bag
+from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.files.text import readable
 
 Progress = Callable[[float], None]
 """Told, now and then, which share of the work is done."""
+
+
+Topics = str | Sequence[str] | None
+"""A topic, several, or none in particular."""
 
 
 def read_run_bag(
@@ -26,7 +33,7 @@ def read_run_bag(
     robot_file: RobotFile,
     *,
     ticks_topic: str | None = None,
-    reference_topic: str | None = None,
+    reference_topic: Topics = None,
     force: bool = False,
     progress: Progress | None = None,
 ) -> Run:
@@ -40,9 +47,9 @@ def read_run_bag(
         Says the joints' names, the unit of their positions, and how two topics are paired.
     ticks_topic : str, optional
         Where the ticks are, LEFT,RIGHT for two topics; needed where there are several.
-    reference_topic : str, optional
+    reference_topic : str or several, optional
         Where the reference is, /tf:PARENT:CHILD among transforms, `none` for no reference; needed
-        where there are several.
+        where there are several. Two are judged as one, see `merged`.
     force : bool
         Take for a reference what is none.
 
@@ -60,42 +67,107 @@ def read_run_bag(
     with opened_bag(path) as bag:
         held = contents_of_bag(bag, str(robot_file.values["base_frame_id"]))
         source = choose_ticks(held, ticks_topic, robot_file)
-        measured = choose_reference(held, source, reference_topic, force)
-        ticks_of = ticks_collector(path, source, robot_file)
-        reference_of = measured and _collector(path, measured, robot_file)
         topics = source.name.split(",")
-        wanted = (*topics, *(reference_of.topics if reference_of else ()))
-        total = sum(topic.messages for topic in bag.topics if topic.name in wanted)
-        for number, message in enumerate(bag.messages(wanted)):
-            if message.topic in topics:
-                ticks_of.take(message)
-            if reference_of and message.topic in reference_of.topics:
-                reference_of.take(message)
-            if progress is not None and number % 1000 == 0:
-                progress(min(number / total, 1.0))
+        chosen = _chosen(held, source, reference_topic, force)
+        ticks_of = ticks_collector(path, source, robot_file)
+        collectors = [_collector(path, each, robot_file) for each in chosen]
+        _collect(bag, [(topics, ticks_of), *((each.topics, each) for each in collectors)], progress)
     ticks, notes = ticks_of.ticks()
-    notes = [f"ticks from {source.name} ({source.kind})", *notes]
-    reference, circle = None, ""
-    if measured and reference_of:
-        reference, frames = reference_of.reference()
-        named = measured.source
-        notes.append(f"reference from {reference_of.topics[0]} ({named.kind}), {frames}")
-        if not named.independent:
-            others = listed([each for each in held.independent if each.name not in topics])
-            circle = f"{named.name}: {named.why}; independent references in the bag: {others}"
+    found = _put_together(held, source, chosen, collectors)
     lacking = ""
-    if reference is None:
+    if found.reference is None:
         lacking = f"({kinds_in_words()}); the bag has {', '.join(map(topic_in_words, bag.topics))}"
     return Run(
         readable(path.resolve().name),
         path,
         ticks,
-        reference,
-        tuple(notes),
+        found.reference,
+        (f"ticks from {source.name} ({source.kind})", *notes, *found.notes),
         damage=bag.damage,
         no_reference=lacking,
-        circle=circle,
+        circle=found.circle,
     )
+
+
+class FoundReference(NamedTuple):
+    """A reference as it was read."""
+
+    reference: Reference | None
+    notes: tuple[str, ...]
+    circle: str
+    """See `Run.circle`."""
+
+
+def read_reference_bag(
+    path: Path, robot_file: RobotFile, reference_topic: Topics = None, force: bool = False
+) -> FoundReference:
+    """Read a reference from a bag whose wheels, if it has any, are not asked for."""
+    nothing = Wheels("", "", 0, "counts")
+    with opened_bag(path) as bag:
+        held = contents_of_bag(bag, str(robot_file.values["base_frame_id"]))
+        chosen = _chosen(held, nothing, reference_topic, force)
+        collectors = [_collector(path, each, robot_file) for each in chosen]
+        _collect(bag, [(each.topics, each) for each in collectors], None)
+    found = _put_together(held, nothing, chosen, collectors)
+    if found.reference is None:
+        told = ", ".join(map(topic_in_words, held.topics)) or "nothing"
+        raise InputError(
+            f"{path}: there is no reference in it ({kinds_in_words()}); the bag has {told}"
+        )
+    return found
+
+
+def _chosen(held: Contents, source: Wheels, wish: Topics, force: bool) -> list[Chosen]:
+    wishes: Sequence[str | None] = (
+        [wish] if wish is None or isinstance(wish, str) else list(wish) or [None]
+    )
+    if len(wishes) > 2:
+        raise InputError(
+            f"{held.path}: {len(wishes)} references were asked for; two at most are judged together"
+        )
+    found = [choose_reference(held, source, each, force) for each in wishes]
+    return [each for each in found if each is not None]
+
+
+def _collect(
+    bag: Bag, takers: Sequence[tuple[Sequence[str], _Taker]], progress: Progress | None
+) -> None:
+    """Give each message of a bag to those that take its topic."""
+    wanted = {name for names, _ in takers for name in names}
+    total = sum(topic.messages for topic in bag.topics if topic.name in wanted)
+    for number, message in enumerate(bag.messages(sorted(wanted))):
+        for names, taker in takers:
+            if message.topic in names:
+                taker.take(message)
+        if progress is not None and number % 1000 == 0:
+            progress(min(number / total, 1.0))
+
+
+class _Taker(Protocol):
+    def take(self, message: Message) -> None: ...
+
+
+def _put_together(
+    held: Contents,
+    source: Wheels,
+    chosen: Sequence[Chosen],
+    collectors: Sequence[ChainCollector | ReferenceCollector],
+) -> FoundReference:
+    references, notes, circle = [], [], ""
+    for (named, _), collector in zip(chosen, collectors, strict=True):
+        reference, frames = collector.reference()
+        references.append(reference)
+        notes.append(f"reference from {collector.topics[0]} ({named.kind}), {frames}")
+        if not named.independent:
+            topics = source.name.split(",")
+            others = [each for each in held.independent if each.name not in topics]
+            told = ", ".join(f"{each.name} ({each.measures})" for each in others) or "none"
+            circle = f"{named.name}: {named.why}; independent references in the bag: {told}"
+    if len(references) == 2:
+        names = " and ".join(each.source.name for each in chosen)
+        whole, told = merged(f"{held.path}: {names}", *references)
+        return FoundReference(whole, (*notes, told), circle)
+    return FoundReference(references[0] if references else None, tuple(notes), circle)
 
 
 def _collector(

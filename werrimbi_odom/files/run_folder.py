@@ -38,7 +38,7 @@ def read_run_folder(path: str | Path) -> Run:
     file = path / REFERENCE
     reference = None
     if file.exists() or file.is_symlink():
-        reference, more = _reference(file)
+        reference, more = read_reference(file)
         damage += more
     return Run(
         readable(path.resolve().name),
@@ -97,7 +97,14 @@ def _not_a_count(text: str) -> str:
     return "" if text else "it is empty; write nan where a reading is missing, or leave the row out"
 
 
-def _reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
+def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
+    """A reference and, in words, what of its file is spoilt.
+
+    Raises
+    ------
+    InputError
+        When it cannot be used; the message names file, line and column.
+    """
     table = read_table(path, REFERENCE_COLUMNS, REFERENCE_COLUMNS[:1])
     for name in table.names:
         if name.startswith("sigma") and name not in SIGMA_COLUMNS:

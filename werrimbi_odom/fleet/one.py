@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from threading import Lock
 
+from werrimbi_odom.api.drives import refuse_circles
 from werrimbi_odom.api.verbs import diagnosed
 from werrimbi_odom.effects.collection import all_effects
 from werrimbi_odom.errors import InputError
@@ -38,7 +39,9 @@ def row_of(task: Task) -> Row:
 
         with _ONE_AT_A_TIME, threadpool_limits(1):
             asked = task.asked
-            figures = diagnosed(read(asked, all_effects(asked.how.effects))).to_dict()
+            given = read(asked, all_effects(asked.how.effects))
+            refuse_circles(given)
+            figures = diagnosed(given).to_dict()
         return Row(task.name, _drives(task), figures)
     except MemoryError:
         return failed(task, "this needs more memory than there is; cut the runs into several")

@@ -1,0 +1,176 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A reference that is made from the wheels: it follows them too closely to be a measurement.
+
+Odometry that is judged by odometry is always right. Names and frames tell most of such references
+(`Run.circle`); how far they are from the wheels is asked here, of all references, from the way that
+both say was gone between two instants. Headings are not looked at: those of a robot's own odometry
+often come from a gyro.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
+from werrimbi_odom.inference.legs.counters import Counters, counters_of
+from werrimbi_odom.inference.rules import (
+    CIRCLE_APART,
+    CIRCLE_DELAYS,
+    CIRCLE_EXACT,
+    CIRCLE_FEWEST,
+    CIRCLE_WAY,
+)
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+
+class Closeness(NamedTuple):
+    """How closely the ways of a reference follow those of the wheels."""
+
+    apart: float
+    """Usual difference of a way, once both wheels' sizes and the delay are fitted [m]."""
+    way: float
+    """The usual way [m]."""
+    rounding: float
+    """What counters that are whole numbers round off such a way, standard deviation [m]; 0 where
+    they are none."""
+
+
+def refuse_circle(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> str:
+    """Whether a run's reference measures the robot, and what there is to say of it.
+
+    Returns
+    -------
+    str
+        Where its name says that it is made from the wheels and its numbers that it is not: that it
+        is taken. Else nothing.
+
+    Raises
+    ------
+    InputError
+        When it is made from the wheels.
+    """
+    found = None if run.reference is None else closeness(run, robot, limits)
+    if found is not None and found.apart < CIRCLE_EXACT * found.rounding:
+        what = run.circle or "the reference"
+        raise InputError(
+            f"{run.path}: {what}: it agrees with the wheels to {_small(found.apart)} in "
+            f"{found.way:.2g} m, closer than their counts tell the way themselves "
+            f"({_small(found.rounding)}): it was made from the same counts, and cannot judge them "
+            "(--force takes it all the same)"
+        )
+    if not run.circle:
+        return ""
+    if found is not None and found.apart > CIRCLE_APART:
+        what = run.circle.partition(":")[0]
+        return (
+            f"{run.path}: {what} is called as odometry is, but is {_small(found.apart)} from the "
+            f"wheels in {found.way:.2g} m: it is taken for a measurement"
+        )
+    close = (
+        "" if found is None else f" (it is {_small(found.apart)} from them in {found.way:.2g} m)"
+    )
+    raise InputError(
+        f"{run.path}: {run.circle}. A reference that is made from the wheels always agrees with "
+        f"them{close} and shows none of their errors (--force takes it all the same)"
+    )
+
+
+def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Closeness | None:
+    """How closely a reference follows the wheels; None where there is too little to tell."""
+    reference = run.reference
+    assert reference is not None
+    try:
+        counters = counters_of(run, robot, limits)
+    except InputError:
+        return None
+    rows = _rows(reference, counters, robot)
+    if rows.size <= CIRCLE_FEWEST:
+        return None
+    ways, known = _ways(reference, rows)
+    best = np.inf
+    for delay in CIRCLE_DELAYS:
+        wheels = np.diff(counters.at(reference.time[rows] - delay), axis=0)
+        wheels = wheels * [robot.left_tick, robot.right_tick]
+        if not known:  # which way the robot went, the wheels say
+            ways = np.abs(ways) * np.where(wheels.sum(axis=1) < 0.0, -1.0, 1.0)
+        best = min(best, _typical(ways, wheels))
+    quantum = _rounding(run, robot)
+    return Closeness(best, float(np.median(np.abs(ways))), quantum)
+
+
+def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.intp]:
+    """Positions at the ends of ways of `CIRCLE_WAY`, in the ticks' time."""
+    inside = (reference.time >= counters.time[0]) & (reference.time <= counters.time[-1])
+    rows: NDArray[np.intp] = np.flatnonzero(reference.has_position & inside)
+    if rows.size == 0:
+        return rows
+    rows = rows[np.concatenate([[True], np.diff(np.maximum.accumulate(reference.time[rows])) > 0])]
+    gone = np.interp(reference.time[rows], counters.time, counters.way(robot, 1.0, np.inf))
+    gone -= gone[0]
+    way = min(CIRCLE_WAY, float(gone[-1]) / (CIRCLE_FEWEST + 2))
+    if way <= 0.0:
+        return rows[:1]
+    new = np.concatenate([[True], np.diff(np.floor(gone / way)) > 0.0])
+    return np.asarray(rows[new])
+
+
+def _ways(reference: Reference, rows: NDArray[np.intp]) -> tuple[Floats, bool]:
+    """Way from each row to the next along all poses in between, and whether its sign is known."""
+    every = np.flatnonzero(reference.has_position)
+    x, y, yaw = (part[every] for part in (reference.x, reference.y, reference.yaw))
+    steps = np.diff(x) + 1j * np.diff(y)
+    chord = np.abs(steps)
+    known = bool(np.isfinite(yaw).all())
+    if known:
+        turns = np.angle(np.exp(1j * np.diff(yaw)))
+        ahead = (steps * np.exp(-1j * (yaw[:-1] + 0.5 * turns))).real
+        chord = np.where(ahead < 0.0, -chord, chord) / np.sinc(0.5 * turns / np.pi)
+    sums = np.concatenate([[0.0], np.cumsum(chord)])
+    return np.diff(sums[np.searchsorted(every, rows)]), known
+
+
+def _typical(ways: Floats, wheels: Floats) -> float:
+    """Usual deviation from the best wheels' sizes: least absolute deviations, by reweighting."""
+    weight = np.ones(ways.size)
+    for _ in range(8):
+        root = np.sqrt(weight)
+        sizes = np.linalg.lstsq(wheels * root[:, None], ways * root, rcond=None)[0]
+        left = np.abs(ways - wheels @ sizes)
+        weight = 1.0 / np.maximum(left, 1e-12 + 1e-3 * float(np.median(left)))
+    return float(np.median(left)) * MEDIAN_TO_SIGMA
+
+
+def _rounding(run: Run, robot: Robot) -> float:
+    """Standard deviation of a way by counters that were rounded twice; 0 where they were not."""
+    squares = []
+    for counts, tick in (
+        (run.ticks.left, robot.left_tick),
+        (run.ticks.right, robot.right_tick),
+    ):
+        finite = np.asarray(counts[np.isfinite(counts)], dtype=np.float64)
+        steps = np.abs(np.diff(finite))
+        steps = steps[steps > 0.0]
+        if steps.size == 0:
+            return 0.0
+        quantum = float(steps.min())
+        steps = steps[steps <= 10.0 * quantum]  # angles of 32 bits are whole but for rounding
+        whole = np.abs(steps / quantum - np.rint(steps / quantum)) < _WHOLE
+        if not whole.all():
+            return 0.0
+        squares.append((quantum * tick) ** 2 / 6.0)
+    return 0.5 * float(np.sqrt(sum(squares)))
+
+
+_WHOLE = 0.02
+
+
+def _small(length: float) -> str:
+    return f"{1e3 * length:.2g} mm" if length < 1.0 else f"{length:.2g} m"
