@@ -71,13 +71,18 @@ def read_run(
     )
     notes = (*run.notes, f"reference from {reference}", *found.notes)
     return replace(
-        run, reference=found.reference, notes=notes, circle=found.circle, no_reference=""
+        run,
+        reference=found.reference,
+        notes=notes,
+        circle=found.circle,
+        damage=(*run.damage, *found.damage),
+        no_reference="",
     )
 
 
 def _reference_folder(folder: Path) -> FoundReference:
     reference, damage = read_reference(folder / REFERENCE)
-    return FoundReference(reference, damage, "")
+    return FoundReference(reference, (), damage=tuple(f"{folder}: {each}" for each in damage))
 
 
 def _of_kind(

@@ -94,8 +94,10 @@ class FoundReference(NamedTuple):
 
     reference: Reference | None
     notes: tuple[str, ...]
-    circle: str
+    circle: str = ""
     """See `Run.circle`."""
+    damage: tuple[str, ...] = ()
+    """See `Run.damage`."""
 
 
 def read_reference_bag(
@@ -114,7 +116,7 @@ def read_reference_bag(
         raise InputError(
             f"{path}: there is no reference in it ({kinds_in_words()}); the bag has {told}"
         )
-    return found
+    return found._replace(damage=tuple(f"{path}: {words}" for words in bag.damage))
 
 
 def _chosen(held: Contents, source: Wheels, wish: Topics, force: bool) -> list[Chosen]:

@@ -1,0 +1,122 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A reference that is made from the wheels is refused; one that was measured never is."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.comparison.circle import closeness, refuse_circle
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.trajectory import trajectory
+
+ROBOT = Robot(0.16, 0.033, 4096.0, 4096.0)
+OTHER = Robot(0.18, 0.0335, 4096.0, 4096.0)
+"""What a driver's own odometry may take the robot for."""
+NAMED = "/odom: odom -> base_link is the robot's own odometry, made from its wheels"
+
+
+def driven(seed: int, seconds: float = 60.0, per_second: float = 200.0) -> tuple[np.ndarray, ...]:
+    """Time, exact counts of both wheels, and where the robot truly was."""
+    rng = np.random.default_rng(seed)
+    time = np.arange(0.0, seconds, 1.0 / per_second)
+    knots = np.linspace(0.0, seconds, int(seconds))
+    speeds = rng.uniform(-1500.0, 4000.0, (2, knots.size))
+    left, right = (np.cumsum(np.interp(time, knots, each)) / per_second for each in speeds)
+    path = trajectory(ROBOT, time, left, right)
+    return time, left, right, path.x, path.y, path.yaw
+
+
+def recorded(seed: int, per_second: float = 20.0, seconds: float = 60.0) -> tuple[Run, np.ndarray]:
+    """Whole counts at 20 Hz, and the true poses at 10 Hz, between the counts' stamps."""
+    time, left, right, x, y, yaw = driven(seed, seconds)
+    at = np.arange(0.0, seconds - 0.2, 1.0 / per_second)
+    counts = [np.rint(np.interp(at, time, each)).astype(np.int64) for each in (left, right)]
+    seen = np.arange(0.013, seconds - 0.3, 0.1)
+    truth = np.stack([np.interp(seen, time, each) for each in (x, y, yaw)])
+    run = Run("run", Path("run"), Ticks(at, *counts), Reference(seen, *truth))
+    return run, truth
+
+
+def own_odometry(run: Run, robot: Robot) -> Reference:
+    """What a driver makes of the counts, at their stamps."""
+    ticks = run.ticks
+    path = trajectory(robot, ticks.time, ticks.left, ticks.right)
+    return Reference(ticks.time, path.x, path.y, path.yaw)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("robot", [ROBOT, OTHER])
+def test_odometry_is_refused_by_its_numbers_alone(seed: int, robot: Robot) -> None:
+    run, _ = recorded(seed)
+    circle = replace(run, reference=own_odometry(run, robot))
+    with pytest.raises(InputError, match="it was made from the same counts"):
+        refuse_circle(circle, ROBOT)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("noise", [0.0, 0.0002, 0.001, 0.01])
+def test_what_was_measured_is_never_refused(seed: int, noise: float) -> None:
+    """Not even perfect poses: counts round off what they do not see."""
+    run, truth = recorded(seed)
+    rng = np.random.default_rng(seed)
+    assert run.reference is not None
+    x, y = (each + rng.normal(0.0, noise, each.size) for each in truth[:2])
+    for yaw in (truth[2], np.full(x.size, np.nan)):
+        measured = replace(run, reference=Reference(run.reference.time, x, y, yaw))
+        assert refuse_circle(measured, ROBOT) == ""
+
+
+def test_a_filter_is_refused_by_its_name_and_by_being_close() -> None:
+    """It lags by two messages, by more or less, and has the heading of a gyro."""
+    run, _ = recorded(5)
+    odometry = own_odometry(run, OTHER)
+    yaw = odometry.yaw * 1.03 + 0.01 * odometry.time
+    steps = np.diff(odometry.x) + 1j * np.diff(odometry.y)
+    along = (steps * np.exp(-1j * (odometry.yaw[:-1] + 0.5 * np.diff(odometry.yaw)))).real
+    steps = along * np.exp(1j * (yaw[:-1] + 0.5 * np.diff(yaw)))
+    path = np.concatenate([[0.0], np.cumsum(steps)])
+    late = odometry.time + 0.1 + np.random.default_rng(5).uniform(0.0, 0.02, odometry.time.size)
+    x, y, yaw = (np.interp(odometry.time, late, each) for each in (path.real, path.imag, yaw))
+    circle = replace(
+        run, reference=Reference(odometry.time, x, y, yaw), circle=f"/odometry/filtered: {NAMED}"
+    )
+    with pytest.raises(InputError) as caught:
+        refuse_circle(circle, ROBOT)
+    assert "shows none of their errors (--force takes it all the same)" in str(caught.value)
+
+
+def test_a_measurement_that_is_called_odometry_is_taken_and_said() -> None:
+    """A scan matcher that publishes on /odom: 2 cm of noise are no odometry's."""
+    run, truth = recorded(6)
+    rng = np.random.default_rng(6)
+    assert run.reference is not None
+    x, y = (each + rng.normal(0.0, 0.02, each.size) for each in truth[:2])
+    called = replace(
+        run, reference=Reference(run.reference.time, x, y, truth[2]), circle=f"/odom: {NAMED}"
+    )
+    assert "it is taken for a measurement" in refuse_circle(called, ROBOT)
+
+
+def test_too_little_to_tell_leaves_the_name() -> None:
+    run, _ = recorded(7)
+    assert run.reference is not None
+    few = replace(run, reference=run.reference.chosen(np.arange(597) < 5))
+    assert closeness(few, ROBOT) is None
+    assert refuse_circle(few, ROBOT) == ""
+    with pytest.raises(InputError, match="made from its wheels"):
+        refuse_circle(replace(few, circle=f"/odom: {NAMED}"), ROBOT)
+
+
+def test_a_gyro_is_no_circle() -> None:
+    run, truth = recorded(8)
+    assert run.reference is not None
+    none = np.full(truth[2].size, np.nan)
+    gyro = replace(run, reference=Reference(run.reference.time, none, none, truth[2]))
+    assert refuse_circle(gyro, ROBOT) == ""
