@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from werrimbi_odom.report.left_out import left_out_words
 
 from test.inference.driven import NOISE_XY, NOISE_YAW, run_of
 from test.inference.test_gaps import parts
@@ -24,6 +23,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
+from werrimbi_odom.report.phrases import left_out_words
 
 DATA = Path(os.environ.get("WERRIMBI_DATA", Path(__file__).parents[3] / "shared" / "data"))
 NEAR = 0.5

@@ -93,6 +93,7 @@ ELSEWHERE = {
         "_CLEARLY": "what is too small to be divided by",
     },
     "legs/no_driving.py": {"_GRID": "of times"},
+    "legs/spans.py": {"_GRID": "of times"},
     "legs/windows.py": {
         "_GRID": "of times",
         "_WINDOWS": "size of a sample",

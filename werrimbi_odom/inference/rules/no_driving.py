@@ -113,3 +113,6 @@ nothing in between is seen to move as its wheels do. Who holds a robot takes his
 
 NO_DRIVING_SPLIT = 1.5
 """Shortest part of a stretch [s] that is told by itself, as held or as carried."""
+
+REST_LASTS = 0.5
+"""Shortest rest [s] that is told as standing: less is a change of direction."""
