@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.api.calibrate_umbmark import before_after
@@ -51,6 +52,7 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     """`calibrate_fit` for what was read already."""
     from werrimbi_odom.inference.calibration.any_driving import calibrate
     from werrimbi_odom.inference.legs.cutting import match_finely, stated
+    from werrimbi_odom.inference.legs.no_driving import looked_at
     from werrimbi_odom.report.calibration.fit_words import fit_in_words
     from werrimbi_odom.report.calibration.page import calibration_page
     from werrimbi_odom.report.page import Page
@@ -58,6 +60,9 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     from werrimbi_odom.report.text import filled
 
     source, how = given.source, given.how
+    given = replace(
+        given, runs=tuple(looked_at(run, source.robot, source.limits) for run in given.runs)
+    )
     runs = match_finely(given.runs, source.robot, how.leg, source.limits)
     found = calibrate(
         runs,
@@ -121,8 +126,10 @@ def _left_out(
         found += matched.record.left_out
         time = matched.measured.time.tolist()
         jumped = (excluded & ~matched.gap).nonzero()[0].tolist()
+        started = float(matched.counters.time[0])
         found += [
-            LeftOut(run.path, time[leg], time[leg + 1], "reference", "it jumped") for leg in jumped
+            LeftOut(run.path, time[leg], time[leg + 1], "reference", "it jumped", started)
+            for leg in jumped
         ]
     return tuple(found)
 

@@ -10,6 +10,7 @@ _DRIVES = "--robot drives/robot.yaml drives/train/*"
 _JUDGED = f"{_DRIVES} --holdout drives/holdout/*"
 
 EXAMPLES = {
+    "info": ("info my_bag", "info my_bag --out robot.yaml"),
     "odom": ("odom --robot drives/robot.yaml drives/train/square_ccw --out odom.csv",),
     "compare": (f"compare {_DRIVES}", f"compare {_DRIVES} --leg 0.5 --report compare.html"),
     "diagnose": (f"diagnose {_JUDGED}", "diagnose --fleet robots --json fleet.json"),

@@ -19,6 +19,7 @@ from werrimbi_odom.cli.packages import EXTRAS, lacking, refuse_lacking
 from werrimbi_odom.errors import InputError
 
 VERBS = (
+    "info",
     "odom",
     "compare",
     "diagnose",

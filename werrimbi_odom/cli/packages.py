@@ -25,6 +25,7 @@ EXTRAS = {
 
 _FITS = ("scipy",)
 NEEDED = {
+    "info": _FITS,
     "compare": _FITS,
     "diagnose": _FITS,
     "add": _FITS,

@@ -85,6 +85,18 @@ def read_run(
     )
 
 
+def bag_at(path: Path) -> Path | None:
+    """The bag of a run; None where it is a folder with ticks.csv.
+
+    Raises
+    ------
+    InputError
+        When there is no run at `path`.
+    """
+    found: Path | None = _of_kind(path, lambda folder: None, lambda bag: bag, TICKS)
+    return found
+
+
 def _reference_folder(folder: Path) -> FoundReference:
     reference, damage = read_reference(folder / REFERENCE)
     return FoundReference(reference, (), damage=tuple(f"{folder}: {each}" for each in damage))

@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -80,6 +80,22 @@ class Reference:
         )
 
 
+Why = Literal["held", "carried", "gap", "counter", "reference"]
+"""held: wheels turn, the robot does not; carried: it moves, its wheels do not; gap: reference or
+ticks are silent while it drives; counter: it leapt; reference: it jumped."""
+
+
+class NoDriving(NamedTuple):
+    """A stretch of a run that is no driving."""
+
+    begin: float
+    """In the run's own clock [s]."""
+    end: float
+    why: Why
+    words: str
+    """What happened then, as the end of a sentence: the wheels turned and ..."""
+
+
 @dataclass(frozen=True, eq=False)
 class Run:
     """One recorded drive."""
@@ -100,6 +116,8 @@ class Run:
     and what else there is."""
     held_poses: int = 0
     """Poses of the reference that were left out, see `held.without_held_poses`."""
+    no_driving: tuple[NoDriving, ...] | None = None
+    """What of it is no driving; None where nobody has looked yet."""
     taken_out: tuple[tuple[float, float], ...] = ()
     """Stretches of the reference that were put aside on purpose, from and to [s]: legs end there,
     and begin anew."""

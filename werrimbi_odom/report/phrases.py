@@ -12,7 +12,8 @@ from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.numbers import with_std
 
-_MOST = 3  # stretches that are told one by one
+_MOST = 5  # stretches that are told one by one
+LONGEST_DRIVE = 1e7  # no clock that begins with the drive shows so many seconds
 
 
 def left_out_words(parts: Sequence[LeftOut]) -> list[str]:
@@ -25,7 +26,13 @@ def left_out_words(parts: Sequence[LeftOut]) -> list[str]:
     lines = []
     for part in silent[:_MOST]:
         where = f" of {part.run.name}" if len(runs) > 1 or len(silent) > _MOST else ""
-        lines.append(f"From {part.begin:.1f} s to {part.end:.1f} s{where} {part.words}: left out.")
+        # A clock that shows the time of day is no help: it is told from the run's first tick.
+        from_s, to_s = (
+            each - part.started if part.started > LONGEST_DRIVE else each
+            for each in (part.begin, part.end)
+        )
+        end = ". Left out." if ":" in part.words else ": left out."
+        lines.append(f"From {from_s:.1f} s to {to_s:.1f} s{where} {part.words}{end}")
     rest = silent[_MOST:]
     if rest:
         seconds = sum(part.end - part.begin for part in rest)

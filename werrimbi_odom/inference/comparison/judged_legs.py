@@ -49,6 +49,7 @@ from werrimbi_odom.inference.legs.cutting import (
     joined as joined_legs,
 )
 from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import (
     DRIFT_LEGS,
     FAR_ABOVE_NOISE,
@@ -171,8 +172,16 @@ class Prepared:
                 found[index] += run.record.left_out
                 own = spoilt[legs.legs[place] : legs.legs[place + 1]] & ~run.gap
                 time, path = run.measured.time, self.runs[index].path
+                started = float(run.counters.time[0])
                 found[index] += [
-                    LeftOut(path, float(time[leg]), float(time[leg + 1]), "reference", "it jumped")
+                    LeftOut(
+                        path,
+                        float(time[leg]),
+                        float(time[leg + 1]),
+                        "reference",
+                        "it jumped",
+                        started,
+                    )
                     for leg in np.flatnonzero(own).tolist()
                 ]
         return tuple(part for own in found for part in sorted(own, key=lambda one: one.begin))
@@ -196,6 +205,7 @@ def prepare(
     InputError
         When a run has no usable reference or no ticks.
     """
+    runs = [looked_at(run, robot, limits) for run in runs]
     members: dict[Measure, list[tuple[int, Record, bool]]] = {}
     for index, run in enumerate(runs):
         show(0.5 * index / len(runs), f"matching {run.name}")

@@ -26,6 +26,7 @@ from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.own_values import at_home, known_at_home
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.set_up.mistakes import SetUp, look_for_mistakes
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
@@ -71,7 +72,7 @@ class Judge:
     @property
     def left_out(self) -> tuple[LeftOut, ...]:
         """Stretches of all runs that nothing is judged on."""
-        return (*self.train.left_out, *self.holdout.left_out)
+        return tuple(dict.fromkeys((*self.train.left_out, *self.holdout.left_out)))
 
     def of(self, model: Model) -> Errors:
         """Errors of a model; what each held-out run has of its own is fitted to that run alone."""
@@ -135,7 +136,10 @@ def begin(
             raise InputError(f"{kept[0].path}: {set_up.to_convert}")
         return set_up, judge_of(kept, held, given or robot, kind, leg, limits, sigma_xy, sigma_yaw)
 
-    fitted, held = (tuple(runs), tuple(holdout)) if holdout else set_aside(runs)
+    runs, holdout = (
+        tuple(looked_at(run, given or robot, limits) for run in some) for some in (runs, holdout)
+    )
+    fitted, held = (runs, holdout) if holdout else set_aside(runs)
     set_up, judge = split(fitted, held)
     otherwise = recorded_otherwise(judge.train, judge.holdout, set_up.robot, kind, limits)
     sides = []

@@ -7,7 +7,8 @@ splitting a step changes neither its motion nor its noise. Everything that is fi
 separation, effects, noise) acts on these counts, so this is done once for a run, and again only
 where the reference's clock is shifted.
 
-No leg spans a stretch that is left out (a gap of the reference or of the ticks). From the last leg
+No leg spans a stretch that is left out (the robot was held or carried, a gap of the reference or
+of the ticks). From the last leg
 that ends before it to where it ends there is one that is marked as a gap: fits and judgements skip
 it, and what goes on along a run (distance, wheel angle, the heading of positions alone) goes
 through it.
@@ -23,9 +24,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference.legs.counters import Counters, counters_of, nodes_at
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
+from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import (
     FEW_POSES,
     MOMENT,
@@ -225,6 +227,7 @@ def record_of(
             f"{run.path}: there is no reference to compare with "
             "(reference.csv: t_s,x_m,y_m,yaw_rad)"
         )
+    run = looked_at(run, robot, limits)
     counters = counters_of(run, robot, limits)
     first, last = float(counters.time[0]), float(counters.time[-1])
     known = (np.isfinite(reference.x) & np.isfinite(reference.y)) | np.isfinite(reference.yaw)
@@ -250,22 +253,27 @@ def record_of(
 def _silences(
     run: Run, robot: Robot, counters: Counters, seen: Floats, leg: float, turn: float
 ) -> tuple[LeftOut, ...]:
-    """Gaps of the reference and of the ticks, and leaps of these, while there is a reference."""
+    """What is no driving, leaps of the ticks, and silences of them or of the reference."""
     way = counters.way(robot, leg, turn)
     parts = [("the reference is", seen, np.interp(seen, counters.time, way))]
     inside = (counters.time >= seen[0]) & (counters.time <= seen[-1])
     parts.append(("the ticks are", counters.time[inside], way[inside]))
-    found = []
+    found, started = [], float(counters.time[0])
     for who, time, gone in parts:
         unheard = gaps_in(time, gone) & ~touched(time, run.taken_out)
         for index in np.flatnonzero(unheard).tolist():
             begin, end = float(time[index]), float(time[index + 1])
             driven = _driven(robot, counters, begin, end)
-            found.append(LeftOut(run.path, begin, end, "gap", f"{who} silent while {driven}"))
+            words = f"{who} silent while {driven}"
+            found.append(LeftOut(run.path, begin, end, "gap", words, started))
+    others = [
+        *(NoDriving(begin, end, "counter", words) for begin, end, words in counters.leaps),
+        *(run.no_driving or ()),
+    ]
     found += [
-        LeftOut(run.path, begin, end, "counter", words)
-        for begin, end, words in counters.leaps
-        if end > seen[0] and begin < seen[-1]
+        LeftOut(run.path, *part, started)
+        for part in others
+        if part.end > seen[0] and part.begin < seen[-1]
     ]
     return tuple(sorted(found, key=lambda part: part.begin))
 

@@ -11,17 +11,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.run import Why
 from werrimbi_odom.inference.rules import GAP_FEWEST, GAP_INTERVALS, GAP_LEG, GAP_WAYS
 from werrimbi_odom.model.pose import Floats
-
-Why = Literal["held", "carried", "gap", "counter", "reference"]
-"""held: wheels turn, the robot does not; carried: it moves, its wheels do not; gap: reference or
-ticks are silent while it drives; counter: it leapt; reference: it jumped."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,6 +32,9 @@ class LeftOut:
     why: Why
     words: str
     """What happened then, as the end of a sentence: the reference is silent ..."""
+    started: float = 0.0
+    """First tick of the run [s]: what is told of one that is stamped by the time of day is told
+    from there."""
 
 
 def are_gaps(

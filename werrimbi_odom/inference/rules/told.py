@@ -84,3 +84,13 @@ unit in them."""
 
 HARD_START = 2.5
 """Acceleration of a hard start, over the speed [1/s]: 0.4 s to full speed."""
+
+# ------------------------------------------------------------------- what a recording can show
+
+LEGS_ENOUGH, SHORT_LEG = 30, 0.25
+"""Legs of a metre or a quarter turn, below which shorter ones are proposed, and their length [m].
+Chosen: three times the fewest that are judged, for a part of them is put aside."""
+
+TURN_SHOWS, WAY_SHOWS = 3.14, 2.0
+"""Turning [rad], and way [m], from which on a recording is said to show base and radii. Chosen:
+half a turn and two metres show them to a percent, by a reference good to a degree and to 2 cm."""

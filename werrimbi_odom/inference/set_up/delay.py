@@ -13,6 +13,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from werrimbi_odom.inference.legs.gaps import touched
 from werrimbi_odom.inference.rules import (
     DELAY_BETTER,
     DELAY_EVIDENCE,
@@ -52,6 +53,7 @@ def lag_of(records: Sequence[Record]) -> tuple[float, float]:
             (sums[1], products, _squared_steps(record, grid)),
         ):
             if measured is not None:
+                measured[touched(grid, record.not_driven)] = np.nan
                 total.add(wheels, measured)
     used = [total for total in sums if total.rows > DELAY_ROWS]
     if not used:

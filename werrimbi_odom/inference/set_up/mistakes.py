@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.calibration_sizes import skidding
+from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.set_up.delay import lag_of
 from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding, as_skid
 from werrimbi_odom.inference.set_up.headings import search_headings
@@ -78,6 +79,7 @@ def look_for_mistakes(
     kind : "absolute" or "incremental"
         Outliers of either are left aside; the search is the same.
     """
+    runs = [looked_at(run, robot, limits) for run in runs]
     records = [each for run in runs if (each := record_of(run, robot, limits)) is not None]
     measured = measured_by(records)
     if measured is None:

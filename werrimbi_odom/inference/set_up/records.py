@@ -52,6 +52,8 @@ class Record:
     """Measured x + iy, shape (m,); NaN where not measured [m]."""
     yaw: Floats
     """Measured heading, shape (m,); NaN where not measured [rad]."""
+    not_driven: tuple[tuple[float, float], ...] = ()
+    """Stretches in which the robot was held or carried, from and to [s]."""
 
     def delayed(self, delay: float) -> Record:
         """The same, when the reference is later by `delay` [s] than was believed."""
@@ -143,6 +145,7 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | 
         stamps[known] - view.delay,
         (reference.x + 1j * sign * np.asarray(reference.y))[known],
         sign * np.asarray(reference.yaw)[known],
+        tuple((part.begin, part.end) for part in run.no_driving or ()),
     )
 
 
@@ -217,11 +220,12 @@ def _way(record: Record) -> Floats:
 
 
 def _gaps(record: Record, gone: Floats, length: float) -> NDArray[np.bool_]:
-    """Intervals of the reference in which it, or the ticks, are silent on the way."""
+    """Intervals of the reference that are no driving, or in which it or the ticks are silent."""
     inside = (record.time >= record.seen[0]) & (record.time <= record.seen[-1])
     time = record.time[inside]
     ticks = np.flatnonzero(gaps_in(time, _way(record)[inside] / length))
-    silent = touched(record.seen, [(time[each], time[each + 1]) for each in ticks])
+    silences = [(time[each], time[each + 1]) for each in ticks]
+    silent = touched(record.seen, [*silences, *record.not_driven])
     return gaps_in(record.seen, gone / length) | silent
 
 

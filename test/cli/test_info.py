@@ -1,0 +1,219 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""From a bag that nobody has seen to a robot file and the command that comes next, which works."""
+
+from __future__ import annotations
+
+import json
+import math
+import shlex
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import werrimbi_odom as wo
+from test.files.conftest import Messages
+from test.inference.driven import run_of
+from test.inference.test_no_driving import held
+from test.model.drives import ROBOT
+from werrimbi_odom.cli.main import main
+from werrimbi_odom.files.first_robot import of_controller, of_urdf, with_steps
+
+DAY = 1_700_000_000
+JOINTS = ("drive_left_joint", "drive_right_joint")
+
+WHEEL = """
+  <joint name="{name}" type="continuous">
+    <parent link="chassis"/><child link="{name}_link"/>
+    <origin xyz="0.05 {y} 0.01" rpy="-1.5707963 0 0"/><axis xyz="0 0 1"/>
+  </joint>
+  <link name="{name}_link"><collision><geometry>
+    <cylinder radius="{radius}" length="0.02"/>
+  </geometry></collision></link>
+"""
+URDF = """<robot name="a_robot"><link name="base_footprint"/><link name="chassis"/>
+  <joint name="up" type="fixed"><parent link="base_footprint"/><child link="chassis"/>
+    <origin xyz="0 0 0.04" rpy="0 0 {yaw}"/></joint>
+  <joint name="castor_joint" type="continuous"><parent link="chassis"/><child link="castor"/>
+    <origin xyz="-0.2 0.01 0"/><axis xyz="0 1 0"/></joint><link name="castor"/>{wheels}</robot>"""
+
+
+def urdf(yaw: float = 0.0) -> str:
+    """Of the robot that is driven."""
+    half, radius = 0.5 * ROBOT.wheel_separation, ROBOT.wheel_radius
+    wheels = [
+        WHEEL.format(name=name, y=y, radius=radius)
+        for name, y in zip(JOINTS, (half, -half), strict=True)
+    ]
+    return URDF.format(wheels="".join(wheels), yaw=yaw)
+
+
+def bag_of(folder: Path, *, described: bool = True, measured: bool = True) -> tuple[Path, float]:
+    """A bag as people have it: joints, gyro, own odometry, poses of a tracker; begin of a hold."""
+    ros, random = Messages(), np.random.default_rng(4)
+    run, begin, _ = held(run_of(ROBOT, 1, 60), 30.0, 36.0)
+    reference = run.reference
+    assert reference is not None
+    late = random.exponential(0.02, 10_000)
+    entries = []
+
+    def add(topic: str, seconds: float, message: object) -> None:
+        stamp = DAY * 10**9 + round(seconds * 1e9)
+        entries.append((topic, stamp + round(1e9 * late[len(entries)]), message))
+
+    per_turn = ROBOT.left_ticks_per_revolution
+    for time, *counts in zip(run.ticks.time, run.ticks.left, run.ticks.right, strict=True):
+        stamp = DAY * 10**9 + round(time * 1e9)
+        angles = [2.0 * math.pi * round(count) / per_turn for count in counts]
+        add("/joint_states", time, ros.joints(stamp, JOINTS, angles))
+        add("/odom", time, ros.odometry(stamp, 0.0, 0.0, 0.0))
+    poses = zip(reference.time, reference.x, reference.y, reference.yaw, strict=True)
+    rates = np.gradient(reference.yaw, reference.time)
+    for rate, (time, *pose) in zip(rates, poses, strict=True):
+        stamp = DAY * 10**9 + round(time * 1e9)
+        if measured:
+            add("/imu", time, ros.imu(stamp, rate))
+            add("/vrpn/robot/pose", time, ros.pose(stamp, *pose))
+    if described:
+        text = ros.make("std_msgs/msg/String", urdf())
+        add("/robot_description", 0.0, ("std_msgs/msg/String", text))
+    entries.sort(key=lambda entry: entry[1])
+    return ros.write(folder / "a bag", entries, "sqlite3"), begin
+
+
+@pytest.fixture(scope="module")
+def recording(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, float]:
+    return bag_of(tmp_path_factory.mktemp("info"))
+
+
+def test_three_commands_from_a_bag_to_the_verdict(
+    recording: tuple[Path, float],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    bag, begin = recording
+    monkeypatch.chdir(tmp_path)
+    assert main(["info", str(bag)]) == 0
+    words = " ".join(capsys.readouterr().out.split())
+    assert "Wheels: /joint_states, angles of the wheels at 20 Hz" in words
+    assert "Reference /vrpn/robot/pose: poses at 5 Hz" in words
+    assert "No reference: /odom" in words
+    assert "believe the headers" in words
+    assert "was held for" in words
+    assert f"From {begin:.0f}" in words or "held, or against a wall. Left out." in words
+    commands = [words.rpartition("Next: a first robot file. ")[2]]
+    for verb in ("info", "compare"):
+        said = shlex.split(commands[-1])
+        assert said[:2] == ["werrimbi", verb]
+        assert main([*said[1:], "--json", f"{verb}.json"]) == 0, commands[-1]
+        printed = capsys.readouterr().out
+        commands.append(next((line for line in printed.splitlines() if "    werri" in line), ""))
+    robot = wo.read_robot(tmp_path / "robot.yaml")
+    assert robot.robot.wheel_separation == pytest.approx(ROBOT.wheel_separation, abs=1e-5)
+    assert robot.robot.wheel_radius == pytest.approx(ROBOT.wheel_radius, abs=1e-6)
+    assert robot.robot.left_ticks_per_revolution == ROBOT.left_ticks_per_revolution
+    found = json.loads(Path("info.json").read_text())
+    compared = json.loads(Path("compare.json").read_text())
+    (run,) = found["runs"]
+    assert run["left_out"] == compared["left_out"]
+    assert [each["topic"] for each in run["references"] if each["taken"]] == ["/vrpn/robot/pose"]
+    assert run["stamps"]["/joint_states"]["rate"] == pytest.approx(20.0, rel=0.01)
+    assert run["stamps"]["/joint_states"]["jitter"] < 1e-4
+    spans = dict.fromkeys(("stood", "drove", "held"), 0.0)
+    for span in run["spans"]:
+        spans[span["what"]] += span["to_s"] - span["from_s"]
+    assert spans["held"] == pytest.approx(5.0, abs=1.5)
+    assert compared["legs"]["count"] > 20
+
+
+def test_from_python_it_is_the_same(recording: tuple[Path, float], tmp_path: Path) -> None:
+    bag, begin = recording
+    result = wo.info(bag, out=tmp_path / "robot.yaml")
+    found = result.to_dict()
+    (stretch,) = found["runs"][0]["left_out"]
+    assert stretch["why"] == "held"
+    assert stretch["from_s"] - DAY == pytest.approx(begin, abs=0.5)
+    assert found["robot"] == str(tmp_path / "robot.yaml")
+    assert found["next"].startswith("werrimbi compare --robot")
+    assert "The" not in repr(result)
+    assert str(bag) in result.summary()
+
+
+def test_without_sizes_it_says_what_to_measure(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bag, _ = bag_of(tmp_path, described=False)
+    assert main(["info", str(bag)]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "measure the wheels' radius and the distance between them" in printed
+    assert " m and turned" not in printed
+    assert main(["info", str(bag), "--out", str(tmp_path / "new.yaml")]) == 2
+    assert "/robot_description" in capsys.readouterr().err
+    parameters = tmp_path / "controllers.yaml"
+    parameters.write_text(
+        "controller_manager:\n  ros__parameters:\n    update_rate: 50\n"
+        "diff_drive_controller:\n  ros__parameters:\n"
+        f"    left_wheel_names: [{JOINTS[0]}]\n    right_wheel_names: [{JOINTS[1]}]\n"
+        f"    wheel_separation: {ROBOT.wheel_separation}\n    wheel_radius: {ROBOT.wheel_radius}\n"
+        "    left_wheel_radius_multiplier: 1.01\n    linear.x.max_velocity: 1.0\n"
+    )
+    out = tmp_path / "new.yaml"
+    words = ["info", str(bag), "--robot", str(parameters), "--out", str(out)]
+    assert main(words) == 0
+    robot = wo.read_robot(out).robot
+    assert robot.left_wheel_radius_multiplier == 1.01
+    assert robot.left_ticks_per_revolution == ROBOT.left_ticks_per_revolution
+    assert main(words) == 2  # it is not overwritten
+
+
+def test_without_a_reference_it_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    bag, _ = bag_of(tmp_path, measured=False)
+    assert main(["info", str(bag)]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "Nothing in the bag measures the robot but its own wheels" in printed
+    assert "Record again with something that measures the robot" in printed
+
+
+def test_a_run_folder_is_looked_at_too(capsys: pytest.CaptureFixture[str]) -> None:
+    square = Path(wo.__file__).parent / "recordings" / "square"
+    assert main(["info", str(square), "--robot", str(square / "robot.yaml")]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "Reference: reference.csv, poses." in printed
+    assert "werrimbi compare --robot" in printed
+
+
+@pytest.mark.parametrize("yaw", [0.0, 0.3])
+def test_sizes_of_a_urdf(yaw: float) -> None:
+    found = of_urdf(urdf(yaw), JOINTS)
+    if yaw:  # a chassis that is mounted askew: its wheels do not roll along the robot's axis
+        assert found.separation == pytest.approx(ROBOT.wheel_separation * math.cos(yaw), rel=1e-3)
+        return
+    assert (found.separation, found.radius) == (ROBOT.wheel_separation, ROBOT.wheel_radius)
+    assert (found.left, found.right) == ((JOINTS[0],), (JOINTS[1],))
+    assert not of_urdf(urdf(), ["arm_joint"]).has_sizes
+
+
+@pytest.mark.parametrize(
+    "text", ["", "<robot", "<robot/>", "<!DOCTYPE x [<!ENTITY a 'b'>]><robot/>"]
+)
+def test_what_is_no_urdf_says_nothing(text: str) -> None:
+    assert not of_urdf(text).has_sizes
+
+
+def test_a_file_without_wheels_is_refused(tmp_path: Path) -> None:
+    path = tmp_path / "other.yaml"
+    path.write_text("amcl:\n  ros__parameters:\n    max_particles: 2000\n")
+    with pytest.raises(wo.InputError, match="wheel_separation and wheel_radius"):
+        of_controller(path)
+
+
+@pytest.mark.parametrize("ticks", [512, 4096, 20000])
+def test_steps_of_the_angles_tell_the_counts_of_a_turn(ticks: int) -> None:
+    counts = np.cumsum(np.random.default_rng(1).integers(3, 60, 400))
+    first = of_urdf(urdf())
+    found = with_steps(first, [2.0 * math.pi * counts / ticks] * 2)
+    assert found.ticks == ticks
+    smooth = np.cumsum(np.random.default_rng(1).uniform(0.01, 0.1, 400))
+    assert with_steps(first, [smooth, smooth]).ticks is None

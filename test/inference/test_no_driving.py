@@ -1,0 +1,218 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A robot that is held or carried is found, when it was, and no driving is left out."""
+
+from __future__ import annotations
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from test.inference.driven import NOISE_XY, NOISE_YAW, run_of
+from test.inference.test_gaps import parts
+from test.model.drives import ROBOT
+from werrimbi_odom.effects.collection import find
+from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.comparison.compare import compare
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
+from werrimbi_odom.report.phrases import left_out_words
+
+DATA = Path(os.environ.get("WERRIMBI_DATA", Path(__file__).parents[3] / "shared" / "data"))
+NEAR = 0.5
+
+
+def moved_on(reference: Reference, first: int, pose: tuple[float, float, float]) -> np.ndarray:
+    """The rest of a path from a row on, begun at another pose: x, y, yaw in columns."""
+    yaw = np.unwrap(reference.yaw)
+    turn = pose[2] - yaw[first]
+    way = (reference.x[first:] - reference.x[first]) + 1j * (
+        reference.y[first:] - reference.y[first]
+    )
+    place = pose[0] + 1j * pose[1] + way * np.exp(1j * turn)
+    return np.stack([place.real, place.imag, yaw[first:] + turn], axis=1)
+
+
+def held(run: Run, begin: float, end: float, seed: int = 0) -> tuple[Run, float, float]:
+    """The run with its reference frozen while the ticks go on; from and to, while wheels turn."""
+    random = np.random.default_rng(seed)
+    reference = run.reference
+    assert reference is not None
+    first, last = np.searchsorted(reference.time, [begin, end]).tolist()
+    table = np.stack([reference.x, reference.y, np.unwrap(reference.yaw)], axis=1)
+    pose = tuple(table[first])
+    table[first:last] = pose + random.normal(
+        0.0, [NOISE_XY, NOISE_XY, NOISE_YAW], (last - first, 3)
+    )
+    table[last:] = moved_on(reference, last, pose)
+    inside = (run.ticks.time >= begin) & (run.ticks.time <= end)
+    counts = np.stack([run.ticks.left, run.ticks.right])[:, inside]
+    turning = np.flatnonzero(np.abs(np.diff(counts)).max(axis=0) > 1.0)
+    times = run.ticks.time[inside][[turning[0], turning[-1] + 1]]
+    return replace(run, reference=Reference(reference.time, *table.T)), *times.tolist()
+
+
+def carried(run: Run, begin: float, lasts: float, seed: int = 0) -> Run:
+    """The run with a rest in it, in which the robot is set aside."""
+    random = np.random.default_rng(seed)
+    ticks, reference = run.ticks, run.reference
+    assert reference is not None
+    row, here = (int(np.searchsorted(each.time, begin)) for each in (ticks, reference))
+    rest = np.arange(0.05, lasts, 0.05)
+
+    def with_rest(counts: np.ndarray) -> np.ndarray:
+        return np.concatenate([counts[:row], np.full(rest.size, counts[row]), counts[row:]])
+
+    time = np.concatenate([ticks.time[:row], begin + rest, ticks.time[row:] + lasts])
+    seen = np.arange(0.2, lasts, 0.2)
+    gone = 0.5 * (1.0 - np.cos(np.pi * seen / lasts))
+    pose = (reference.x[here - 1], reference.y[here - 1], np.unwrap(reference.yaw)[here - 1])
+    away = np.array([0.9, -0.6, 1.4])
+    table = np.concatenate(
+        [
+            np.stack([reference.x, reference.y, np.unwrap(reference.yaw)], axis=1)[:here],
+            pose
+            + gone[:, None] * away
+            + random.normal(0.0, [NOISE_XY, NOISE_XY, NOISE_YAW], (seen.size, 3)),
+            moved_on(reference, here, tuple(pose + away)),
+        ]
+    )
+    stamps = np.concatenate([reference.time[:here], begin + seen, reference.time[here:] + lasts])
+    return replace(
+        run,
+        ticks=Ticks(time, with_rest(ticks.left), with_rest(ticks.right)),
+        reference=Reference(stamps, *table.T),
+    )
+
+
+def span(run: Run) -> tuple[float, float, set[str]]:
+    """From the first to the last that is found, and what."""
+    found = looked_at(run, ROBOT).no_driving
+    assert found
+    return found[0].begin, found[-1].end, {part.why for part in found}
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_a_robot_that_is_held_is_found_within_half_a_second(seed: int) -> None:
+    run, begin, end = held(run_of(ROBOT, seed), 30.0, 36.0)
+    found = span(run)
+    assert found[:2] == pytest.approx((begin, end), abs=NEAR)
+    assert found[2] == {"held"}
+
+
+@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("which", ["poses", "yaw"])
+def test_a_robot_that_is_carried_is_found_within_half_a_second(seed: int, which: str) -> None:
+    found = span(parts(carried(run_of(ROBOT, seed), 30.0, 3.0), which))
+    assert found[:2] == pytest.approx((30.0, 33.0), abs=NEAR)
+    assert found[2] == {"carried"}
+
+
+def test_headings_alone_show_it_while_the_wheels_turn_the_robot() -> None:
+    found = 0
+    for seed in range(6):
+        run, *_ = held(run_of(ROBOT, seed), 30.0, 36.0)
+        stretches = looked_at(parts(run, "yaw"), ROBOT).no_driving
+        assert stretches is not None
+        assert all(29.5 < part.begin < part.end < 36.5 for part in stretches)
+        found += bool(stretches)
+    assert found >= 3  # of six: in the others it drives straight on, or in wide arcs
+
+
+def test_of_positions_alone_the_longest_drive_is_kept() -> None:
+    """How a robot stands after it was carried, positions do not say."""
+    run = looked_at(parts(carried(run_of(ROBOT, 1), 60.0, 3.0), "positions"), ROBOT)
+    assert run.no_driving is not None
+    assert [part.why for part in run.no_driving] == ["carried", "carried"]
+    assert run.no_driving[0].begin == pytest.approx(60.0, abs=NEAR)
+    assert run.no_driving[-1].end == pytest.approx(float(run.ticks.time[-1]))
+    assert "heading is not known" in run.no_driving[-1].words
+
+
+TRUTHS = {
+    "nothing": ROBOT,
+    "base": replace(ROBOT, wheel_separation_multiplier=2.0),
+    "skid": replace(ROBOT, wheel_separation_multiplier=1.9),
+    "radii": replace(ROBOT, left_wheel_radius_multiplier=0.5, right_wheel_radius_multiplier=0.5),
+    "swapped": replace(ROBOT, effects=(find("wheels_swapped").using(),)),
+    "reversed": replace(ROBOT, effects=(find("left_wheel_reversed").using(),)),
+    "late": replace(ROBOT, effects=(find("reference_delay").using(delay=0.25),)),
+    "castor": replace(ROBOT, effects=(find("castor_kick").using(angle=0.05),)),
+    "slip": replace(ROBOT, effects=(find("longitudinal_slip").using(coefficient=0.05),)),
+    "arm": replace(ROBOT, effects=(find("reference_lever_arm").using(x=0.3, y=-0.2),)),
+}
+
+
+@pytest.mark.parametrize("truth", TRUTHS)
+@pytest.mark.parametrize("which", ["poses", "positions", "yaw"])
+def test_what_is_driving_is_left_in(truth: str, which: str) -> None:
+    for seed in (1, 2):
+        run = looked_at(parts(run_of(TRUTHS[truth], seed), which), ROBOT)
+        assert run.no_driving == ()
+
+
+@pytest.mark.parametrize("truth", ["base", "swapped", "reversed", "arm"])
+def test_a_wrong_robot_file_hides_nothing(truth: str) -> None:
+    run, begin, end = held(run_of(TRUTHS[truth], 3), 30.0, 36.0)
+    assert span(run)[:2] == pytest.approx((begin, end), abs=NEAR)
+
+
+def test_a_jump_of_the_reference_is_no_hand() -> None:
+    run = run_of(ROBOT, 2)
+    reference = run.reference
+    assert reference is not None
+    late = reference.time > 40.0
+    leapt = replace(reference, x=reference.x + 0.4 * late, yaw=reference.yaw + 0.5 * late)
+    assert looked_at(replace(run, reference=leapt), ROBOT).no_driving == ()
+
+
+def test_all_verbs_leave_it_out_and_find_what_they_find_without_it() -> None:
+    wide = replace(ROBOT, wheel_separation_multiplier=1.03)
+    runs = [held(run_of(wide, 1), 30.0, 36.0)[0], carried(run_of(wide, 4), 45.0, 3.0)]
+    assert look_for_mistakes(runs, ROBOT, "absolute").findings == ()
+    judged = compare(runs, ROBOT).prepared
+    cut = [part for run in match_finely(runs, ROBOT, 1.0) for part in run.record.left_out]
+    assert [part for part in judged.left_out if part.why != "reference"] == cut
+    assert {part.why for part in cut} == {"held", "carried"}
+    diagnosis = diagnose(runs, ROBOT, [find("track_width"), find("lateral_slip")])
+    assert diagnosis.effect == "track_width"
+    fitted = diagnosis.robot.wheel_separation_multiplier
+    assert fitted == pytest.approx(1.03, abs=0.003)
+    told = [part for part in diagnosis.left_out if part.why != "reference"]
+    assert told == cut
+    assert "the wheels turned and the robot did not: held" in left_out_words(cut)[0]
+
+
+def test_a_clock_of_the_day_is_told_from_the_start_of_the_drive() -> None:
+    run, begin, _ = held(run_of(ROBOT, 1), 30.0, 36.0)
+    reference = run.reference
+    assert reference is not None
+    day = 1.7e9
+    run = replace(
+        run,
+        ticks=replace(run.ticks, time=run.ticks.time + day),
+        reference=replace(reference, time=reference.time + day),
+    )
+    (stretch, *_) = compare([run], ROBOT).left_out
+    assert stretch.begin == pytest.approx(begin + day, abs=NEAR)
+    told = float(left_out_words([stretch])[0].split()[1])
+    assert told == pytest.approx(begin - float(run.ticks.time[0]) + day, abs=NEAR)
+
+
+@pytest.mark.skipif(not DATA.exists(), reason="no recorded robots here")
+def test_nobody_held_the_recorded_robots() -> None:
+    count = 0
+    for file in sorted(DATA.glob("robots/*/robot.yaml")):
+        source = read_robot_file(file)
+        for folder in sorted(each for each in file.parent.iterdir() if each.is_dir()):
+            run = looked_at(read_run(folder, source), source.robot, source.limits)
+            assert run.no_driving == (), folder
+            count += 1
+    assert count

@@ -1,0 +1,264 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a recording holds and allows, and the command that comes next."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from werrimbi_odom.api.result import Result
+from werrimbi_odom.errors import InputError
+
+if TYPE_CHECKING:
+    from werrimbi_odom.files.contents import Measured, Wheels
+    from werrimbi_odom.files.first_robot import FirstRobot
+    from werrimbi_odom.files.robot_file import RobotFile
+    from werrimbi_odom.files.run import Run
+    from werrimbi_odom.inference.recorded import Held, Info
+    from werrimbi_odom.report.page import Page
+
+DESCRIPTION = "/robot_description"
+
+
+def info(
+    runs: str | Path | Sequence[str | Path],
+    *,
+    robot: str | Path | None = None,
+    out: str | Path | None = None,
+    ticks_topic: str | None = None,
+    reference_topic: str | None = None,
+    force: bool = False,
+) -> Result[Info]:
+    """What recordings hold and allow, and the next command.
+
+    Parameters
+    ----------
+    runs
+        Run folders or bags.
+    robot
+        A robot file, or the parameter file of a diff_drive_controller.
+    out
+        Where a first robot file is written.
+    ticks_topic, reference_topic
+        What to look at, where not what seems best.
+    force
+        Whether `out` may be overwritten.
+
+    Raises
+    ------
+    InputError
+        When a recording cannot be read at all, or a robot file cannot be written.
+    """
+    from werrimbi_odom.report.info import info_json, info_words
+
+    paths = [Path(each) for each in ([runs] if isinstance(runs, str | Path) else runs)]
+    found = _look(paths, None if robot is None else Path(robot), ticks_topic, reference_topic)
+    if out is not None:
+        found = replace(found, written=_write(found, Path(out), force))
+    return Result(
+        found=found,
+        words=lambda: info_words(found),
+        figures_of_json=lambda: info_json(found),
+        page=lambda: _page(found),
+    )
+
+
+def _page(found: Info) -> Page:
+    from werrimbi_odom.report.info import info_words
+    from werrimbi_odom.report.page import Page
+
+    return Page("What the recordings hold", info_words(found), ())
+
+
+def _look(
+    paths: Sequence[Path], robot: Path | None, ticks_topic: str | None, reference_topic: str | None
+) -> Info:
+    from werrimbi_odom.files.first_robot import FirstRobot, of_controller
+    from werrimbi_odom.files.robot_file import read_robot_file
+    from werrimbi_odom.inference.recorded import Info
+
+    source, first = None, FirstRobot()
+    if robot is not None:
+        try:
+            source = read_robot_file(robot)
+        except InputError:
+            first = of_controller(robot)
+    held = []
+    for path in paths:
+        one, first = _held(path, source, first, ticks_topic, reference_topic)
+        held.append(one)
+    title = f"A first robot file, from {paths[0].name}: check base and radius with a ruler"
+    sizes = source is not None or first.has_sizes
+    return Info(tuple(held), first, None if source is None else robot, None, title, sizes)
+
+
+def _held(
+    path: Path,
+    source: RobotFile | None,
+    first: FirstRobot,
+    ticks_topic: str | None,
+    reference_topic: str | None,
+) -> tuple[Held, FirstRobot]:
+    from werrimbi_odom.files.reading import bag_at
+    from werrimbi_odom.inference.recorded import Held
+
+    bag = bag_at(path)
+    if bag is None:
+        run = _read(path, source, first, None, None)
+        return _judged(Held(path, None, None, None, {}, run, ""), source, first), first
+    held, first = _of_bag(path, bag, source, first, ticks_topic, reference_topic)
+    try:
+        if held.wheels is None:
+            raise InputError("nothing in it tells how the wheels turned")
+        reference = reference_topic or (held.reference.name if held.reference else "none")
+        if source is None:
+            first = _with_ticks(path, held.wheels, first)
+        run = _read(path, source, first, held.wheels.name, reference)
+    except InputError as error:
+        return replace(held, problem=str(error)), first
+    return _judged(replace(held, run=run), source, first), first
+
+
+def _of_bag(
+    path: Path,
+    bag: Path,
+    source: RobotFile | None,
+    first: FirstRobot,
+    ticks_topic: str | None,
+    reference_topic: str | None,
+) -> tuple[Held, FirstRobot]:
+    """What a bag holds, and what it says of the robot."""
+    from werrimbi_odom.files.bag import opened_bag
+    from werrimbi_odom.files.contents import contents_of_bag
+    from werrimbi_odom.files.first_robot import of_names, of_urdf, with_driver
+    from werrimbi_odom.files.stamps import stamps_of
+    from werrimbi_odom.inference.recorded import Held
+
+    with opened_bag(bag) as opened:
+        base = "" if source is None else str(source.values["base_frame_id"])
+        contents = contents_of_bag(opened, base)
+        names = {each.name for each in contents.wheels}
+        wheels = next(
+            (
+                each
+                for each in sorted(contents.wheels, key=lambda each: each.gives == "odometry")
+                if each.name == ticks_topic or ticks_topic not in names
+            ),
+            None,
+        )
+        joints = wheels.joints if wheels else ()
+        if source is None and not first.has_sizes:
+            text = opened.firsts([DESCRIPTION]).get(DESCRIPTION)
+            first = of_urdf(getattr(text, "data", ""), joints)
+        if source is None and wheels:
+            first = with_driver(first, wheels.kind)
+            recorded = set(first.left + first.right) <= set(joints)
+            if joints and not (first.left and recorded):
+                named = of_names(joints)
+                first = replace(first, left=named.left, right=named.right)
+        reference = _best(contents.references, reference_topic)
+        listed = [wheels, *contents.references]
+        topics = {name for each in listed if each for name in _topics(each)}
+        stamps = stamps_of(opened, sorted(topics))
+    return Held(path, contents, wheels, reference, stamps, None, ""), first
+
+
+def _topics(each: Wheels | Measured) -> list[str]:
+    return [name.partition(":")[0] for name in each.name.split(",")]
+
+
+def _best(references: Sequence[Measured], wish: str | None) -> Measured | None:
+    """The one that is wished for, or that says most of those that are independent."""
+    if wish is not None:
+        return next((each for each in references if each.name == wish), None)
+    from werrimbi_odom.inference.rules import FEW_POSES
+
+    order = ("poses", "positions", "yaw")
+    usable = [each for each in references if each.independent and each.messages >= FEW_POSES]
+    usable = usable or [each for each in references if each.independent]
+    return min(usable, key=lambda each: order.index(each.measures), default=None)
+
+
+def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
+    """Counts a turn by the steps of the wheels' angles, where joints tell them."""
+    import math
+
+    import numpy as np
+
+    from werrimbi_odom.files.first_robot import with_steps
+
+    if first.ticks is not None or wheels.gives != "positions" or not first.left:
+        return first
+    turn = 2.0 * math.pi
+    run = _read(path, None, replace(first, ticks=turn), wheels.name, "none")
+    angles = (run.ticks.left, run.ticks.right)
+    return with_steps(first, [np.asarray(each, dtype=np.float64) for each in angles])
+
+
+def _read(
+    path: Path,
+    source: RobotFile | None,
+    first: FirstRobot,
+    ticks_topic: str | None,
+    reference_topic: str | None,
+) -> Run:
+    from werrimbi_odom.files.reading import read_run
+
+    return read_run(
+        path,
+        source or robot_file_of(first),
+        ticks_topic=ticks_topic,
+        reference_topic=reference_topic,
+    )
+
+
+def robot_file_of(first: FirstRobot) -> RobotFile:
+    """A robot file of what is known; where sizes are not, of any."""
+    from werrimbi_odom.files.robot_file import read_robot_file
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "robot.yaml"
+        path.write_text(first.text("what is known"), encoding="utf-8")
+        return read_robot_file(path)
+
+
+def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
+    """When it stood, drove, was held and carried, and what will be left out."""
+    from werrimbi_odom.inference.legs.counters import counters_of
+    from werrimbi_odom.inference.legs.cutting import record_of
+    from werrimbi_odom.inference.legs.no_driving import looked_at
+    from werrimbi_odom.inference.legs.spans import driven
+
+    assert held.run is not None
+    robot_file = source or robot_file_of(first)
+    robot, limits = robot_file.robot, robot_file.limits
+    try:
+        run = looked_at(held.run, robot, limits)
+        counters = counters_of(run, robot, limits)
+        found = driven(counters, robot, run.no_driving or ())
+        left_out = record_of(run, robot, limits).left_out if run.reference is not None else ()
+    except InputError as error:
+        return replace(held, problem=str(error))
+    return replace(held, run=run, driven=found, left_out=left_out)
+
+
+def _write(found: Info, out: Path, force: bool) -> Path:
+    from werrimbi_odom.files.replacing import replacing
+
+    if found.given is not None:
+        raise InputError(f"{found.given} is a robot file already; --out is for a first one")
+    if not found.first.has_sizes:
+        raise InputError(
+            f"no robot file can be written: neither {DESCRIPTION} nor a parameter file says the "
+            "wheels' radius and separation; measure both, or give the diff_drive_controller's "
+            "parameters with --robot"
+        )
+    if out.exists() and not force:
+        raise InputError(f"--out {out} exists; --force overwrites it, another --out keeps it")
+    with replacing(out) as file:
+        file.write(found.robot_text)
+    return out

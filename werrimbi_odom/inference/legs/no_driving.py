@@ -1,0 +1,267 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What of a drive is no driving: wheels that turn while the robot is held, or stand while it moves.
+
+Told by wheels and reference alone, by how they go together in most of the drive (`agreement`): no
+robot file, right or wrong, makes a stretch of no driving, nor hides one.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d, median_filter, minimum_filter1d
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run import NoDriving, Reference, Run
+from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
+from werrimbi_odom.inference.legs.counters import Counters, counters_of
+from werrimbi_odom.inference.legs.windows import windows_of
+from werrimbi_odom.inference.rules import (
+    NO_DRIVING_AT_ONCE,
+    NO_DRIVING_EDGE,
+    NO_DRIVING_FEWEST,
+    NO_DRIVING_GOES,
+    NO_DRIVING_JOINED,
+    NO_DRIVING_LATE,
+    NO_DRIVING_MORE,
+    NO_DRIVING_NOISE,
+    NO_DRIVING_OFF,
+    NO_DRIVING_ROUGH,
+    NO_DRIVING_SILENT,
+    NO_DRIVING_SPLIT,
+    NO_DRIVING_TURN,
+    NO_DRIVING_TURNS,
+    NO_DRIVING_WAY,
+    NO_DRIVING_WINDOW,
+)
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+_GRID = 0.1  # on which held and carried are told apart [s]
+
+HELD = "the wheels turned and the robot did not: held, or against a wall"
+CARRIED = "the robot moved and its wheels did not: carried, or pushed"
+UNKNOWN = "the robot drove, and its heading is not known: it was held or carried before or after"
+BY_HAND = "the robot moved otherwise than its wheels: lifted, or turned by hand"
+
+
+@dataclass(frozen=True, slots=True)
+class _Seen:
+    """One thing that the reference measures, against the wheels; k windows."""
+
+    agreement: Agreement
+    beyond: Floats
+    """How far what is measured is off, in units of what is too far; (k,)."""
+    edge: NDArray[np.bool_]
+    """Windows that belong to what is beyond beside them, (k,)."""
+    speaks: NDArray[np.bool_]
+    """Windows in which wheels and robot are seen to move together, (k,)."""
+    enough: float
+    """Turn [rad] or way [m] that must be in doubt."""
+
+    @property
+    def time(self) -> Floats:
+        """Middles of the windows [s]."""
+        return self.agreement.windows.time
+
+    def at(self, values: Floats, time: Floats) -> Floats:
+        """Values of the windows at some times."""
+        return np.interp(time, self.time, np.nan_to_num(values))
+
+
+def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Run:
+    """The run with what of it is no driving, looked for once: parts of it keep what was found."""
+    if run.no_driving is not None or run.reference is None:
+        return run
+    try:
+        counters = counters_of(run, robot, limits)
+    except InputError:
+        return run  # whoever cuts it into legs says why
+    return replace(run, no_driving=no_driving(counters, run.reference, robot))
+
+
+def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[NoDriving, ...]:
+    """Stretches in which the robot was held or carried, in their order."""
+    seen: list[_Seen] = []
+    turns = windows_of(counters, reference, robot, ways=False)
+    by_turns = None if turns is None else turns_agree(turns, robot.track)
+    if by_turns is not None:
+        span = by_turns.windows.steps * by_turns.windows.step
+        seen.append(_judged(by_turns, NO_DRIVING_TURNS * span, NO_DRIVING_TURN))
+    ways = windows_of(counters, reference, robot, ways=True)
+    by_ways = None if ways is None else ways_agree(ways, by_turns, robot.track)
+    if by_ways is not None:
+        rolling = by_ways.windows.rolled > by_ways.windows.still
+        typical = float(np.median(by_ways.gross[rolling]))
+        seen.append(_judged(by_ways, NO_DRIVING_GOES * typical, NO_DRIVING_WAY))
+    found = sorted(_reaching(stretch, seen) for each in seen for stretch in _stretches(each))
+    parts = [part for each in _joined(found, seen) for part in _by_kind(*each, seen)]
+    if parts and not reference.has_yaw.any():
+        parts = _with_what_follows(parts, counters)
+    return tuple(parts)
+
+
+def _judged(found: Agreement, slowest: float, enough: float) -> _Seen:
+    """What is too far off to be driving, and what no clock that wanders explains.
+
+    Parameters
+    ----------
+    slowest : float
+        Turn or way in a window, below which nothing is said to move.
+    """
+    windows, expected, gross = found.windows, found.expected, found.gross
+    reach = 2 * max(1, round(NO_DRIVING_LATE / windows.step)) + 1
+    low, high = minimum_filter1d(expected, reach), maximum_filter1d(expected, reach)
+    off = np.maximum(np.maximum(low - windows.measured, windows.measured - high), 0.0)
+    rolls = windows.rolled > windows.still
+    keeps = rolls & (found.off <= NO_DRIVING_EDGE * gross)
+    noise = float(np.median(found.off[keeps]))
+    rough = NO_DRIVING_ROUGH * float(np.median(found.off[keeps] / gross[keeps]))
+    least = max(NO_DRIVING_NOISE * noise, slowest)
+    beyond = off / np.maximum(max(NO_DRIVING_OFF, rough) * maximum_filter1d(gross, reach), least)
+    edge = found.off > np.maximum(NO_DRIVING_EDGE * gross, 0.5 * least)
+    moves = np.abs(expected) > np.maximum(NO_DRIVING_EDGE * gross, least)
+    return _Seen(found, beyond, edge, moves & keeps, enough)
+
+
+def _stretches(seen: _Seen) -> list[tuple[float, float]]:
+    """Where it is beyond all driving for long enough, from and to [s]."""
+    windows, off = seen.agreement.windows, seen.agreement.off
+    more = np.abs(windows.measured) > np.abs(seen.agreement.expected)
+    found = []
+    for first, last in _runs_of(seen.beyond > 1.0):
+        inside = slice(first, last + 1)
+        doubted = float(off[inside].sum()) / windows.steps
+        lasts = last + 1 - first >= max(NO_DRIVING_FEWEST, windows.steps + NO_DRIVING_MORE)
+        # A lost track or a failed match leaps from one pose to the next: for a window, no longer.
+        leaps = more[inside].mean() > 0.5 and (
+            last + 1 - first < 2 * windows.steps
+            or float(off[inside].max()) > NO_DRIVING_AT_ONCE * doubted
+        )
+        if not lasts or leaps or doubted < seen.enough:
+            continue
+        found.append((float(seen.time[first]), float(seen.time[last])))
+    return found
+
+
+def _reaching(stretch: tuple[float, float], seen: Sequence[_Seen]) -> tuple[float, float]:
+    """A stretch with the windows at its ends that are off too, whatever they measure.
+
+    A robot that is turned while its wheels begin to turn is right for a moment, by chance.
+    """
+    off = np.sort(np.concatenate([each.time[each.edge] for each in seen]))
+    apart = np.diff(off) > NO_DRIVING_WINDOW
+    group = np.concatenate([[0], np.cumsum(apart)])
+    begin, end = stretch
+    own = group[(off >= begin) & (off <= end)]
+    reached = off[(group >= own[0]) & (group <= own[-1])] if own.size else np.array(stretch)
+    return min(begin, float(reached[0])), max(end, float(reached[-1]))
+
+
+def _joined(
+    found: Sequence[tuple[float, float]], seen: Sequence[_Seen]
+) -> list[tuple[float, float]]:
+    """Stretches with nothing between them, nor to the drive's ends, that speaks for driving."""
+    if not found:
+        return []
+    half = max(0.5 * each.agreement.windows.steps * each.agreement.windows.step for each in seen)
+    first, last = (
+        float(pick(bound))
+        for pick, bound in (
+            (min, [each.time[0] for each in seen]),
+            (max, [each.time[-1] for each in seen]),
+        )
+    )
+    joined = [(first - half, first - half)]
+    for begin, end in [*found, (last + half, last + half)]:
+        before = joined[-1][1]
+        apart = begin - before
+        speaks = any(
+            each.speaks[(each.time > before + half) & (each.time < begin - half)].any()
+            for each in seen
+        )
+        if apart <= NO_DRIVING_JOINED or (apart <= NO_DRIVING_SILENT and not speaks):
+            joined[-1] = joined[-1][0], max(before, end)
+        else:
+            joined.append((begin, end))
+    return [(begin, end) for begin, end in joined if end > begin]
+
+
+def _by_kind(begin: float, end: float, seen: Sequence[_Seen]) -> list[NoDriving]:
+    """A stretch by what happened in it: held, carried, or one after the other."""
+    grid = np.linspace(begin, end, max(2, round((end - begin) / _GRID)))
+    shares = np.stack([each.at(each.beyond, grid) for each in seen])
+    which = np.argmax(shares, axis=0)
+    columns = np.arange(grid.size)
+
+    def of_the_worst(of: Sequence[Floats]) -> Floats:
+        every = np.stack([each.at(one, grid) for each, one in zip(seen, of, strict=True)])
+        return np.asarray(every[which, columns])
+
+    measured = np.abs(of_the_worst([each.agreement.windows.measured for each in seen]))
+    expected = np.abs(of_the_worst([each.agreement.expected for each in seen]))
+    moved = (measured > expected).astype(np.float64)
+    window = 2 * round(0.5 * NO_DRIVING_SPLIT / _GRID) + 1
+    moved = median_filter(moved, window, mode="nearest")
+    # Parts that are shorter belong to the longest: a hand is there a moment sooner or later.
+    runs = [*_runs_of(moved > 0.5), *_runs_of(moved < 0.5)]
+    longest = max(runs, key=lambda run: run[1] - run[0])
+    for first, last in runs:
+        if (last + 1 - first) * _GRID < NO_DRIVING_SPLIT:
+            moved[first : last + 1] = moved[longest[0]]
+    edges = [0, *(np.flatnonzero(np.diff(moved)) + 1).tolist(), grid.size]
+    rolled = seen[0].at(seen[0].agreement.windows.rolled, grid)
+    still = seen[0].agreement.windows.still
+    lag = seen[0].agreement.lag
+    parts = []
+    for one, other in itertools.pairwise(edges):
+        # The reference saw it later than the wheels turned: both are left out.
+        span = (
+            begin + min(lag, 0.0) if one == 0 else float(grid[one]),
+            end + max(lag, 0.0) if other == grid.size else float(grid[other]),
+        )
+        if not moved[one]:
+            parts.append(NoDriving(*span, "held", HELD))
+        else:
+            stood = np.mean(rolled[one:other] <= still) > 0.5
+            parts.append(NoDriving(*span, "carried", CARRIED if stood else BY_HAND))
+    return parts
+
+
+def _with_what_follows(parts: Sequence[NoDriving], counters: Counters) -> list[NoDriving]:
+    """Where positions alone were measured: all but the longest drive between stretches.
+
+    How the robot stood after it was held or carried, nobody says, and the drives between have to be
+    one.
+    """
+    drives = list(
+        zip(
+            [float(counters.time[0]), *(part.end for part in parts)],
+            [*(part.begin for part in parts), float(counters.time[-1])],
+            strict=True,
+        )
+    )
+    longest = max(range(len(drives)), key=lambda each: drives[each][1] - drives[each][0])
+    found = list(parts)
+    for number, (begin, end) in enumerate(drives):
+        if number != longest and end > begin:
+            found.append(NoDriving(begin, end, parts[min(number, len(parts) - 1)].why, UNKNOWN))
+    return sorted(found)
+
+
+def _runs_of(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """First and last index of each run of true ones."""
+    steps = np.diff(np.concatenate([[0], mask.astype(np.int8), [0]]))
+    return list(
+        zip(
+            np.flatnonzero(steps > 0).tolist(),
+            (np.flatnonzero(steps < 0) - 1).tolist(),
+            strict=True,
+        )
+    )

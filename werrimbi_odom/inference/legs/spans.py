@@ -1,0 +1,75 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a robot did when: stood, drove, was held, was carried."""
+
+from __future__ import annotations
+
+import itertools
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.files.run import NoDriving
+from werrimbi_odom.inference.legs.counters import Counters
+from werrimbi_odom.inference.rules import REST_LASTS, STANDS
+from werrimbi_odom.model.robot import Robot
+
+_GRID = 0.1  # [s]
+What = Literal["stood", "drove", "held", "carried"]
+
+
+class Span(NamedTuple):
+    """A stretch of a drive."""
+
+    begin: float
+    """In the run's own clock [s]."""
+    end: float
+    what: What
+
+
+class Driven(NamedTuple):
+    """How much was driven in all, what is no driving apart."""
+
+    spans: tuple[Span, ...]
+    way: float
+    """By the wheels [m]."""
+    turned: float
+    """By the wheels, whatever the sense [rad]."""
+    reversals: int
+    """Changes between forwards and backwards."""
+
+
+def driven(counters: Counters, robot: Robot, no_driving: tuple[NoDriving, ...]) -> Driven:
+    """What a robot did when, by its wheels and by what is known to be no driving."""
+    first, last = float(counters.time[0]), float(counters.time[-1])
+    grid = np.append(np.arange(first, last, _GRID), last)
+    left, right = (np.diff(counters.at(grid), axis=0) * [robot.left_tick, robot.right_tick]).T
+    way, turn = 0.5 * (left + right), (right - left) / robot.track
+    rolled = 0.5 * (np.abs(left) + np.abs(right))
+    moving = rolled > (STANDS * float(np.median(rolled[rolled > 0.0])) if rolled.any() else 0.0)
+    state = np.where(moving, "drove", "stood").astype(object)
+    for begin, end in itertools.pairwise(_changes(state)):
+        if state[begin] == "stood" and (end - begin) * _GRID < REST_LASTS:
+            state[begin:end] = "drove"
+    middle = 0.5 * (grid[1:] + grid[:-1])
+    for part in no_driving:
+        if part.why in ("held", "carried"):
+            state[(middle >= part.begin) & (middle <= part.end)] = part.why
+    spans = tuple(
+        Span(float(grid[begin]), float(grid[end]), state[begin])
+        for begin, end in itertools.pairwise(_changes(state))
+    )
+    drove = state == "drove"
+    along = np.sign(way[drove & (np.abs(way) > 0.5 * rolled) & moving])
+    return Driven(
+        spans,
+        float(np.abs(way[drove]).sum()),
+        float(np.abs(turn[drove]).sum()),
+        int(np.count_nonzero(np.diff(along))),
+    )
+
+
+def _changes(state: NDArray[Any]) -> list[int]:
+    """Where another state begins, the first and the end among them."""
+    return [0, *(np.flatnonzero(state[1:] != state[:-1]) + 1).tolist(), state.size]

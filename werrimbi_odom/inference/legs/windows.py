@@ -1,0 +1,131 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A drive in windows of time: what the wheels went in each, and what the reference saw."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.files.run import Reference
+from werrimbi_odom.inference.legs.counters import Counters
+from werrimbi_odom.inference.rules import (
+    NO_DRIVING_POSES,
+    NO_DRIVING_SILENCE,
+    NO_DRIVING_SPANS,
+    NO_DRIVING_WINDOW,
+    STANDS,
+)
+from werrimbi_odom.model.pose import Floats, wrap_all
+from werrimbi_odom.model.robot import Robot
+
+_GRID = 0.1  # where messages come as often [s]
+_WINDOWS = 1500  # of a long drive, from which is learnt
+_STILL = 0.1  # share of what is standing, in which not even a motor stirs
+
+
+@dataclass(frozen=True, slots=True)
+class Windows:
+    """Windows of time, each begun a step of the grid after the one before; k of them."""
+
+    step: float
+    """Of the grid [s]."""
+    steps: int
+    """Of the grid in a window."""
+    time: Floats
+    """Middles of the windows, (k,) [s]."""
+    left: Floats
+    """Travel of what the robot file takes for the left wheel, (k,) [m]."""
+    right: Floats
+    rolled: Floats
+    """Mean way of both wheels, whatever their sense, (k,) [m]."""
+    measured: Floats
+    """Turn [rad], or displacement [m]; NaN where nobody looked; (k,)."""
+    chord: Floats
+    """Of the arc that is driven in each, over its length; (k,)."""
+
+    @property
+    def still(self) -> float:
+        """Way of the wheels in a window, below which they stand [m]."""
+        rolling = self.rolled[self.rolled > 0.0]
+        return STANDS * float(np.median(rolling)) if rolling.size else 0.0
+
+    def later(self, lag: float) -> Windows:
+        """The same, when the reference is later than the wheels by `lag` [s]."""
+        shift = round(lag / self.step)
+        if shift == 0:
+            return self
+        moved = np.full_like(self.measured, np.nan)
+        if shift > 0:
+            moved[:-shift] = self.measured[shift:]
+        else:
+            moved[-shift:] = self.measured[:shift]
+        return replace(self, measured=moved)
+
+    def some(self, rows: NDArray[np.intp]) -> Windows:
+        """A few of them."""
+        names = ("time", "left", "right", "rolled", "measured", "chord")
+        return replace(self, **{name: getattr(self, name)[rows] for name in names})
+
+    def rolling(self) -> Windows:
+        """Those in which wheels turn and the reference is seen, of a long drive some."""
+        rows = np.flatnonzero((self.rolled > self.still) & np.isfinite(self.measured))
+        return self.some(rows[:: max(1, rows.size // _WINDOWS)])
+
+    def at_rest(self) -> Floats:
+        """What is measured while the wheels stand."""
+        return self.measured[(self.rolled <= _STILL * self.still) & np.isfinite(self.measured)]
+
+
+def windows_of(
+    counters: Counters, reference: Reference, robot: Robot, *, ways: bool
+) -> Windows | None:
+    """Turns or displacements in windows of time; None where the record is too sparse for them."""
+    known = reference.has_position if ways else reference.has_yaw
+    time = reference.time[known]
+    if time.size < NO_DRIVING_POSES:
+        return None
+    new = np.concatenate([[True], time[1:] > np.maximum.accumulate(time)[:-1]])
+    time = time[new]
+    first, last = max(time[0], counters.time[0]), min(time[-1], counters.time[-1])
+    usual = [float(np.median(np.diff(each))) for each in (time, counters.time)]
+    step = max(_GRID, *usual)
+    steps = max(2, round(NO_DRIVING_WINDOW / step))
+    if 0.5 * step > NO_DRIVING_WINDOW or last - first < NO_DRIVING_SPANS * steps * step:
+        return None
+    grid = np.arange(first, last, step)
+    left = np.interp(grid, counters.time, counters.left) * robot.left_tick
+    right = np.interp(grid, counters.time, counters.right) * robot.right_tick
+    way = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
+    rolled = np.concatenate([[0.0], np.cumsum(way)])
+    if ways:
+        place = reference.x[known][new] + 1j * reference.y[known][new]
+        measured = np.abs(
+            _over(np.interp(grid, time, place.real), steps)
+            + 1j * _over(np.interp(grid, time, place.imag), steps)
+        )
+    else:
+        turned = np.cumsum(wrap_all(np.diff(reference.yaw[known][new], prepend=0.0)))
+        measured = _over(np.interp(grid, time, turned), steps)
+    begin, end = grid[:-steps], grid[steps:]
+    for stamps, each in zip((time, counters.time), usual, strict=True):
+        for gap in np.flatnonzero(
+            np.diff(stamps) > max(NO_DRIVING_SILENCE * each, 2.0 * step)
+        ).tolist():
+            measured[(begin < stamps[gap + 1]) & (end > stamps[gap])] = np.nan
+    return Windows(
+        step,
+        steps,
+        0.5 * (begin + end),
+        _over(left, steps),
+        _over(right, steps),
+        _over(rolled, steps),
+        measured,
+        np.ones_like(measured),
+    )
+
+
+def _over(values: Floats, steps: int) -> Floats:
+    return np.asarray(values[steps:] - values[:-steps])

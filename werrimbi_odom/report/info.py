@@ -1,0 +1,281 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What recordings hold, in words and for programs."""
+
+from __future__ import annotations
+
+import math
+import shlex
+from collections.abc import Iterator
+from dataclasses import asdict
+from typing import Any
+
+from werrimbi_odom.files.contents import Measured
+from werrimbi_odom.files.stamps import Stamps
+from werrimbi_odom.inference.legs.spans import Driven
+from werrimbi_odom.inference.recorded import Held, Info, can_tell, measures_of
+from werrimbi_odom.report.numbers import listed
+from werrimbi_odom.report.phrases import left_out_json, left_out_words
+from werrimbi_odom.report.text import COMMAND, filled
+
+_GIVES = {
+    "counts": "counters",
+    "positions": "angles of the wheels",
+    "velocities": "speeds of the wheels, which are integrated",
+    "odometry": "the robot's own odometry, turned back into travel of its wheels",
+}
+_MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"}
+_WANDERS = 0.1  # of stamps against receipt, from which on it is worth saying [s]
+
+
+def info_words(found: Info) -> str:
+    """What is printed."""
+    parts = [_of_one(each, found) for each in found.held]
+    return "\n\n".join([*parts, _next(found)])
+
+
+def _of_one(held: Held, found: Info) -> str:
+    lines = [f"{held.path}", *(filled(f"- {each}") for each in _lines(held, found))]
+    return "\n".join(lines)
+
+
+def _lines(held: Held, found: Info) -> Iterator[str]:
+    if held.contents is not None:
+        yield _wheels(held)
+        yield from _references(held)
+        yield from _stamps(held)
+    else:
+        yield "Wheels: ticks.csv, counters."
+        measures = measures_of(held)
+        if measures != "nothing":
+            yield f"Reference: reference.csv, {_MEASURES[measures]}."
+    if held.problem:
+        yield f"It cannot be used as it is: {held.problem}."
+    if held.driven is not None:
+        yield _driven(held, held.driven, found.sizes)
+    yield from left_out_words(held.left_out)
+    if held.run is None:
+        return
+    yield from (f"{each}." for each in held.run.damage)
+    can, cannot = can_tell(held, found.sizes)
+    if can:
+        yield f"It can show {listed(can)}."
+    yield from (f"It cannot show {each}." for each in cannot)
+
+
+def _wheels(held: Held) -> str:
+    wheels = held.wheels
+    if wheels is None:
+        return "Wheels: nothing in the bag tells how they turned."
+    joints = f", joints {listed(wheels.joints)}" if wheels.joints else ""
+    return f"Wheels: {wheels.name}, {_GIVES[wheels.gives]}{_rate(held, wheels.name)}{joints}."
+
+
+def _rate(held: Held, name: str) -> str:
+    stamps = held.stamps.get(name.split(",")[0].partition(":")[0])
+    return "" if stamps is None or name.startswith("/tf") else f" at {stamps.rate:.3g} Hz"
+
+
+def _references(held: Held) -> Iterator[str]:
+    assert held.contents is not None
+    for each in held.contents.references:
+        taken = " It is taken." if each == held.reference else ""
+        kind = f"{each.name}: {_MEASURES[each.measures]}{_rate(held, each.name)}"
+        if each.independent:
+            yield f"Reference {kind} ({each.why}).{taken}"
+        else:
+            yield f"No reference: {each.name}, {each.why}."
+    scans = [each.name for each in held.contents.topics if each.kind.endswith("/LaserScan")]
+    if scans and not any(each.name in scans for each in held.contents.references):
+        yield f"A laser: {listed(scans)}; a scan matcher makes poses of it."
+    if held.reference is None:
+        yield "Nothing in the bag measures the robot but its own wheels."
+
+
+def _stamps(held: Held) -> Iterator[str]:
+    for name, stamps in held.stamps.items():
+        chosen = [held.wheels and held.wheels.name, held.reference and held.reference.name]
+        if any(each and name in (*each.split(","), each.partition(":")[0]) for each in chosen):
+            yield _clock(name, stamps)
+    yield from _apart(held)
+
+
+def _clock(name: str, stamps: Stamps) -> str:
+    if stamps.jitter is None:
+        words = (
+            f"{name} has no stamps: the times of receipt are used, whose intervals vary by "
+            f"± {_ms(stamps.received_jitter)}"
+        )
+    else:
+        pair = f"± {_ms(stamps.jitter)} against ± {_ms(stamps.received_jitter)} of receipt"
+        if stamps.believed == "header":
+            words = f"Stamps of {name}: believe the headers, whose intervals vary by {pair}"
+        else:
+            words = (
+                f"Stamps of {name}: the headers are used, though their intervals vary by {pair}: "
+                "the times of receipt are the evener"
+            )
+        if (stamps.wander or 0.0) > _WANDERS:
+            words += (
+                f"; what lies between stamp and receipt wanders by {stamps.wander:.2g} s, and is "
+                f"{stamps.offset:.2g} s as a rule and {stamps.latest:.2g} s at most"
+            )
+            if (stamps.offset or 0.0) < 0.0:
+                words += " (negative: two clocks that differ)"
+    extras = []
+    if stamps.bursts > 0.01:
+        extras.append(f"{100 * stamps.bursts:.0f} % come together with the one before")
+    if stamps.late > 0.01:
+        extras.append(f"{100 * stamps.late:.0f} % are late by a tenth of a second and more")
+    if stamps.back:
+        extras.append(f"the stamps go back {stamps.back} times")
+    return f"{words}{'; ' if extras else ''}{', '.join(extras)}."
+
+
+def _apart(held: Held) -> Iterator[str]:
+    names = [each.name.split(",")[0].partition(":")[0] for each in _chosen(held)]
+    offsets = [held.stamps[name].offset for name in names if name in held.stamps]
+    if len(offsets) == 2 and offsets[0] is not None and offsets[1] is not None:
+        apart = offsets[0] - offsets[1]
+        if abs(apart) > _WANDERS:
+            yield (
+                f"Their clocks are apart: the reference's stamps are {abs(apart):.3g} s "
+                f"{'later' if apart > 0 else 'earlier'} than those of the wheels, by when both "
+                "were received."
+            )
+
+
+def _chosen(held: Held) -> list[Any]:
+    return [each for each in (held.wheels, held.reference) if each is not None]
+
+
+def _ms(seconds: float) -> str:
+    return f"{1e3 * seconds:.0f} ms"
+
+
+def _driven(held: Held, drive: Driven, sizes: bool) -> str:
+    times: dict[str, float] = {}
+    for span in drive.spans:
+        times[span.what] = times.get(span.what, 0.0) + span.end - span.begin
+    whole = drive.spans[-1].end - drive.spans[0].begin if drive.spans else 0.0
+    told = [
+        f"{verb} for {times[what]:.1f} s"
+        for what, verb in (
+            ("drove", "drove"),
+            ("stood", "stood"),
+            ("held", "was held"),
+            ("carried", "was carried or turned by hand"),
+        )
+        if what in times
+    ]
+    way = ""
+    if sizes and "drove" in times:
+        turned = math.degrees(drive.turned)
+        way = f" By its wheels it went {drive.way:.1f} m and turned {turned:.0f}°"
+        way += f", and changed its direction {drive.reversals} times." if drive.reversals else "."
+    return f"In {whole:.1f} s the robot {listed(told) if told else 'did nothing'}.{way}"
+
+
+def _next(found: Info) -> str:
+    usable = [each for each in found.held if not each.problem and each.run is not None]
+    if not usable:
+        return "Nothing of it can be judged."
+    if any(measures_of(each) == "nothing" for each in usable):
+        return filled(
+            "Record again with something that measures the robot beside its wheels: an IMU's gyro "
+            "shows its turning, a localiser or a scan matcher its poses."
+        )
+    if found.given is None and found.written is None:
+        if not found.first.has_sizes:
+            return filled(
+                "Next: measure the wheels' radius and the distance between them, enter both in a "
+                "robot file (config/robot.yaml is one to copy), and give it with --robot. Or give "
+                "the parameter file of the diff_drive_controller with --robot."
+            )
+        return f"Next: a first robot file.\n{command_of(found)}"
+    return f"Next:\n{command_of(found)}"
+
+
+def command_of(found: Info) -> str:
+    """The command that comes next, as a shell takes it."""
+    usable = [each for each in found.held if not each.problem and each.run is not None]
+    paths = [str(each.path) for each in usable]
+    robot = found.given or found.written
+    if robot is None:
+        return COMMAND + shlex.join(["werrimbi", "info", *paths, "--out", "robot.yaml"])
+    words = ["werrimbi", "compare", "--robot", str(robot)]
+    if found.leg != 1.0:
+        words += ["--leg", f"{found.leg:g}"]
+    held = usable[0]
+    if held.contents is not None and held.wheels is not None and held.reference is not None:
+        words += ["--ticks-topic", held.wheels.name, "--reference-topic", held.reference.name]
+    return COMMAND + shlex.join([*words, *paths])
+
+
+def info_json(found: Info) -> dict[str, Any]:
+    """For programs; times in each run's own clock [s]."""
+    robot = found.given or found.written
+    return {
+        "runs": [_json_of(each, found) for each in found.held],
+        "robot": None if robot is None else str(robot),
+        "first_robot": {
+            "wheel_radius": found.first.radius,
+            "wheel_separation": found.first.separation,
+            "ticks_per_revolution": found.first.ticks,
+            "left_wheel_names": list(found.first.left),
+            "right_wheel_names": list(found.first.right),
+        }
+        if found.given is None
+        else None,
+        "next": _command(found),
+    }
+
+
+def _command(found: Info) -> str | None:
+    words = _next(found)
+    place = words.find(COMMAND + "werrimbi")
+    return words[place:].strip() if place >= 0 else None
+
+
+def _json_of(held: Held, found: Info) -> dict[str, Any]:
+    contents, drive = held.contents, held.driven
+    can, cannot = can_tell(held, found.sizes)
+    return {
+        "run": str(held.path),
+        "problem": held.problem or None,
+        "wheels": []
+        if contents is None
+        else [
+            {"topic": each.name, "type": each.kind, "gives": each.gives, "joints": each.joints}
+            | {"messages": each.messages, "taken": each == held.wheels}
+            for each in contents.wheels
+        ],
+        "references": [_reference(each, held) for each in contents.references]
+        if contents is not None
+        else [{"topic": "reference.csv", "measures": measures_of(held), "taken": True}],
+        "stamps": {
+            name: asdict(each) | {"believed": each.believed} for name, each in held.stamps.items()
+        },
+        "spans": [
+            {"from_s": span.begin, "to_s": span.end, "what": span.what} for span in drive.spans
+        ]
+        if drive is not None
+        else [],
+        "distance_m": drive.way if drive is not None and found.sizes else None,
+        "turned_rad": drive.turned if drive is not None and found.sizes else None,
+        "left_out": left_out_json(held.left_out),
+        "can_show": can,
+        "cannot_show": cannot,
+    }
+
+
+def _reference(each: Measured, held: Held) -> dict[str, Any]:
+    return {
+        "topic": each.name,
+        "type": each.kind,
+        "measures": each.measures,
+        "independent": each.independent,
+        "why": each.why,
+        "messages": each.messages,
+        "taken": each == held.reference,
+    }
