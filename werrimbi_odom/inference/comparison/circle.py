@@ -28,7 +28,7 @@ from werrimbi_odom.inference.rules import (
     CIRCLE_WAY,
     CIRCLE_WHOLE,
 )
-from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.encoder import Counts, EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -157,20 +157,25 @@ def _rounding(run: Run, robot: Robot) -> float:
         (run.ticks.left, robot.left_tick),
         (run.ticks.right, robot.right_tick),
     ):
-        finite = np.asarray(counts[np.isfinite(counts)], dtype=np.float64)
-        steps = np.abs(np.diff(finite))
-        steps = steps[steps > 0.0]
-        if steps.size == 0:
-            return 0.0
-        quantum = float(steps.min())
-        steps = steps[
-            steps <= CIRCLE_STEPS * quantum
-        ]  # angles of 32 bits are whole but for rounding
-        whole = np.abs(steps / quantum - np.rint(steps / quantum)) < CIRCLE_WHOLE
-        if not whole.all():
-            return 0.0
+        steps = np.abs(np.diff(counts[np.isfinite(counts)]))
+        quantum = _quantum(steps[steps > 0])
         squares.append((quantum * tick) ** 2 / 6.0)
-    return 0.5 * float(np.sqrt(sum(squares)))
+    return 0.5 * float(np.sqrt(sum(squares))) if all(squares) else 0.0
+
+
+def _quantum(steps: Counts) -> float:
+    """What all steps of a counter are whole times of; 0 where there is no such."""
+    if steps.size == 0:
+        return 0.0
+    if steps.dtype.kind == "i":
+        return float(np.gcd.reduce(steps))
+    sizes = np.unique(steps)
+    apart = np.diff(sizes)
+    apart = apart[apart > CIRCLE_WHOLE * sizes[0]]  # less is the rounding of angles of 32 bits
+    quantum = float(min(sizes[0], apart.min(initial=np.inf)))
+    few = sizes[sizes <= CIRCLE_STEPS * quantum] / quantum
+    whole = np.abs(few - np.rint(few)) < CIRCLE_WHOLE * CIRCLE_STEPS
+    return quantum if few.size and whole.all() else 0.0
 
 
 def _small(length: float) -> str:

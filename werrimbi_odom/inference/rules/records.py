@@ -162,6 +162,7 @@ wheels. Stamps that jitter by 40 ms at 0.3 m/s, or the lag of a filter, make as 
 by more was measured."""
 
 CIRCLE_STEPS, CIRCLE_WHOLE = 10.0, 0.02
-"""Steps of a counter, in units of its smallest one, that are asked whether they are whole, and by
-how much they may be off: angles of 32 bits are whole but for a hundredth of a count at a thousand
-turns. Counters that are none round nothing off, and by numbers alone nothing is refused then."""
+"""Steps of a counter that are no integers, in units of their smallest difference, that are
+asked whether they are whole, and how much a unit may be off: angles of 32 bits are whole but for a
+hundredth of a count at a thousand turns. What is not whole rounds nothing off, and by numbers alone
+nothing is refused then."""
