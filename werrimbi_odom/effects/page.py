@@ -73,7 +73,8 @@ def page_of(effect: Effect) -> Page:
 
 def _of_twin(twin: Twin) -> str:
     """What there is to know of a twin, in lines as those of a docstring."""
-    same = [f"{name} = {_times(factor)}{own}" for name, (own, factor) in twin.values.items()]
+    over = "1 / " if twin.inverse else ""
+    same = [f"{name} = {over}{_times(factor)}{own}" for name, (own, factor) in twin.values.items()]
     who = f"{twin.name} ({', '.join(same)})" if same else twin.name
     return textwrap.fill(f"{who}: {twin.told_apart_by}. So {twin.do}", 85)
 
