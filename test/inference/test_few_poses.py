@@ -10,7 +10,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from werrimbi_odom.report.diagnosis.told import Told
 
 from test.inference.driven import run_of
 from test.model.drives import read
@@ -18,6 +17,7 @@ from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import Added, add_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.adding.words import json_of as json_of_added
