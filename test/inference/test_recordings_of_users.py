@@ -159,7 +159,7 @@ def test_sizes_that_are_told_are_those_that_occurred() -> None:
     )
     assert strength_words(cell) == "±0.75 %"
     assert "lowest at 0.2" in dependence_words(cell)
-    assert "highest at 1 m/s" in dependence_words(cell)
+    assert "highest at 0.99 m/s" in dependence_words(cell)
     assert strength_words(replace(cell, shares=None)) == "±20 %"
 
 

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.calibration_sizes import base_name
 from werrimbi_odom.inference.diagnosis.search import best_of_each
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidates import (
@@ -41,8 +42,8 @@ def rivals_of_held(
     """Effects that would explain the drives as well as one that the file holds, by its name."""
     found = {}
     for applied in fit.point.model.robot.effects:
-        if applied.effect.is_mistake or applied.name in CALIBRATED:
-            continue
+        if applied.effect.is_mistake or applied.name in CALIBRATED or base_name(applied.effect):
+            continue  # sizes are in every fit
         rivals = _rivals(runs, fit, kind, effects, given, sigma, applied.effect)
         if rivals:
             found[applied.name] = rivals
