@@ -25,6 +25,7 @@ from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.model.effect import Effect, Parameter, wheel_effect
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.adding.words import words_of as words_of_added
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
@@ -110,6 +111,11 @@ def test_what_does_not_earn_its_place_is_refused_by_name() -> None:
     assert found.without["lateral_slip"] > 1.5 * found.holdout.sides.after
     assert found.without["left_backlash"] == pytest.approx(found.holdout.sides.after, rel=0.02)
     assert found.name == "lateral_slip,left_backlash"
+    lines = [
+        line.split()[0]
+        for line in words_of_added(found).split("Position error")[1].split("\n")[2:6]
+    ]
+    assert lines == ["held-out", "without", "without", "fitted"], "whose errors they are"
     assert set(found.parameters) == {"lateral_slip.creep", "left_backlash.travel"}
 
 

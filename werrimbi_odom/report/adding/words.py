@@ -104,7 +104,7 @@ def _errors(added: Added) -> str:
         ]
         for name, side in sides
     ]
-    rows += [
+    rows[1:1] = [  # below the held-out drives, whose errors they are
         [
             f"  without {name}",
             *("" for _ in range(len(columns) - 1)),
