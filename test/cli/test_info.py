@@ -52,7 +52,7 @@ def urdf(yaw: float = 0.0) -> str:
 def bag_of(folder: Path, *, described: bool = True, measured: bool = True) -> tuple[Path, float]:
     """A bag as people have it: joints, gyro, own odometry, poses of a tracker; begin of a hold."""
     ros, random = Messages(), np.random.default_rng(4)
-    run, begin, _ = held(run_of(ROBOT, 1, 60), 30.0, 36.0)
+    run, begin, _ = held(run_of(ROBOT, 1, 40), 20.0, 26.0)
     reference = run.reference
     assert reference is not None
     late = random.exponential(0.02, 10_000)

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -87,6 +88,9 @@ def _look(
             source = read_robot_file(robot)
         except InputError:
             first = of_controller(robot)
+        if source is not None and "ticks_per_revolution" not in source.text:
+            with suppress(InputError):  # the controller's, of which one is made
+                source, first = None, of_controller(robot)
     held = []
     for path in paths:
         one, first = _held(path, source, first, ticks_topic, reference_topic)
