@@ -67,7 +67,7 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     found = calibrate(
         runs,
         source.robot,
-        how.kind,
+        given.judging["kind"],
         sigma_xy=how.sigma_xy or stated(runs, "sigma_xy"),
         sigma_yaw=how.sigma_yaw or stated(runs, "sigma_yaw"),
     )

@@ -27,8 +27,9 @@ Drives = Run | str | Path | Sequence[Run | str | Path]
 class Options(TypedDict, total=False):
     """How drives are judged; what is left out is as the command line has it."""
 
-    reference_kind: ReferenceKind
-    """"absolute": each pose of the reference has noise of its own; "incremental": it adds up."""
+    reference_kind: ReferenceKind | None
+    """"absolute": each pose of the reference has noise of its own; "incremental": it adds up. Not
+    given: incremental for the poses of a localiser (map -> odom -> base_link), else absolute."""
     leg: float
     """Length of the legs that are judged [m]; 1 where it is not given."""
     reference_sigma_xy: float | None
@@ -119,7 +120,7 @@ def recordings_of(
             f"unknown option {unknown[0]}; there are {', '.join(Options.__annotations__)}"
         )
     how = How(
-        options.get("reference_kind", "absolute"),
+        options.get("reference_kind"),
         options.get("leg", 1.0),
         options.get("reference_sigma_xy"),
         options.get("reference_sigma_yaw"),

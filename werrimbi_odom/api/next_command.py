@@ -62,7 +62,7 @@ def _options(how: How) -> Iterator[str]:
     plain = How()
     for option, value, default in (
         ("leg", how.leg, plain.leg),
-        ("reference-kind", how.kind, plain.kind),
+        ("reference-kind", how.kind or "absolute", "absolute"),
         ("ticks-topic", how.ticks_topic, plain.ticks_topic),
         ("reference-topic", how.reference_topic, plain.reference_topic),
         ("reference", how.references, plain.references),

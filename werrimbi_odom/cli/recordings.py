@@ -65,9 +65,9 @@ def add_recording_arguments(
     parser.add_argument(
         "--reference-kind",
         choices=("absolute", "incremental"),
-        default="absolute",
-        help="absolute, if not given: each pose has noise of its own (motion capture); "
-        "incremental: it adds up along the way (scan matcher)",
+        help="absolute: each pose has noise of its own (motion capture); incremental: it adds up "
+        "along the way (scan matcher). If not given: incremental for the poses of a localiser "
+        "(map -> odom -> base_link), else absolute",
     )
     parser.add_argument(
         "--reference-sigma-xy",
@@ -145,6 +145,11 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     with share_done("reading") as show:
         found = read(asked, collection, show)
     circles = refuse_circles(found)
+    if arguments.reference_kind is None and found.how.kind == "incremental":
+        circles.append(
+            "the reference is a localiser, whose errors wander: they are taken to add up along the "
+            "way (--reference-kind absolute: to be new at each pose)"
+        )
     remark(found.source, *words_about((*found.runs, *found.holdout)), *circles)
     return found
 

@@ -27,7 +27,7 @@ def made_of(arguments: argparse.Namespace) -> dict[str, str]:
             made[word] = ", ".join(map(str, _each(value)))
     if hasattr(arguments, "leg"):
         made["legs"] = f"{arguments.leg:g} m"
-    if hasattr(arguments, "reference_kind"):
+    if getattr(arguments, "reference_kind", None):
         made["reference"] = arguments.reference_kind
     made["made on"] = datetime.now(timezone.utc).strftime("%Y-%m-%d %H:%M UTC")
     return made

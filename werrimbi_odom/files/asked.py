@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypedDict
 
@@ -30,7 +30,8 @@ _NAMED = 8  # runs of a folder that are named before "..."
 class How:
     """How drives are read and judged."""
 
-    kind: ReferenceKind = "absolute"
+    kind: ReferenceKind | None = None
+    """What the reference's noise is like; None: as who reads the drives knows it, or absolute."""
     leg: float = 1.0
     """Length of a leg [m]."""
     sigma_xy: float | None = None
@@ -94,7 +95,7 @@ class Recordings:
         """How a robot is judged on these runs."""
         how = self.how
         return Judging(
-            kind=how.kind,
+            kind=how.kind or "absolute",
             leg=how.leg,
             limits=self.source.limits,
             sigma_xy=how.sigma_xy,
@@ -158,9 +159,19 @@ def gathered(
             show(number / len(drives), f"reading {drive.name}")
             run = _read(drive, source, how, references[number])
         refuse_unjudgeable(run)
-        found.append(without_held_poses(run, source.robot) if how.kind == "absolute" else run)
+        found.append(run)
+    if how.kind is None:
+        how = replace(how, kind=_kind_of(found))
+    if how.kind == "absolute":
+        found = [without_held_poses(run, source.robot) for run in found]
     count = len(runs)
     return Recordings(source, collection, tuple(found[:count]), tuple(found[count:]), how)
+
+
+def _kind_of(runs: Sequence[Run]) -> ReferenceKind:
+    """Incremental where that is known of the reference of any drive."""
+    kinds = {run.reference.kind for run in runs if run.reference is not None}
+    return "incremental" if "incremental" in kinds else "absolute"
 
 
 def _read(path: Path, source: RobotFile, how: How, reference: Path | None) -> Run:

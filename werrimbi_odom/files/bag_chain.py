@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, stamp_of
 from werrimbi_odom.files.frames import MOVED, Chain, Edge, frame, is_static
-from werrimbi_odom.files.run import Reference
+from werrimbi_odom.files.run import Reference, ReferenceKind
 from werrimbi_odom.model.pose import Floats
 
 if TYPE_CHECKING:
@@ -90,12 +90,17 @@ class ChainCollector:
         assert turn is not None
         ahead = turn.apply([1.0, 0.0, 0.0])
         yaw = np.arctan2(ahead[:, 1], ahead[:, 0])
+        kind: ReferenceKind | None = None
         told = self._chain.in_words()
         measured = self._chain.measures
         if measured and len(moved) > len(measured):
             names = " and ".join(f"{each.parent} -> {each.child}" for each in measured)
             told += f", composed at each change of {names}"
-        return Reference(time, where[:, 0].copy(), where[:, 1].copy(), yaw), told
+            # A localiser corrects itself little by little: its error at one correction is much
+            # that of the one before, and what it errs between two of them adds up along the way.
+            kind = "incremental"
+        x, y = where[:, 0].copy(), where[:, 1].copy()
+        return Reference(time, x, y, yaw, kind=kind), told
 
     def _moved(self, edge: Edge) -> _Moved:
         from scipy.spatial.transform import Rotation

@@ -57,6 +57,8 @@ class Reference:
     """Standard deviation of x, and of y, where it is stated [m]."""
     sigma_yaw: Floats | None = None
     """Standard deviation of yaw, where it is stated [rad]."""
+    kind: ReferenceKind | None = field(default=None, kw_only=True)
+    """What its noise is like, where the reader knows; None where it does not."""
 
     @property
     def has_position(self) -> NDArray[np.bool_]:
@@ -77,6 +79,7 @@ class Reference:
             self.yaw[which],
             None if self.sigma_xy is None else self.sigma_xy[which],
             None if self.sigma_yaw is None else self.sigma_yaw[which],
+            kind=self.kind,
         )
 
 

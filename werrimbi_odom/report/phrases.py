@@ -7,6 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from werrimbi_odom.inference.comparison.suspect import Stretch
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.robot import Robot
@@ -26,11 +27,7 @@ def left_out_words(parts: Sequence[LeftOut]) -> list[str]:
     lines = []
     for part in silent[:_MOST]:
         where = f" of {part.run.name}" if len(runs) > 1 or len(silent) > _MOST else ""
-        # A clock that shows the time of day is no help: it is told from the run's first tick.
-        from_s, to_s = (
-            each - part.started if part.started > LONGEST_DRIVE else each
-            for each in (part.begin, part.end)
-        )
+        from_s, to_s = told_from_start(part)
         end = ". Left out." if ":" in part.words else ": left out."
         lines.append(f"From {from_s:.1f} s to {to_s:.1f} s{where} {part.words}{end}")
     rest = silent[_MOST:]
@@ -41,6 +38,17 @@ def left_out_words(parts: Sequence[LeftOut]) -> list[str]:
             f"stretch{'' if len(rest) == 1 else 'es'}, {seconds:.1f} s in all."
         )
     return lines
+
+
+def told_from_start(part: LeftOut | Stretch) -> tuple[float, float]:
+    """When it begins and ends [s].
+
+    A clock that shows the time of day is no help: it is told from the run's first tick.
+    """
+    begin, end = part.begin, part.end
+    return (
+        (begin - part.started, end - part.started) if part.started > LONGEST_DRIVE else (begin, end)
+    )
 
 
 def jumps_words(parts: Sequence[LeftOut]) -> list[str]:

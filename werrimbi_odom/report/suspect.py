@@ -9,6 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from werrimbi_odom.inference.comparison.suspect import ReferenceRemark
+from werrimbi_odom.report.phrases import told_from_start
 
 _MOST = 3  # stretches that are told one by one
 
@@ -71,8 +72,9 @@ def _share(size: float) -> str:
 
 def _places(remark: ReferenceRemark) -> str:
     told = [
-        f"{part.run.name} from {part.begin:.0f} s to {part.end:.0f} s"
+        f"{part.run.name} from {begin:.0f} s to {end:.0f} s"
         for part in remark.stretches[:_MOST]
+        for begin, end in [told_from_start(part)]
     ]
     more = ", ..." if len(remark.stretches) > _MOST else ""
     return f"{len(remark.stretches)} stretches ({', '.join(told)}{more})"

@@ -19,6 +19,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.comparison.judged_legs import Prepared
 from werrimbi_odom.inference.comparison.reference_noise import Residual
@@ -59,6 +60,8 @@ class Stretch:
     end: float
     size: float
     """Of what is remarked."""
+    started: float = 0.0
+    """First tick of the run [s], as in `LeftOut`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -91,15 +94,15 @@ def remarks_on(prepared: Prepared) -> tuple[ReferenceRemark, ...]:
     Legs are those that were prepared, and the wheels' way is that of the robot file as given: one
     factor on it, whatever its size, changes nothing but what is said of the metre.
     """
-    paths: list[tuple[Path, Residual, NDArray[np.bool_]]] = []
+    paths: list[tuple[Run, Residual, NDArray[np.bool_]]] = []
     for group in prepared.groups:
         for index, item, run in zip(group.index, group.plain, group.every.runs, strict=True):
             if np.isfinite(item.measured).sum() > 1:
-                paths.append((prepared.runs[index].path, item, run.gap))
+                paths.append((prepared.runs[index], item, run.gap))
     if not paths:
         return ()
     cuts = [_cuts(item, gap, prepared.leg) for _, item, gap in paths]
-    runs = [path for path, _, _ in paths]
+    runs = [run for run, _, _ in paths]
     return (*_lengths(runs, cuts, prepared.leg), *_angles(runs, cuts, prepared.leg), *_metre(cuts))
 
 
@@ -153,7 +156,7 @@ def _cuts(item: Residual, gap: NDArray[np.bool_], leg: float) -> _Cuts:
         way[ends][1:][straight],
         share[straight],
         turn[straight] / ahead[straight],
-        (np.diff(speed) / ahead)[straight],
+        np.diff(speed)[straight] / ahead[straight],
         angle[straight],
         (float(np.sum(sense * by_wheels[known])), float(np.sum(sense * turned[known]))),
     )
@@ -199,18 +202,15 @@ def _odd(looked: _Looked, off: Floats, least: float) -> NDArray[np.intp]:
 
 
 def _told(
-    runs: list[Path], looked: _Looked, size: Floats, rows: NDArray[np.intp]
+    runs: list[Run], looked: _Looked, size: Floats, rows: NDArray[np.intp]
 ) -> Iterator[Stretch]:
     for row in rows[np.argsort(-np.abs(size[rows]))]:
-        yield Stretch(
-            runs[looked.run[row]],
-            float(looked.begin[row]),
-            float(looked.end[row]),
-            float(size[row]),
-        )
+        run = runs[looked.run[row]]
+        begin, end = float(looked.begin[row]), float(looked.end[row])
+        yield Stretch(run.path, begin, end, float(size[row]), float(run.ticks.time[0]))
 
 
-def _lengths(runs: list[Path], cuts: list[_Cuts], leg: float) -> Iterator[ReferenceRemark]:
+def _lengths(runs: list[Run], cuts: list[_Cuts], leg: float) -> Iterator[ReferenceRemark]:
     looked = _stretches(cuts, [own.share for own in cuts], leg)
     if looked.value.size <= SUSPECT_STRETCHES:
         return
@@ -223,7 +223,7 @@ def _lengths(runs: list[Path], cuts: list[_Cuts], leg: float) -> Iterator[Refere
         )
 
 
-def _angles(runs: list[Path], cuts: list[_Cuts], leg: float) -> Iterator[ReferenceRemark]:
+def _angles(runs: list[Run], cuts: list[_Cuts], leg: float) -> Iterator[ReferenceRemark]:
     known = [own.angle[np.isfinite(own.angle)] for own in cuts]
     if not sum(each.size for each in known):
         return

@@ -170,7 +170,8 @@ def whole(told: Told) -> list[str]:
     if len(diagnosis.found) < 2 or not math.isfinite(sides.before):
         return []
     return [
-        f"With all of them put in, the {_of(sides)} error on {judged(told)} falls from "
+        f"With all of them put in, the {_of(sides)} error on {judged(told)} "
+        f"{'falls' if sides.after < sides.before else 'goes'} from "
         f"{error_words(sides.before, sides.unit)} to {error_words(sides.after, sides.unit)}."
     ]
 
