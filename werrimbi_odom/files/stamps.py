@@ -56,15 +56,29 @@ class Stamps:
 
 
 def stamps_of(bag: Bag, topics: Sequence[str]) -> dict[str, Stamps]:
-    """Stamps of some topics of an open bag; of those with three messages and more."""
-    times: dict[str, list[tuple[float, float]]] = {}
+    """Stamps of some topics of an open bag; of those with three messages and more.
+
+    Of transforms those of the one that comes most seldom: several send on one topic, each with
+    stamps of its own, and what measures is slower than the odometry below it.
+    """
+    times: dict[str, dict[tuple[str, ...], list[tuple[float, float]]]] = {}
     for message in bag.messages(topics):
         stamp = _stamp(message.content)
-        received = message.received / 1e9
-        times.setdefault(message.topic, []).append((stamp or np.nan, received))
-    return {
-        topic: _judged(*np.array(rows).T) for topic, rows in times.items() if len(rows) >= _FEWEST
-    }
+        sender = times.setdefault(message.topic, {}).setdefault(_frames(message.content), [])
+        sender.append((stamp or np.nan, message.received / 1e9))
+    found = {}
+    for topic, senders in times.items():
+        enough = [rows for rows in senders.values() if len(rows) >= _FEWEST]
+        if enough:
+            found[topic] = _judged(*np.array(min(enough, key=len)).T)
+    return found
+
+
+def _frames(content: Any) -> tuple[str, ...]:
+    """Of a message's first transform, from and to; empty where it has none."""
+    for each in getattr(content, "transforms", ())[:1]:
+        return str(each.header.frame_id), str(each.child_frame_id)
+    return ()
 
 
 def _stamp(content: Any) -> float:
