@@ -28,6 +28,7 @@ from werrimbi_odom.inference.comparison.legs import (
     statistics,
 )
 from werrimbi_odom.inference.comparison.reference_noise import Residual
+from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.comparison.systematic import (
     NoiseFactor,
     Systematic,
@@ -114,6 +115,8 @@ class Comparison:
     paths: tuple[Residual, ...]
     left_out: tuple[LeftOut, ...]
     """Stretches of the runs that none of it is about."""
+    remarks: tuple[ReferenceRemark, ...]
+    """What is suspect about the reference."""
 
     @property
     def main(self) -> OfLength:
@@ -220,6 +223,7 @@ def judged(
         spread,
         driven,
         prepared.left_out,
+        remarks_on(prepared),
     )
 
 

@@ -18,7 +18,6 @@ from werrimbi_odom.inference.comparison.compare import (
 )
 from werrimbi_odom.inference.comparison.groups import ByVariable, Cell
 from werrimbi_odom.inference.comparison.judged_legs import Legs
-from werrimbi_odom.inference.comparison.suspect import remarks_on
 from werrimbi_odom.inference.comparison.systematic import Systematic
 from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.report.numbers import picked
@@ -47,7 +46,7 @@ def json_of(comparison: Comparison) -> dict[str, Any]:
         "reference": [
             {"measures": measure, **asdict(noise)} for measure, noise in comparison.prepared.noises
         ],
-        "reference_remarks": remarks_json(remarks_on(comparison.prepared)),
+        "reference_remarks": remarks_json(comparison.remarks),
         "left_out": left_out_json(comparison.left_out),
         "outliers": _outliers(comparison),
         "each_leg": _each_leg(comparison),

@@ -8,7 +8,6 @@ import math
 
 from werrimbi_odom.inference.calibration_sizes import skidding
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
-from werrimbi_odom.inference.comparison.suspect import remarks_on
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
 from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
@@ -218,7 +217,7 @@ def _reference(comparison: Comparison) -> list[str]:
         total = outliers + comparison.main.all.figures.count
         they = "it is" if outliers == 1 else "they are"
         lines.append(f"On {outliers} of {total} legs the reference jumped; {they} left out.")
-    lines += [remark_words(remark) for remark in remarks_on(comparison.prepared)]
+    lines += [remark_words(remark) for remark in comparison.remarks]
     return [*lines, *left_out_words(comparison.left_out)]
 
 
