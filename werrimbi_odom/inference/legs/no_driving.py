@@ -20,7 +20,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
 from werrimbi_odom.inference.legs.counters import Counters, counters_of
-from werrimbi_odom.inference.legs.windows import windows_of
+from werrimbi_odom.inference.legs.windows import Windows, windows_of
 from werrimbi_odom.inference.rules import (
     NO_DRIVING_AT_ONCE,
     NO_DRIVING_EDGE,
@@ -34,6 +34,8 @@ from werrimbi_odom.inference.rules import (
     NO_DRIVING_ROUGH,
     NO_DRIVING_SILENT,
     NO_DRIVING_SPLIT,
+    NO_DRIVING_STOPPED,
+    NO_DRIVING_STOPPED_FOR,
     NO_DRIVING_TURN,
     NO_DRIVING_TURNS,
     NO_DRIVING_WAY,
@@ -102,6 +104,8 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
         seen.append(_judged(by_ways, NO_DRIVING_GOES * typical, NO_DRIVING_WAY))
     found = sorted(_reaching(stretch, seen) for each in seen for stretch in _stretches(each))
     parts = [part for each in _joined(found, seen) for part in _by_kind(*each, seen)]
+    if turns is not None and not seen:
+        parts = _turned_at_rest(turns)
     if parts and not reference.has_yaw.any():
         parts = _with_what_follows(parts, counters)
     return tuple(parts)
@@ -125,9 +129,44 @@ def _judged(found: Agreement, slowest: float, enough: float) -> _Seen:
     rough = NO_DRIVING_ROUGH * float(np.median(found.off[keeps] / gross[keeps]))
     least = max(NO_DRIVING_NOISE * noise, slowest)
     beyond = off / np.maximum(max(NO_DRIVING_OFF, rough) * maximum_filter1d(gross, reach), least)
+    beyond = np.where(_stopped(found, low, high, least), np.maximum(beyond, 1.01), beyond)
     edge = found.off > np.maximum(NO_DRIVING_EDGE * gross, 0.5 * least)
     moves = np.abs(expected) > np.maximum(NO_DRIVING_EDGE * gross, least)
     return _Seen(found, beyond, edge, moves & keeps, enough)
+
+
+def _stopped(found: Agreement, low: Floats, high: Floats, least: float) -> NDArray[np.bool_]:
+    """Windows of those in a row in which the robot should move, clearly, and does nothing; (k,).
+
+    Parameters
+    ----------
+    low, high
+        Of what is expected of a window and those beside it, (k,).
+    least : float
+        What is clear.
+    """
+    windows = found.windows
+    expected = np.where(low * high > 0.0, np.minimum(np.abs(low), np.abs(high)), 0.0)
+    still = np.abs(windows.measured) < NO_DRIVING_STOPPED * expected
+    rows = np.zeros(still.size, dtype=np.bool_)
+    for first, last in _runs_of(still & (expected > least)):
+        if (last + 1 - first) * windows.step >= NO_DRIVING_STOPPED_FOR:
+            rows[first : last + 1] = True
+    return rows
+
+
+def _turned_at_rest(windows: Windows) -> list[NoDriving]:
+    """Where the wheels stand and the robot turns, in a drive that says nothing else of turns."""
+    slowest = NO_DRIVING_TURNS * windows.steps * windows.step
+    turns = (windows.rolled <= windows.still) & (np.abs(windows.measured) > slowest)
+    half = 0.5 * windows.steps * windows.step
+    return [
+        NoDriving(
+            float(windows.time[first]) - half, float(windows.time[last]) + half, "carried", CARRIED
+        )
+        for first, last in _runs_of(turns)
+        if last + 1 - first >= windows.steps + NO_DRIVING_MORE
+    ]
 
 
 def _stretches(seen: _Seen) -> list[tuple[float, float]]:

@@ -77,6 +77,12 @@ NO_DRIVING_ROUGH = 8.0
 """Times the usual share by which windows are off that keep to the law, that is too far at the
 least: of Gaussian noise 5.4 sigma. A scan matcher that fails in corridors is no hand that holds."""
 
+NO_DRIVING_STOPPED, NO_DRIVING_STOPPED_FOR = 0.1, 1.5
+"""Share of what the wheels should show, below which nothing moves at all, and seconds for which: a
+slow turn is a small part of what both wheels could do, so that a robot which is held in one is not
+off by much. The most that any effect of the library takes of a turn is a third. For three windows,
+so that no stamps that wander and no kick can be it."""
+
 NO_DRIVING_EDGE = 0.25
 """The same for windows beside such ones: at the ends of a stretch a window is half driven."""
 
