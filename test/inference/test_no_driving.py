@@ -123,7 +123,20 @@ def test_headings_alone_show_it_while_the_wheels_turn_the_robot() -> None:
         assert stretches is not None
         assert all(29.5 < part.begin < part.end < 36.5 for part in stretches)
         found += bool(stretches)
-    assert found >= 3  # of six: in the others it drives straight on, or in wide arcs
+    assert found >= 4  # of six: in the others it drives straight on
+
+
+def test_a_robot_that_is_turned_while_it_stands_is_found_in_a_straight_drive_of_a_gyro() -> None:
+    """Nothing else in it says how the gyro goes with the wheels."""
+    time = np.arange(0.0, 40.0, 0.05)
+    drives = (time < 15.0) | (time > 20.0)
+    counts = np.cumsum(40.0 * drives)
+    yaw = np.clip(time - 16.0, 0.0, 2.0) + np.random.default_rng(0).normal(0.0, 1e-3, time.size)
+    nothing = np.full(time.size, np.nan)
+    ticks, seen = Ticks(time, counts, counts), Reference(time, nothing, nothing, yaw)
+    found = span(looked_at(Run("straight", Path("straight"), ticks, seen), ROBOT))
+    assert found[:2] == pytest.approx((16.0, 18.0), abs=NEAR)
+    assert found[2] == {"carried"}
 
 
 def test_of_positions_alone_the_longest_drive_is_kept() -> None:

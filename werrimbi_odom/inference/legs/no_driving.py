@@ -95,13 +95,13 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
     by_turns = None if turns is None else turns_agree(turns, robot.track)
     if by_turns is not None:
         span = by_turns.windows.steps * by_turns.windows.step
-        seen.append(_judged(by_turns, NO_DRIVING_TURNS * span, NO_DRIVING_TURN))
+        seen.append(_judged(by_turns, NO_DRIVING_TURNS * span, NO_DRIVING_TURN, turns=True))
     ways = windows_of(counters, reference, robot, ways=True)
     by_ways = None if ways is None else ways_agree(ways, by_turns, robot.track)
     if by_ways is not None:
         rolling = by_ways.windows.rolled > by_ways.windows.still
         typical = float(np.median(by_ways.gross[rolling]))
-        seen.append(_judged(by_ways, NO_DRIVING_GOES * typical, NO_DRIVING_WAY))
+        seen.append(_judged(by_ways, NO_DRIVING_GOES * typical, NO_DRIVING_WAY, turns=False))
     found = sorted(_reaching(stretch, seen) for each in seen for stretch in _stretches(each))
     parts = [part for each in _joined(found, seen) for part in _by_kind(*each, seen)]
     if turns is not None and not seen:
@@ -111,7 +111,7 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
     return tuple(parts)
 
 
-def _judged(found: Agreement, slowest: float, enough: float) -> _Seen:
+def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> _Seen:
     """What is too far off to be driving, and what no clock that wanders explains.
 
     Parameters
@@ -129,7 +129,8 @@ def _judged(found: Agreement, slowest: float, enough: float) -> _Seen:
     rough = NO_DRIVING_ROUGH * float(np.median(found.off[keeps] / gross[keeps]))
     least = max(NO_DRIVING_NOISE * noise, slowest)
     beyond = off / np.maximum(max(NO_DRIVING_OFF, rough) * maximum_filter1d(gross, reach), least)
-    beyond = np.where(_stopped(found, low, high, least), np.maximum(beyond, 1.01), beyond)
+    if turns:  # of a way even a gentle one is most of what both wheels could do
+        beyond = np.where(_stopped(found, low, high, least), np.maximum(beyond, 1.01), beyond)
     edge = found.off > np.maximum(NO_DRIVING_EDGE * gross, 0.5 * least)
     moves = np.abs(expected) > np.maximum(NO_DRIVING_EDGE * gross, least)
     return _Seen(found, beyond, edge, moves & keeps, enough)
