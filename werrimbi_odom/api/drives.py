@@ -29,7 +29,7 @@ class Options(TypedDict, total=False):
 
     reference_kind: ReferenceKind | None
     """"absolute": each pose of the reference has noise of its own; "incremental": it adds up. Not
-    given: incremental for the poses of a localiser (map -> odom -> base_link), else absolute."""
+    given: incremental for a gyro, and a localiser (map -> odom -> base_link), in a bag."""
     leg: float
     """Length of the legs that are judged [m]; 1 where it is not given."""
     reference_sigma_xy: float | None

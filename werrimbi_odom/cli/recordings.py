@@ -66,8 +66,8 @@ def add_recording_arguments(
         "--reference-kind",
         choices=("absolute", "incremental"),
         help="absolute: each pose has noise of its own (motion capture); incremental: it adds up "
-        "along the way (scan matcher). If not given: incremental for the poses of a localiser "
-        "(map -> odom -> base_link), else absolute",
+        "along the way (scan matcher). If not given: incremental for a gyro and for the poses "
+        "of a localiser (map -> odom -> base_link), else absolute",
     )
     parser.add_argument(
         "--reference-sigma-xy",
@@ -145,7 +145,13 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     with share_done("reading") as show:
         found = read(asked, collection, show)
     circles = refuse_circles(found)
-    if arguments.reference_kind is None and found.how.kind == "incremental":
+    wanders = any(
+        run.reference is not None
+        and run.reference.kind == "incremental"
+        and run.reference.has_position.any()
+        for run in (*found.runs, *found.holdout)
+    )
+    if arguments.reference_kind is None and wanders:
         circles.append(
             "the reference is a localiser, whose errors wander: they are taken to add up along the "
             "way (--reference-kind absolute: to be new at each pose)"

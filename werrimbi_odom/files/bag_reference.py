@@ -18,7 +18,7 @@ from werrimbi_odom.files.contents import FIX, IMU, Measured
 from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.local_plane import east_and_north
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Reference
+from werrimbi_odom.files.run import Reference, ReferenceKind
 from werrimbi_odom.model.pose import Floats
 
 NAN = math.nan
@@ -77,7 +77,8 @@ class ReferenceCollector:
             raise InputError(f"{self._place}: no message holds a finite pose")
         sigmas = (each if np.isfinite(each).any() else None for each in (sigma_xy, sigma_yaw))
         told = f"{parent} -> {child}" if parent and child else f"frame {parent or child}"
-        return Reference(time, x, y, yaw, *sigmas), told
+        kind: ReferenceKind | None = "incremental" if self._source.kind == IMU else None
+        return Reference(time, x, y, yaw, *sigmas, kind=kind), told
 
     def _frames(self) -> tuple[str, str]:
         wished = self._child
