@@ -48,7 +48,7 @@ def begun(source: RobotFile, runs: list[Run], holdout: list[Run]) -> Opening:
 def test_the_page_gets_the_figures_that_were_worked_out_elsewhere(
     day: tuple[RobotFile, list[Run], list[Run]],
 ) -> None:
-    """To the last digit those of this process, and the drives are the very same objects."""
+    """To the last digit those of this process, and the drives hold the very same arrays."""
     opening = begun(*day)
     shared = awaited(opening.result())
     assert opening.shared is shared
@@ -58,7 +58,7 @@ def test_the_page_gets_the_figures_that_were_worked_out_elsewhere(
         np.testing.assert_array_equal(there.legs.errors.error, own.legs.errors.error)
         assert there.main.all.figures == own.main.all.figures
     assert shared.look.verdict.good == look.verdict.good
-    assert shared.look.train.runs[0].run is day[1][0]
+    assert shared.look.train.runs[0].run.ticks is day[1][0].ticks
     assert shared.look.train.prepared is shared.opened.train
     assert shared.opened.judged_on == here.judged_on
 

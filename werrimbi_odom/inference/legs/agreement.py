@@ -117,7 +117,8 @@ def ways_agree(windows: Windows, turns: Agreement | None, base: float) -> Agreem
     if turns is not None:
         turned = np.interp(windows.time, turns.windows.time, turns.expected)
         windows = replace(windows, chord=np.maximum(np.sinc(turned / (2.0 * np.pi)), _CLEARLY))
-        wirings, lags = [turns.law / max(float(np.abs(turns.law).max()), _TINY)], [turns.lag]
+        windows = _of_size(windows, np.abs(turns.law) / max(float(np.abs(turns.law).max()), _TINY))
+        wirings, lags = [np.sign(turns.law)], [turns.lag]
     else:
         wirings, lags = [np.array([-1.0, 1.0]), np.array([1.0, 1.0])], _lags(windows.step)
     best: tuple[float, float, Floats, Floats] | None = None
@@ -140,6 +141,15 @@ def ways_agree(windows: Windows, turns: Agreement | None, base: float) -> Agreem
     shown, gross = _way(late, wiring, base, law[:, None])
     near = abs(float(np.sqrt(max(law[0], 0.0))) - 1.0) < AGREE_WITHIN
     return _plain(Agreement(late, shown[:, 0], gross[:, 0], lag, law), near, AGREE_WAY)
+
+
+def _of_size(windows: Windows, sizes: Floats) -> Windows:
+    """With the travel of both wheels by their sizes, which the robot file may have wrong."""
+    left, right = sizes[0] * windows.left, sizes[1] * windows.right
+    before = np.abs(windows.left) + np.abs(windows.right)
+    grown = (np.abs(left) + np.abs(right)) / np.maximum(before, _TINY)
+    rolled = windows.rolled * np.where(before > _TINY, grown, float(sizes.mean()))
+    return replace(windows, left=left, right=right, rolled=rolled)
 
 
 def _lags(step: float) -> list[float]:
@@ -167,8 +177,10 @@ def _turn_law(windows: Windows, base: float) -> Floats:
     every = np.concatenate(laws, axis=1)
     best = every[:, int(np.argmax(_kept(windows, *_turn(windows, every))[0]))]
     own, best = (_refined(windows, law, terms) for law in (np.array([-1.0, 1.0]) / base, best))
-    kept = _kept(windows, *_turn(windows, np.stack([own, best], axis=1)))[0]
-    return own if kept[0] > AGREE_OWN * kept[1] else best
+    kept, asked = _kept(windows, *_turn(windows, np.stack([own, best], axis=1)))
+    # What nearly all of the drive keeps to is the robot's law, whatever the file says of its wiring.
+    needed = AGREE_LAGS if kept[1] > AGREE_LAGS * asked[1] else AGREE_OWN
+    return own if kept[0] > needed * kept[1] else best
 
 
 def _refined(windows: Windows, law: Floats, terms: Floats) -> Floats:

@@ -18,7 +18,8 @@ AGREE_BETTER = 1.15
 windows of two lags overlap, and the smaller lag is the likelier."""
 
 AGREE_LAGS = 0.8
-"""Share of all that speaks for a law, from which on no other lag is tried."""
+"""Share of all that speaks for a law, from which on no other lag is tried, and no other law taken
+for being the robot file's."""
 
 AGREE_LAG_STEP = 0.2
 """Between two lags that are tried [s], less than half a window; then the best one's neighbours."""
