@@ -75,9 +75,14 @@ def known_to_both(opened: Opened) -> Mapping[str, Any]:
 
 
 def known_before(given: Recordings) -> Mapping[str, Any]:
-    """What both have before anything is cut."""
-    runs = (*given.runs, *given.holdout)
-    return {"given": given, **{f"run {number}": run for number, run in enumerate(runs)}}
+    """What both have before anything is cut; a run that was looked at has the same columns."""
+    there: dict[str, Any] = {"given": given}
+    for number, run in enumerate((*given.runs, *given.holdout)):
+        there[f"run {number}"] = run
+        there[f"ticks {number}"] = run.ticks
+        if run.reference is not None:
+            there[f"reference {number}"] = run.reference
+    return there
 
 
 def left_there(opened: Opened) -> Mapping[str, Any]:

@@ -178,7 +178,7 @@ def _turn_law(windows: Windows, base: float) -> Floats:
     best = every[:, int(np.argmax(_kept(windows, *_turn(windows, every))[0]))]
     own, best = (_refined(windows, law, terms) for law in (np.array([-1.0, 1.0]) / base, best))
     kept, asked = _kept(windows, *_turn(windows, np.stack([own, best], axis=1)))
-    # What nearly all of the drive keeps to is the robot's law, whatever the file says of its wiring.
+    # What nearly all of the drive keeps to is the robot's law, whatever the file says of wiring.
     needed = AGREE_LAGS if kept[1] > AGREE_LAGS * asked[1] else AGREE_OWN
     return own if kept[0] > needed * kept[1] else best
 
