@@ -79,6 +79,7 @@ def test_a_set_up_mistake_leads(judge: Judge) -> None:
     assert named_mistake(judge(MISTAKE)), judge(MISTAKE)
 
 
+@pytest.mark.evidence
 def test_what_the_library_does_not_hold_is_unknown_and_depends_on_the_load(
     judge: Judge,
 ) -> None:

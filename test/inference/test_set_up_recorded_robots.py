@@ -74,6 +74,7 @@ def test_a_late_clock_is_found_to_a_twentieth_of_a_second(name: str, late: float
     assert delay.values["delay"] == pytest.approx(late, abs=0.05)
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("name", WITH_POSES)
 @pytest.mark.parametrize("degrees", [40, 90, 180, -90, -135])
 def test_a_mount_adds_to_the_one_that_is_there(name: str, degrees: int) -> None:
@@ -92,6 +93,7 @@ def test_a_long_lever_arm_is_found(name: str) -> None:
     assert "reference_lever_arm" in {each.effect for each in looked_at(name, "lever arm").findings}
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("what", ["radius", "base"])
 @pytest.mark.parametrize("factor", FACTORS)
 def test_the_labyrinth_robots_own_mistakes_and_another(what: str, factor: str) -> None:
