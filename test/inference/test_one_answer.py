@@ -84,7 +84,13 @@ def figures(statistics: LegStatistics) -> list[float]:
     return [statistics.rmse_position_m, statistics.median_position_m, statistics.rmse_yaw_rad]
 
 
-@pytest.mark.parametrize("case", CASES)
+LONG = ("positions alone", "a gap of the ticks", "a gap of the reference")
+
+
+@pytest.mark.parametrize(
+    "case",
+    [pytest.param(case, marks=[pytest.mark.evidence] * (case in LONG)) for case in CASES],
+)
 def test_every_verb_gives_the_same_figures(case: str) -> None:
     change, kind, robot = CASES[case]
     train, held = ([change(run) for run in drives(seeds, robot)] for seeds in ((50, 51), (52,)))

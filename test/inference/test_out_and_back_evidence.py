@@ -87,6 +87,7 @@ def covered(fits: list[NoiseFit]) -> tuple[Floats, Floats]:
     return np.mean(by_std, axis=0), np.mean(by_interval, axis=0)
 
 
+@pytest.mark.evidence
 def test_calibrations_hold_the_truth_in_their_error_bars() -> None:
     for shares in covered(repeated(Experiment(), 100, seed=3)):
         for share in shares:

@@ -157,10 +157,10 @@ def test_an_effect_that_the_file_holds_already_is_changed_not_doubled(session: l
         "reference_delay",
         "reference_yaw_offset",
         "floor_slope",
-        "turn_dependent_track",
+        pytest.param("turn_dependent_track", marks=pytest.mark.evidence),
         "track_width",
-        "left_missed_ticks",
-        "slippery_spot",
+        pytest.param("left_missed_ticks", marks=pytest.mark.evidence),
+        pytest.param("slippery_spot", marks=pytest.mark.evidence),
     ],
 )
 def test_an_ordinary_effect_is_no_mistake(tmp_path: Path, effect: str) -> None:

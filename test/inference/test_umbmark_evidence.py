@@ -157,6 +157,7 @@ def gain(
     }
 
 
+@pytest.mark.evidence
 def test_a_calibration_in_the_engine_gains_twenty_times() -> None:
     found = gain(*MISTAKES[0], runs=2, noise=0.0, seed=1)
     assert found["after"] < found["before"] / 20

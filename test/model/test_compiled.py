@@ -158,6 +158,7 @@ def run_in(folder: Path, **environment: str) -> str:
     return done.stdout.strip()
 
 
+@pytest.mark.evidence
 def test_machine_code_is_kept_for_the_next_process(tmp_path: Path) -> None:
     kept = tmp_path / "kept"
     first = run_in(tmp_path, NUMBA_CACHE_DIR=str(kept))

@@ -103,6 +103,7 @@ def test_a_comparison_draws_itself_in_the_dark(compare_page: Path, look: Look) -
     assert [colour.upper() for colour in visit.answers[2:]] == ["RGB(21, 24, 28)", "#15181C"]
 
 
+@pytest.mark.evidence
 def test_the_switch_turns_page_and_figures_dark(compare_page: Path, look: Look) -> None:
     visit = look(
         compare_page,

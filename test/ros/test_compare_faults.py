@@ -39,8 +39,11 @@ def test_a_clock_that_is_set_while_it_compares_is_told(launch: Any, compare: Any
             node.send(PoseStamped, "reference", pose_stamped(node.now - 1000.0 + ahead, 0, 0, 0))
             node.rest(0.05)
 
-    both(2.0, 0.0)
-    before = {item.key: item.value for item in comparing.verdict().values}
+    for _ in range(20):
+        both(2.0, 0.0)
+        before = {item.key: item.value for item in comparing.verdict().values}
+        if int(before["compared"]) > 10:
+            break
     assert int(before["compared"]) > 10
     assert comparing.said[-1].level == DiagnosticStatus.OK
     for _ in range(20):
