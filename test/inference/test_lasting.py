@@ -71,8 +71,8 @@ def chances(seeds: range, spoil: Spoil, hotter: float = 0.0) -> list[tuple[str, 
     knobs = (*CALIBRATION, *fit.knobs)
     cells = dependences(laid, fit.point, "absolute", knobs)[:8]
     return [
-        (cell.variable.name, cell.p_value, p_value)
-        for cell, p_value in lasting(laid, fit.point, "absolute", knobs, cells)
+        (each.cell.variable.name, each.cell.p_value, each.p_value)
+        for each in lasting(laid, fit.point, "absolute", knobs, cells)
     ]
 
 
@@ -104,3 +104,18 @@ def test_a_right_robot_by_a_wandering_reference_misses_nothing() -> None:
     found = diagnose(train, ROBOT, LIBRARY, holdout=holdout)
     assert found.depends_on[0].p_value < 1e-5
     assert (found.verdict, found.found) == ("none", ())
+
+
+def test_what_one_drive_alone_shows_is_no_law_of_the_robot() -> None:
+    hot = [driven(seed, nothing, f"drive_{seed}") for seed in range(70, 74)]
+    hot.append(driven(74, nothing, "hot", hotter=0.02))
+    found = diagnose(hot, ROBOT, LIBRARY, holdout=[driven(75, nothing, "apart")])
+    assert (found.verdict, found.found) == ("none", ())
+    assert found.misfit is not None
+    assert (found.misfit.only_in, found.misfit.cell.variable.name) == ("hot", "warmth")
+
+
+def test_what_every_drive_shows_is_told_of_the_robot() -> None:
+    hot = [driven(seed, nothing, f"drive_{seed}", hotter=0.01) for seed in range(80, 84)]
+    found = diagnose(hot, ROBOT, LIBRARY, holdout=[driven(85, nothing, "apart", hotter=0.01)])
+    assert (found.verdict, found.depends_on[0].variable.name) == ("unknown", "warmth")

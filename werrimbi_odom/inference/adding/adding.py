@@ -38,7 +38,7 @@ from werrimbi_odom.inference.comparison.judged_legs import (
     judged_legs,
 )
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found
+from werrimbi_odom.inference.diagnosis.held_law import Misfit, misfit_of_found
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.pairs import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
@@ -53,7 +53,7 @@ from werrimbi_odom.inference.fitting.knobs import (
 )
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
 from werrimbi_odom.inference.fitting.together import together
-from werrimbi_odom.inference.rules import STRANGE_NOISE, SURE
+from werrimbi_odom.inference.rules import STRANGE_NOISE, VERY_SURE
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -152,7 +152,8 @@ def add_effects(
     alone = {name: _at_home(judge, each, kept) for name, each in fits.without.items()}
     question = Question(tuple(effects), drives, fits, fit, robot, also, kept, alone, set_up)
     chances, objections = question.chances, question.objections
-    noises, remaining, explained = _noise(drives, fit, sigma)
+    noises, remaining, misfit, sane = _noise(drives, fit, sigma)
+    explained = misfit is None and sane
     model = fit.point.model
     per_run = tuple(sorted(set(model.own[0]) - set(NUISANCES))) if model.own else ()
     written = fit
@@ -188,7 +189,7 @@ def add_effects(
         noises=noises,
         explained=explained,
         remaining=remaining,
-        misfit=misfit_of_found(fit, remaining, drives.laid, kind),
+        misfit=misfit,
         set_up=set_up,
         per_run=per_run,
         chances=chances,
@@ -264,16 +265,16 @@ def _legs(prepared: Prepared, model: Model) -> Legs:
 
 def _noise(
     drives: Drives, fit: Fitted, sigma: tuple[float | None, float | None]
-) -> tuple[dict[str, NoiseEstimate], tuple[Dependence, ...], bool]:
-    """Noise of the wheels, what the errors still depend on, and whether the noise is noise."""
+) -> tuple[dict[str, NoiseEstimate], tuple[Dependence, ...], Misfit | None, bool]:
+    """Noise of the wheels, what the errors still depend on, as diagnose tells it; sane wheels."""
     held = (sigma[0] is not None, sigma[1] is not None)
     costs = Costs(drives.laid, fit.point, drives.kind)
     noises = noise_estimates(costs, fit.point.variances, held)
     found = dependences(drives.laid, fit.point, drives.kind, (*CALIBRATION, *fit.knobs))
-    remaining = tuple(cell for cell in found if cell.p_value < SURE)
+    remaining = tuple(cell for cell in found if cell.p_value < VERY_SURE)
     wheels = [noises[name] for name in WHEEL_NOISES]
     sane = all(not item.determined or item.value < STRANGE_NOISE for item in wheels)
-    return noises, remaining, not remaining and sane
+    return noises, remaining, misfit_of_found(fit, remaining, drives.laid, drives.kind), sane
 
 
 def _told(noise: NoiseEstimate) -> NoiseEstimate:

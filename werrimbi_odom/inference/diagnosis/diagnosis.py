@@ -119,7 +119,7 @@ def diagnose(
     instead: tuple[Instead, ...] = ()
     if not fit.names and fit.calibrated and beyond is None:
         instead = instead_of_calibration(laid, fit, kind, effects, set_up.robot, sigma)
-    if misfit is None and beyond is None and (fit.names or fit.calibrated):
+    if misfit is None and beyond is None:
         certain = [cell for cell in remaining if cell.p_value < VERY_SURE]
         misfit = misfit_of_found(fit, certain, laid, kind)
     found = told(begun, robot, tuple(rounds), fit, beyond, remaining, laid, kind, instead)
@@ -176,7 +176,7 @@ def _beyond_the_library(
         certain = [cell for cell in certain if more_than_a_law_leaves(cell)]
     knobs = (*CALIBRATION, *this.before.knobs)
     found = lasting(runs, this.before.point, kind, knobs, certain[:CELLS_ASKED])
-    return next((cell for cell, p_value in found if p_value < SURE), None)
+    return next((each.cell for each in found if each.p_value < SURE and not each.only_in), None)
 
 
 def _fall(gain: float, data: int) -> float:

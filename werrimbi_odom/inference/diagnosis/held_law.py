@@ -51,6 +51,8 @@ class Misfit:
     """What the errors still go with."""
     share: float | None
     """Of what the law explains."""
+    only_in: str | None = None
+    """The one drive that shows it; None where all do."""
 
 
 def misfit_of_held_law(
@@ -99,13 +101,13 @@ def misfit_of_found(
     """
     worth = sorted(certain, key=lambda cell: cell.degrees * fit.price_of_one - cell.gain)
     knobs = (*CALIBRATION, *fit.knobs)
-    asked = [cell for cell in worth if cell.gain > cell.degrees * fit.price_of_one][:LEFT_ASKED]
-    for cell, p_value in lasting(runs, fit.point, kind, knobs, asked):
-        if p_value < SURE:
+    for cell, p_value, only_in in lasting(runs, fit.point, kind, knobs, worth[:LEFT_ASKED]):
+        dear = cell.gain <= cell.degrees * fit.price_of_one  # as a law of the robot
+        if only_in or (p_value < SURE and not dear):
             for law, support, explained in _laws(fit, runs):
                 if _shares(support, cell):
-                    return Misfit(law.name, cell, cell.gain / explained)
-            return Misfit(None, cell, None)
+                    return Misfit(law.name, cell, cell.gain / explained, only_in)
+            return Misfit(None, cell, None, only_in)
     return None
 
 

@@ -6,19 +6,21 @@ Scores and the evidence map take innovations for independent. Those of a referen
 camera, a map that is matched) are not, and go with something by chance much farther. So runs are
 cut into parts, and what a pattern explains in all of them is held against how much more it would
 explain if each part had coefficients of its own: Fisher's F. Where something is really there the
-parts agree, to within the noise.
+parts agree, to within the noise. And what one drive alone shows, where the others could as well, is
+something that happened on that drive.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.chances import fisher_above
+from werrimbi_odom.inference.chances import chi2_above, fisher_above
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
 from werrimbi_odom.inference.diagnosis.variables import functions_of
 from werrimbi_odom.inference.fitting.candidates import (
@@ -32,13 +34,26 @@ from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import (
+    DRIVES_TO_LEAVE_ONE,
     LASTING_FEWEST,
     LASTING_HEARD,
     LASTING_LEGS,
     LASTING_MOST,
     LASTING_PARTS,
+    OTHER_DRIVES,
+    SURE_WHEN_ASKED,
 )
 from werrimbi_odom.model.pose import Floats
+
+
+class Lasting(NamedTuple):
+    """A dependence, and whether it lasts."""
+
+    cell: Dependence
+    p_value: float
+    """How often chance shows as much, by the disagreement of the parts."""
+    only_in: str | None
+    """The one drive that shows it where the others could and do not."""
 
 
 def lasting_effect(
@@ -61,13 +76,13 @@ def lasting(
     kind: ReferenceKind,
     knobs: Sequence[Knob],
     cells: Iterable[Dependence],
-) -> Iterator[tuple[Dependence, float]]:
-    """Some cells of a model's map, each with how often chance shows as much, by the disagreement.
+) -> Iterator[Lasting]:
+    """Some cells of a model's map, each with whether it lasts.
 
     `knobs` are those of the map.
     """
     if _too_few(runs):
-        yield from ((cell, 0.0) for cell in cells)
+        yield from (Lasting(cell, 0.0, None) for cell in cells)
         return
     prediction = predict_all(point.model, runs)
     frame, rest = unexplained(runs, point, kind, knobs, prediction)
@@ -86,7 +101,9 @@ def lasting(
             own = of_each_run(runs, own)
         flat = own.reshape(rest.size, -1)
         free = frame.residual(flat)
-        yield cell, _chance(cell.gain, cell.degrees, free, rest, parts)
+        p_value = _chance(cell.gain, cell.degrees, free, rest, parts)
+        alone = _drive_alone(free, rest, np.repeat(runs.run_of_leg, 3))
+        yield Lasting(cell, p_value, None if alone is None else runs.runs[alone].name)
 
 
 def _too_few(runs: Together) -> bool:
@@ -112,6 +129,35 @@ def parts_of(run: NDArray[np.intp]) -> NDArray[np.intp]:
 def _parts(runs: Together) -> NDArray[np.intp]:
     """The part to which each innovation belongs, (3 m,)."""
     return np.repeat(parts_of(runs.run_of_leg), 3)
+
+
+def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp]) -> int | None:
+    """Index of the drive without which a pattern is not seen, though the others hold enough of it.
+
+    A law is the robot's, so any drive may be left out (a jackknife over drives).
+
+    Parameters
+    ----------
+    free : ndarray, shape (n, k)
+        The pattern's columns, clear of what the model can turn.
+    rest : ndarray, shape (n,)
+        What is left of the whitened innovations.
+    run : ndarray, shape (n,)
+        Drive of each innovation.
+    """
+    if np.unique(run).size < DRIVES_TO_LEAVE_ONE:
+        return None
+    size = np.sqrt(np.sum(free**2, axis=0))
+    scaled = free[:, size > 0.0] / size[size > 0.0]
+    explained = scaled @ np.linalg.lstsq(scaled, rest, rcond=None)[0]
+    first = int(np.argmax(np.bincount(run, rest**2 - (rest - explained) ** 2)))
+    others = run != first
+    if np.sum(scaled[others] ** 2) < OTHER_DRIVES * scaled.shape[1]:
+        return None
+    basis, values, _ = np.linalg.svd(scaled[others], full_matrices=False)
+    own = basis[:, values > LASTING_HEARD]
+    gain = float(np.sum((own.T @ rest[others]) ** 2))
+    return None if chi2_above(gain, own.shape[1]) < SURE_WHEN_ASKED else first
 
 
 def _chance(

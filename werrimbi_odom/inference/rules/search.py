@@ -54,6 +54,14 @@ LASTING_HEARD = 0.1
 """Share of a pattern's size that a part must hold, to say anything of it: a hundredth of what the
 pattern explains, beside the 28th that a part has on average."""
 
+DRIVES_TO_LEAVE_ONE = 3
+"""Drives from which on one may be said to be unlike the others: of two neither is."""
+
+OTHER_DRIVES = 0.5
+"""Share of a pattern's size that the other drives must hold, for what they do not show to be one
+drive's own. Of a dependence that is barely certain (chi-squared of 60 for 14 numbers) they then
+show 37 for 12, once in 5000 by chance, and are asked for a hundredth (`SURE_WHEN_ASKED`)."""
+
 CELLS_ASKED = 20
 """Dependences, the most certain, of which it is asked whether they last: each costs a pass of the
 filter, and one that lasts is among the first few or nowhere."""

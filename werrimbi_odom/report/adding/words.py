@@ -138,7 +138,8 @@ def _remarks(added: Added) -> list[str]:
 def _rest(added: Added) -> str:
     verdict = added.verdict
     nees = added.compared.main.all.figures.nees
-    if not added.remaining:
+    misfit = added.misfit
+    if misfit is None:
         if verdict.good:
             return (
                 f"What remains is noise: nothing more is seen in the errors, and they are as large "
@@ -149,11 +150,17 @@ def _rest(added: Added) -> str:
             "Nothing more is seen in the errors of the fitted drives. But `werrimbi compare` of "
             f"the new file says of {which} drives: {headline(added.compared, verdict)}"
         )
-    first = added.remaining[0] if added.misfit is None else added.misfit.cell
-    if added.misfit is not None and added.misfit.effect is not None:
-        share = 100.0 * (added.misfit.share or 0.0)
+    first = misfit.cell
+    if misfit.only_in is not None:
         return (
-            f"The law of {added.misfit.effect} does not fit fully: what is left of the "
+            f"Drive {misfit.only_in} alone shows something more: in it the {first.channel} error "
+            f"goes with {first.name} (p = {first.p_value:.0e}); the others could show it and do "
+            "not."
+        )
+    if misfit.effect is not None:
+        share = 100.0 * (misfit.share or 0.0)
+        return (
+            f"The law of {misfit.effect} does not fit fully: what is left of the "
             f"{first.channel} error goes with {first.name}, {share:.2g} % of what the law explains "
             f"(NEES {nees:.2f}, honest is 1)."
         )

@@ -73,6 +73,7 @@ def json_of(
         else {
             "effect": diagnosis.misfit.effect,
             "share": diagnosis.misfit.share,
+            "only_in": diagnosis.misfit.only_in,
             **_cell(diagnosis.misfit.cell),
         },
         "could_have_been_seen": [_limit(sight) for sight in sights],

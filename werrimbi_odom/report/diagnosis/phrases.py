@@ -222,6 +222,14 @@ def law(told: Told) -> list[str]:
     if misfit is None:
         return []
     cell = f"{dependence_words(misfit.cell)} ({chance_words(misfit.cell.p_value)})"
+    if misfit.only_in is not None:
+        return [
+            f"But: drive {misfit.only_in} alone shows something more: in it {cell}. The others "
+            "hold as much driving that would show it, and do not. So no law of the robot is seen "
+            "in it: "
+            "something happened on that drive, its reference erred, or it was recorded otherwise"
+            f"{_or_a_held_law(told)}."
+        ]
     if misfit.effect is None:
         return [f"But: something is left. With everything found put in, {cell}."]
     share = "" if misfit.share is None else f", {100.0 * misfit.share:.2g} % of what it explains,"
@@ -229,6 +237,13 @@ def law(told: Told) -> list[str]:
         f"But: the law of {misfit.effect} does not fit fully. What it leaves{share} is in what it "
         f"looks at: {cell}. That is a matter of the law's form, and no other effect."
     ]
+
+
+def _or_a_held_law(told: Told) -> str:
+    """The laws that the model holds, which may be a bit other than nature's."""
+    applied = told.diagnosis.robot.effects
+    laws = [each.name for each in applied if not each.effect.is_mistake]
+    return f", or the law of {listed(laws, 'or')} does not quite fit there" if laws else ""
 
 
 def not_shown(told: Told) -> list[str]:
