@@ -25,6 +25,12 @@ def remark_words(remark: ReferenceRemark) -> str:
             f"{_places(remark)}: it is wrong there (a scan matcher in a corridor), or the wheels "
             f"slipped there.{elsewhere}"
         )
+    if remark.what == "another_drive":
+        return (
+            "Wheels and reference have nothing in common: whatever is put right, the errors are as "
+            "large as the way itself. It is the reference of another robot or another drive, its "
+            "clock is far off, or its topic is not where the robot is."
+        )
     if remark.what == "metre":
         return (
             f"The reference's path is {_share(remark.size)} than the wheels' way, and its turns "

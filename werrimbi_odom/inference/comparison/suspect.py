@@ -45,9 +45,10 @@ from werrimbi_odom.model.pose import Floats, wrap_all
 _PAIRED = 100
 """Stretches of a drive of which every two make a slope."""
 
-What = Literal["short", "sideways", "sideways_by_place", "apart", "metre"]
-"""short: its path is shorter (or longer) in places; sideways: it goes askew of its heading, all
-along; sideways_by_place: now and then; apart: ever more; metre: it measures in another metre."""
+What = Literal["another_drive", "short", "sideways", "sideways_by_place", "apart", "metre"]
+"""another_drive: it has nothing in common with the wheels; short: its path is shorter (or longer)
+in places; sideways: it goes askew of its heading, all along; sideways_by_place: now and then; apart:
+ever more; metre: it measures in another metre."""
 
 
 @dataclass(frozen=True, slots=True)

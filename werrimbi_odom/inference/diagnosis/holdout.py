@@ -7,6 +7,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.judged_legs import (
@@ -127,7 +129,8 @@ def begin(
     Raises
     ------
     InputError
-        When a run has no usable reference or no ticks, or is in degrees or millimetres.
+        When a run has no usable reference or no ticks, or is in degrees or millimetres; when the
+        wheels stood in all of them.
     """
 
     def split(kept: Sequence[Run], held: Sequence[Run]) -> tuple[SetUp, Judge]:
@@ -139,6 +142,7 @@ def begin(
     runs, holdout = (
         tuple(looked_at(run, given or robot, limits) for run in some) for some in (runs, holdout)
     )
+    _refuse_standing((*runs, *holdout))
     fitted, held = (runs, holdout) if holdout else set_aside(runs)
     set_up, judge = split(fitted, held)
     otherwise = recorded_otherwise(judge.train, judge.holdout, set_up.robot, kind, limits)
@@ -149,6 +153,19 @@ def begin(
     if (sides[0], sides[1]) != (fitted, held):
         set_up, judge = split(*sides)
     return Begun(judge, set_up, otherwise)
+
+
+def _refuse_standing(runs: Sequence[Run]) -> None:
+    for run in runs:
+        counts = np.stack([run.ticks.left, run.ticks.right])
+        if np.any(np.nanmax(counts, axis=1) > np.nanmin(counts, axis=1)):
+            return
+    names = ", ".join(str(run.path) for run in runs)
+    raise InputError(
+        f"{names}: the wheels stood all the time: no count changes. Nothing is told by a robot "
+        "that stands; are these the ticks of this drive? `werrimbi info` lists what is in a "
+        "recording"
+    )
 
 
 def judge_of(

@@ -98,7 +98,7 @@ def _calibrated(diagnosis: Diagnosis, name: str) -> Value:
     size = sizes_of(diagnosis.robot).over(sizes_of(diagnosis.given)).as_effects[name]
     names = [knob.name for knob, _ in diagnosis.final.design.columns]
     std = math.nan
-    if set(MULTIPLIERS) <= set(names):
+    if set(MULTIPLIERS) <= set(names) and name not in diagnosis.final.held:
         where = [names.index(multiplier) for multiplier in MULTIPLIERS]
         spread = diagnosis.final.covariance[np.ix_(where, where)]
         std = size * std_as_effect(name, diagnosis.robot, spread)

@@ -15,7 +15,7 @@ from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
 from werrimbi_odom.inference.chances import chi2_above
-from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
+from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, of_another_drive
 from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
@@ -93,6 +93,11 @@ class Diagnosis:
     holds, by its name."""
 
     @property
+    def of_another_drive(self) -> bool:
+        """Whether wheels and reference have nothing in common, so that nothing is told."""
+        return any(remark.what == "another_drive" for remark in self.remarks)
+
+    @property
     def robot(self) -> Robot:
         """With everything that was found put in."""
         return self.final.point.model.robot
@@ -137,7 +142,10 @@ def told(
         torn = _torn(found[0], rounds, final, laid, kind)
         rivals = tuple(dict.fromkeys((*(rivals or (found[0],)), *torn))) if torn else rivals
     verdict: Verdict
-    if not found:
+    another = of_another_drive(judge.train, _plain(final, set_up.robot))
+    if another:
+        verdict, found, rivals, torn = "unknown", (), (), ()
+    elif not found:
         wrong = beyond is not None or far_above_noise(judge.train, _plain(final, set_up.robot))
         verdict = "unknown" if wrong else "none"
     elif beyond is not None and not mistakes and len(rounds) == 1:
@@ -155,8 +163,8 @@ def told(
         torn,
         set_up,
         begun.otherwise,
-        rounds[0].dependences,
-        remaining,
+        () if another else rounds[0].dependences,
+        () if another else remaining,
         given,
         rounds,
         final,
@@ -167,7 +175,7 @@ def told(
         Sides(start.holdout_median, last.holdout_median, start.unit),
         Sides(start.holdout_yaw, last.holdout_yaw, "rad"),
         judge.left_out,
-        remarks_on(judge.train),
+        (ReferenceRemark("another_drive", 0.0),) if another else remarks_on(judge.train),
     )
 
 

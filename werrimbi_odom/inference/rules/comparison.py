@@ -124,3 +124,13 @@ standard deviation. Where growth outruns the noise the line is not to be trusted
 FACING_POSES = 10
 """Positions to either side of a pose whose chord tells its heading, where positions are all there
 is: noise counts for a tenth of what it is between two neighbours."""
+
+OTHER_DRIVE, OTHER_DRIVE_LEGS = 0.5, 4
+"""Share of the square of what was driven that errors must keep, at every length of leg with so many
+legs, for a reference to be of another drive. Two ways that have nothing in common leave one of them
+or both (1 to 2); where something is told, a length is found at which far less is left. Four legs
+all have such errors by chance in one case of 16 or less."""
+
+OTHER_DRIVE_TURN = 0.2
+"""Turn of a usual leg [rad] from which on headings are asked as well: lines hold hardly any, and an
+effect that turns the robot on lines would pass for another drive."""

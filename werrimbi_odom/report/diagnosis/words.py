@@ -198,6 +198,12 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
 
 def _unknown(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
+    if diagnosis.of_another_drive:
+        return [
+            "Nothing can be told of the robot from these drives.",
+            "Next: `werrimbi info` of a recording says what is in it, and `werrimbi compare` with "
+            "--report draws both paths. Give the reference of the same drive.",
+        ]
     lines = _set_up(diagnosis)
     cells = significant(diagnosis)
     lines.append("Something is missing that no effect of the library explains.")

@@ -1,0 +1,137 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A reference of another drive tells nothing of the robot, and then nothing is told."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
+
+from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.api.drives import collection_of, read_robot
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.asked import How, Recordings
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.manoeuvres.told import Told, told_of
+from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+
+TRUE = WhiteNoiseRobot()
+ROBOT = TRUE.entered(0.05)
+
+
+def driven(seed: int) -> Run:
+    """Half a minute with curves, as it was."""
+    random = np.random.default_rng(seed)
+    seen = drive(TRUE, wandering(random, 30.0), random, every=4)
+    return Run(f"drive_{seed}", Path(f"drive_{seed}"), seen.ticks, seen.reference)
+
+
+def with_reference_of(run: Run, other: Run, keep: Callable[[Reference], Reference]) -> Run:
+    assert other.reference is not None
+    return replace(run, reference=keep(other.reference))
+
+
+def poses(reference: Reference) -> Reference:
+    return reference
+
+
+def headings(reference: Reference) -> Reference:
+    nowhere = np.full(reference.time.size, np.nan)
+    return replace(reference, x=nowhere, y=nowhere)
+
+
+def positions(reference: Reference) -> Reference:
+    return replace(reference, yaw=np.full(reference.time.size, np.nan))
+
+
+FILE = Path(__file__).parents[2] / "config" / "robot.yaml"
+
+
+def diagnosed(*runs: Run, holdout: tuple[Run, ...] = ()) -> Told:
+    """By the robot above; the file stands for the one that was read."""
+    return told_of(Recordings(read_robot(FILE), collection_of(), runs, holdout, How(), ROBOT))
+
+
+def spoken(told: Told) -> str:
+    return words_of(told, NextSteps())
+
+
+MEASURED = pytest.mark.parametrize("keep", [poses, headings, positions])
+
+
+@MEASURED
+def test_the_reference_of_another_drive_is_said_to_be_that(
+    keep: Callable[[Reference], Reference],
+) -> None:
+    runs = [with_reference_of(driven(seed), driven(seed + 10), keep) for seed in (1, 2)]
+    told = diagnosed(*runs, holdout=(driven(4),))
+    assert (told.diagnosis.verdict, told.diagnosis.found) == ("unknown", ())
+    assert told.diagnosis.of_another_drive
+    words = spoken(told)
+    assert "nothing in common" in words
+    assert "On the robot" not in words
+
+
+@MEASURED
+def test_that_of_this_drive_is_not(keep: Callable[[Reference], Reference]) -> None:
+    runs = [with_reference_of(driven(seed), driven(seed), keep) for seed in (1, 2)]
+    assert not diagnosed(*runs, holdout=(driven(4),)).diagnosis.of_another_drive
+
+
+def test_wheels_that_stand_are_told_before_any_work() -> None:
+    run = driven(1)
+    stood = replace(run.ticks, left=0 * run.ticks.left, right=0 * run.ticks.right)
+    with pytest.raises(InputError, match="the wheels stood all the time"):
+        diagnosed(replace(run, ticks=stood))
+
+
+N = 500
+
+
+def ways(random: np.random.Generator, kind: str) -> np.ndarray:
+    """Three columns of anything, (N, 3), of the size of a drive of ten seconds."""
+    time = np.arange(N) * 0.02
+    return {
+        "walk": np.cumsum(random.normal(size=(N, 3)), axis=0) * 0.02,
+        "white": random.normal(size=(N, 3)),
+        "still": np.zeros((N, 3)),
+        "steady": np.outer(time, random.normal(size=3)),
+        "circle": np.stack([np.cos(time), np.sin(time), time], axis=1),
+        "jumps": np.cumsum((random.random((N, 3)) < 0.02) * random.normal(size=(N, 3)), axis=0),
+        "huge": np.cumsum(random.normal(size=(N, 3)), axis=0) * [1e4, 1e4, 1.0],
+    }[kind]
+
+
+ANYTHING = st.sampled_from(["walk", "white", "still", "steady", "circle", "jumps", "huge"])
+LARGEST = 1e7
+"""No number of the data above is larger: a reference of kilometres in mm."""
+
+
+@settings(max_examples=8, deadline=None, phases=[Phase.generate])
+@given(st.integers(0, 10**6), ANYTHING.filter(lambda kind: kind != "huge"), ANYTHING,
+       st.sampled_from([poses, headings, positions]))  # fmt: skip
+def test_of_nonsense_no_size_is_told_that_did_not_occur(
+    seed: int, wheels: str, measured: str, keep: Callable[[Reference], Reference]
+) -> None:
+    random = np.random.default_rng(seed)
+    counts = np.rint(ways(random, wheels) / ROBOT.left_tick).astype(np.int64)
+    x, y, yaw = ways(random, measured)[::5].T
+    time = np.arange(N) * 0.02
+    run = Run(
+        "nonsense", Path("nonsense"), Ticks(time, counts[:, 0], counts[:, 1]),
+        keep(Reference(time[::5], x, y, yaw)),
+    )  # fmt: skip
+    try:
+        words = spoken(diagnosed(run))
+    except InputError as error:
+        words = str(error)
+    numbers = [float(each) for each in re.findall(r"\d+(?:\.\d+)?(?:e[+-]?\d+)?", words)]
+    assert max(map(abs, numbers), default=0.0) < LARGEST, words
+    assert not re.search(r"\b(nan|inf)\b", words), words
