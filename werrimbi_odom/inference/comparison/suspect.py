@@ -47,8 +47,8 @@ _PAIRED = 100
 
 What = Literal["another_drive", "short", "sideways", "sideways_by_place", "apart", "metre"]
 """another_drive: it has nothing in common with the wheels; short: its path is shorter (or longer)
-in places; sideways: it goes askew of its heading, all along; sideways_by_place: now and then; apart:
-ever more; metre: it measures in another metre."""
+in places; sideways: it goes askew of its heading, all along; sideways_by_place: now and then;
+apart: ever more; metre: it measures in another metre."""
 
 
 @dataclass(frozen=True, slots=True)
