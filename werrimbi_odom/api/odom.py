@@ -79,8 +79,7 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     from werrimbi_odom.model.effect import view_of
     from werrimbi_odom.model.shown import shown
     from werrimbi_odom.report.reckoning import reckoning_of
-    from werrimbi_odom.report.reckoning_page import reckoning_page
-    from werrimbi_odom.report.text import pairs
+    from werrimbi_odom.report.reckoning_document import document_of
 
     recorded = run if isinstance(run, Run) else read_run(run, robot)
     complete, learnt = _usable(recorded, lambda: with_learnt_phases(recorded, robot))
@@ -90,9 +89,8 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     found = reckoning_of(recorded, start, driven, seen, learnt)
     return Reckoned(
         found=found,
-        words=lambda: pairs(f"{recorded.name}: wheel odometry of {robot.path}", list(found.rows())),
+        document=lambda: document_of(found, robot.path),
         figures_of_json=found.as_json,
-        page=lambda: reckoning_page(found),
     )
 
 

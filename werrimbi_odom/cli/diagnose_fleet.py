@@ -158,9 +158,10 @@ def _tell(arguments: argparse.Namespace, fleet: Fleet) -> None:
     """Words and table, then the files that were asked for."""
     from werrimbi_odom.report.fleet.tables import fleet_table
     from werrimbi_odom.report.fleet.words import words_of
+    from werrimbi_odom.report.terminal import as_text
 
     columns = shutil.get_terminal_size((100, 24)).columns
-    print(words_of(fleet))
+    print(as_text(words_of(fleet)))
     print()
     print(fleet_table(fleet, min(max(columns, _NARROW), _WIDE)))
     written = _write(arguments, fleet)
@@ -177,7 +178,7 @@ def _write(arguments: argparse.Namespace, fleet: Fleet) -> list[Path]:
         written.append(arguments.json)
     if arguments.report is not None:
         from werrimbi_odom.cli.report_made import made_of
-        from werrimbi_odom.report.fleet.page import write_fleet_page
+        from werrimbi_odom.report.fleet.document import write_fleet_page
 
         made = {"fleet": str(arguments.fleet), **made_of(arguments)}
         written += write_fleet_page(fleet, arguments.report, made)

@@ -7,10 +7,9 @@ from __future__ import annotations
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.report.adding.words import remark_told, value_told, words_of
 from werrimbi_odom.report.numbers import listed
-from werrimbi_odom.report.text import unwrapped
 from werrimbi_odom.workbench.drawings import gain_figure
 from werrimbi_odom.workbench.figure import figure
-from werrimbi_odom.workbench.html import box, button, paragraphs, rows, text
+from werrimbi_odom.workbench.html import box, button, prose, rows, text
 from werrimbi_odom.workbench.steps import Step
 from werrimbi_odom.workbench.tab import Tab, millimetres, percent
 
@@ -76,12 +75,7 @@ def _values(number: int, added: Added) -> None:
             )
         with box("details"):
             text("summary", "All words and figures of this step")
-            parts = words_of(added).split("\n\n")
-            for part in parts:
-                if "\n  " in part:
-                    text("pre", part)
-                else:
-                    paragraphs("\n".join(unwrapped(part)))
+            prose(words_of(added))
 
 
 def _proposed(tab: Tab, step: Step) -> None:

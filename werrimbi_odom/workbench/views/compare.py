@@ -12,8 +12,7 @@ from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.consistency import consistency
 from werrimbi_odom.inference.comparison.legs import LegStatistics
 from werrimbi_odom.report.comparison.words import words_of
-from werrimbi_odom.report.text import unwrapped
-from werrimbi_odom.workbench.html import box, button, paragraphs, rows, text
+from werrimbi_odom.workbench.html import box, button, prose, rows, text
 from werrimbi_odom.workbench.parts import (
     Part,
     PlacePart,
@@ -44,11 +43,10 @@ def compare_view(tab: Tab) -> None:
 
 
 def _words(tab: Tab) -> None:
-    told = words_of(tab.comparison, next_step="step 2, Diagnose,", verdict=tab.verdict)
-    lines = unwrapped(told)
+    first, *others = words_of(tab.comparison, next_step="", verdict=tab.verdict)
     with box("div", "verdict"):
-        text("p", lines[0], "headline")
-        paragraphs("\n".join(line for line in lines[1:] if not line.startswith("Next:")))
+        text("p", first.text, "headline")
+        prose(others)
 
 
 def _next(tab: Tab) -> None:

@@ -8,13 +8,15 @@ from typing import Any
 
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.adding.drafting import Draft
-from werrimbi_odom.report.adding.words import json_of
+from werrimbi_odom.report.adding.document import figures_of
+from werrimbi_odom.report.adding.words import json_of, words_of
+from werrimbi_odom.report.document import Document, Paragraph, Shown
 from werrimbi_odom.report.numbers import error_words
-from werrimbi_odom.report.text import filled
+from werrimbi_odom.report.page import as_html
 
 
-def draft_words(draft: Draft, tried: Added) -> str:
-    """What was drafted, and what the error is with it."""
+def draft_words(draft: Draft, tried: Added) -> list[Paragraph]:
+    """What was drafted, what the error is with it, and the law."""
     cell, sides = draft.dependence, tried.holdout.sides
     alone = tried.noise_alone(tried.holdout)
     floor = f"noise alone: {error_words(alone, sides.unit)}; " if tried.explained else ""
@@ -26,7 +28,26 @@ def draft_words(draft: Draft, tried: Added) -> str:
         f"legs of {tried.holdout.after.leg:g} m). Why it is so, the data cannot know: read the "
         "law, find the physics, give it its name."
     )
-    return filled(text)
+    law = draft.source.partition("\n\n\n")[2].rstrip()
+    return [Paragraph(text), Paragraph(law, "code", apart=True)]
+
+
+def draft_document(draft: Draft, tried: Added) -> Document:
+    """Everything that is told; a page has what `add` tells of it too."""
+    return Document(
+        title=f"Drafted: {draft.name}",
+        words=draft_words(draft, tried),
+        draw=lambda: [
+            *figures_of(tried),
+            Shown(
+                "added",
+                "What adding it would do",
+                "Its values, the error before and after, and what is left.",
+                html=as_html(words_of(tried)),
+                main=False,
+            ),
+        ],
+    )
 
 
 def draft_json(draft: Draft, tried: Added) -> dict[str, Any]:
