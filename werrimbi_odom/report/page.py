@@ -171,8 +171,9 @@ def table_html(table: Table) -> str:
         + "</tr>"
         for row in table.rows
     )
+    label = html.escape(table.title or "Table", quote=True)
     return (
-        '<div class="wide"><table>'
+        f'<div class="wide" tabindex="0" role="group" aria-label="{label}"><table>'
         + (f"<caption><span>{html.escape(table.title)}</span></caption>" if table.title else "")
         + (f"<thead><tr>{heads}</tr></thead>" if heads else "")
         + f"<tbody>{rows}</tbody></table></div>"

@@ -85,18 +85,3 @@ def _dressed(element: Any, classes: str, attributes: dict[str, object]) -> Any:
 def prose(parts: Iterable[Part]) -> None:
     """Parts of a document, as its page has them."""
     ui.html(as_html(parts), sanitize=False)
-
-
-def rows(heads: list[str], lines: list[list[str]], caption: str) -> None:
-    """A table of texts; the first column names its row."""
-    with box("div", "wide", tabindex="0", role="group", aria_label=caption), box("table"):
-        text("caption", caption)
-        with box("thead"), box("tr"):
-            for head in heads:
-                text("th", head, scope="col")
-        with box("tbody"):
-            for line in lines:
-                with box("tr"):
-                    text("th", line[0], scope="row")
-                    for cell in line[1:]:
-                        text("td", cell)

@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
 from werrimbi_odom.report.comparison.path_figure import path_figure
 from werrimbi_odom.report.comparison.tables import tables_of
@@ -22,10 +23,11 @@ _RUNS = 40  # that can be chosen one by one: more would make the file too large 
 
 def document_of(comparison: Comparison, command: str = "") -> Document:
     """Everything that is told; `command`: the whole one of the next step."""
+    verdict = verdict_of(comparison)
     return Document(
         title="Model against measurement",
-        words=words_of(comparison, command=command),
-        tables=tables_of(comparison),
+        words=words_of(comparison, verdict=verdict, command=command),
+        tables=tables_of(comparison, verdict),
         draw=lambda: _figures(comparison),
     )
 

@@ -8,7 +8,7 @@ import math
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.comparison.groups import ByVariable
-from werrimbi_odom.inference.comparison.verdict import verdict_of
+from werrimbi_odom.inference.comparison.verdict import Verdict
 from werrimbi_odom.inference.rules import SURE_OF_LEGS
 from werrimbi_odom.report.document import Part, Table, paragraphs
 
@@ -17,12 +17,12 @@ _NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
 _FIGURES = ("legs", "position", "heading", "NEES", "inside 95 %")
 
 
-def tables_of(comparison: Comparison) -> tuple[Part, ...]:
+def tables_of(comparison: Comparison, verdict: Verdict) -> tuple[Part, ...]:
     """All tables, each with its heading."""
     tables: list[Part] = [_motions(comparison.main), _lengths(comparison)]
     if len(comparison.runs) > 1 or math.isfinite(comparison.runs[0].end_error_m):
         tables.append(_runs(comparison))
-    said = list(dict.fromkeys(item.variable for item in verdict_of(comparison).depends))
+    said = list(dict.fromkeys(item.variable for item in verdict.depends))
     by_name = {item.name: item for item in comparison.variables}
     tables += [_variable(by_name[name]) for name in said[:_MOST]]
     calm = [item.name.split(" [")[0] for item in comparison.variables if not _depends(item)]
