@@ -108,31 +108,18 @@ def _usable(recorded: Run, work: Callable[[], Found]) -> Found:
 def _reckoned(recorded: Run, robot_file: RobotFile, start: Pose) -> Trajectory:
     import numpy as np
 
-    from werrimbi_odom.model.trajectory import trajectory
+    from werrimbi_odom.files.start_pose import driven
 
-    ticks = recorded.ticks
-    driven = _usable(
-        recorded,
-        lambda: trajectory(
-            robot_file.robot,
-            ticks.time,
-            ticks.left,
-            ticks.right,
-            start=start,
-            tolerance=robot_file.tolerance,
-            limits=robot_file.limits,
-            channels=ticks.channels,
-        ),
-    )
-    for values in (driven.x, driven.y, driven.yaw, *driven.covariance):
+    found = _usable(recorded, lambda: driven(recorded, robot_file, start))
+    for values in (found.x, found.y, found.yaw, *found.covariance):
         wrong = np.flatnonzero(~np.isfinite(values))
         if wrong.size:
-            row = int(driven.row[wrong[0]]) + 1
+            row = int(found.row[wrong[0]]) + 1
             raise InputError(
                 f"{recorded.path}: the pose grows beyond all numbers at row {row} of the ticks; "
                 "are the counts, and wheel_radius, right?"
             )
-    return driven
+    return found
 
 
 def _write_rows(
