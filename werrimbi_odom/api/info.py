@@ -128,14 +128,14 @@ def _of_bag(
 ) -> tuple[Held, FirstRobot]:
     """What a bag holds, and what it says of the robot."""
     from werrimbi_odom.files.bag import opened_bag
-    from werrimbi_odom.files.contents import contents_of_bag
+    from werrimbi_odom.files.contents import contents_of
     from werrimbi_odom.files.first_robot import of_names, of_urdf, with_driver
     from werrimbi_odom.files.stamps import stamps_of
     from werrimbi_odom.inference.recorded import Held
 
     with opened_bag(bag) as opened:
         base = "" if source is None else str(source.values["base_frame_id"])
-        contents = contents_of_bag(opened, base)
+        contents = contents_of(opened, base)
         names = {each.name for each in contents.wheels}
         wheels = next(
             (

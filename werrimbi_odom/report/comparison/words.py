@@ -13,8 +13,7 @@ from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.numbers import counted, listed
-from werrimbi_odom.report.phrases import left_out_words
-from werrimbi_odom.report.suspect import remark_words
+from werrimbi_odom.report.phrases import left_out_words, remark_words
 
 _AGREES = {"line": "is", "arc": "are", "spin": "are"}
 _CHANNELS = {

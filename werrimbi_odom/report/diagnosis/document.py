@@ -27,7 +27,7 @@ from werrimbi_odom.report.diagnosis.tables import tables_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.document import Document, Shown
 from werrimbi_odom.report.over_variable import before_after_figure
-from werrimbi_odom.report.sketches.library import effect_sketch
+from werrimbi_odom.report.sketches import effect_sketch
 
 _LISTED = 8
 

@@ -31,8 +31,7 @@ from werrimbi_odom.report.diagnosis.phrases import (
 )
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.numbers import chance_words, error_words, listed
-from werrimbi_odom.report.phrases import jumps_words, left_out_words
-from werrimbi_odom.report.suspect import remark_words
+from werrimbi_odom.report.phrases import jumps_words, left_out_words, remark_words
 
 
 @dataclass(frozen=True)
