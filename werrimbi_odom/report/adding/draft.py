@@ -20,16 +20,17 @@ def draft_words(draft: Draft, tried: Added) -> list[Paragraph]:
     cell, sides = draft.dependence, tried.holdout.sides
     alone = tried.noise_alone(tried.holdout)
     floor = f"noise alone: {error_words(alone, sides.unit)}; " if tried.explained else ""
+    headline = "No effect of the library explains these drives."
     text = (
-        f"No effect of the library explains these drives. Their {cell.channel} error goes with "
-        f"{cell.name}, and a {draft.form} in it explains them best among the simple laws. With it, "
-        f"the error of the held-out drives is {error_words(sides.after, sides.unit)} where it was "
-        f"{error_words(sides.before, sides.unit)} ({floor}rms over "
-        f"legs of {tried.holdout.after.leg:g} m). Why it is so, the data cannot know: read the "
-        "law, find the physics, give it its name."
+        f"Their {cell.channel} error goes with {cell.name}, and a {draft.form} in it explains them "
+        f"best among the simple laws. With it, the error of the held-out drives is "
+        f"{error_words(sides.after, sides.unit)} where it was "
+        f"{error_words(sides.before, sides.unit)} ({floor}rms over legs of "
+        f"{tried.holdout.after.leg:g} m). Why it is so, the data cannot know: read the law, find "
+        "the physics, give it its name."
     )
     law = draft.source.partition("\n\n\n")[2].rstrip()
-    return [Paragraph(text), Paragraph(law, "code", apart=True)]
+    return [Paragraph(headline), Paragraph(text), Paragraph(law, "code", apart=True)]
 
 
 def draft_document(draft: Draft, tried: Added) -> Document:
