@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from werrimbi_odom.cli import calibrate_noise
+from werrimbi_odom.cli.calibrate import KINDS
 from werrimbi_odom.cli.main import main
 
 
@@ -54,7 +54,7 @@ def test_a_package_that_is_not_installed_is_named(
     def without_scipy(arguments: object) -> int:
         raise ModuleNotFoundError("No module named 'scipy'", name="scipy")
 
-    monkeypatch.setattr(calibrate_noise, "run", without_scipy)
+    monkeypatch.setitem(KINDS, "noise", (*KINDS["noise"][:2], without_scipy))
     words = ["calibrate", "noise", "r.csv", "--distance", "1", "--robot", "r", "--out", "n"]
     assert main(words) == 2
     assert "needs the Python package scipy" in capsys.readouterr().err

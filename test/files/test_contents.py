@@ -9,7 +9,8 @@ from typing import Any
 
 import pytest
 
-from werrimbi_odom.files.contents import contents_of
+from werrimbi_odom.files.bag import opened_bag
+from werrimbi_odom.files.contents import Contents, contents_of
 from werrimbi_odom.files.made_from_wheels import why_from_wheels
 
 MS = 10**6
@@ -33,8 +34,13 @@ def localised(ros: Any, corrections: tuple[float, ...]) -> list[Any]:
     return entries
 
 
+def contents(path: Path) -> Contents:
+    with opened_bag(path) as bag:
+        return contents_of(bag)
+
+
 def test_what_measures_and_what_comes_from_the_wheels(tmp_path: Path, ros: Any) -> None:
-    held = contents_of(ros.write(tmp_path / "bag", localised(ros, (0.0, 0.01, 0.03))))
+    held = contents(ros.write(tmp_path / "bag", localised(ros, (0.0, 0.01, 0.03))))
     assert [(each.name, each.gives, each.joints) for each in held.wheels] == [
         ("/joint_states", "positions", tuple(WHEELS)),
         ("/odom", "odometry", ()),
@@ -49,7 +55,7 @@ def test_what_measures_and_what_comes_from_the_wheels(tmp_path: Path, ros: Any) 
 
 
 def test_a_map_that_never_corrects_leaves_the_odometry(tmp_path: Path, ros: Any) -> None:
-    held = contents_of(ros.write(tmp_path / "bag", localised(ros, (0.5, 0.5, 0.5))))
+    held = contents(ros.write(tmp_path / "bag", localised(ros, (0.5, 0.5, 0.5))))
     assert [each.name for each in held.independent] == ["/imu"]
     on_map = next(each for each in held.references if each.name == "/tf:map:base_link")
     assert on_map.why.endswith("and map -> odom never changes")
@@ -58,7 +64,7 @@ def test_a_map_that_never_corrects_leaves_the_odometry(tmp_path: Path, ros: Any)
 def test_speeds_alone_are_told_from_angles(tmp_path: Path, ros: Any) -> None:
     kind, message = ros.joints(1 * MS, WHEELS, [0.0, 0.0])
     message.velocity, message.position = message.position, message.velocity
-    held = contents_of(ros.write(tmp_path / "bag", [("/joint_states", 1, (kind, message))]))
+    held = contents(ros.write(tmp_path / "bag", [("/joint_states", 1, (kind, message))]))
     assert held.wheels[0].gives == "velocities"
 
 

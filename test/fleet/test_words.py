@@ -11,11 +11,12 @@ from typing import Any
 import pytest
 
 from test.report.browser import visit
-from werrimbi_odom.report.fleet.page import fleet_figure, write_fleet_page
+from werrimbi_odom.report.fleet.document import fleet_figure, write_fleet_page
 from werrimbi_odom.report.fleet.rows import Fleet, Row, fleet_json
 from werrimbi_odom.report.fleet.tables import cells, fleet_table
 from werrimbi_odom.report.fleet.words import headline, words_of
 from werrimbi_odom.report.save import find_browser
+from werrimbi_odom.report.terminal import as_text
 
 PAGE = Path(__file__).parents[2] / "docs" / "fleet.md"
 
@@ -82,7 +83,7 @@ def test_the_page_of_the_docs_shows_what_is_printed() -> None:
     )
     fleet = Fleet(rows, (), frozenset(each.robot for each in rows))
     shown = PAGE.read_text(encoding="utf-8")
-    assert words_of(fleet) in shown
+    assert as_text(words_of(fleet)) in shown
     assert fleet_table(fleet) in shown
 
 
@@ -134,15 +135,15 @@ def test_a_value_that_one_robot_has_anew_in_each_drive_is_not_compared() -> None
     shared = {"wheel": {"phase": fitted(0.3, 0.01, "rad")}}
     anew = {"wheel": {"phase": fitted(None, None, "rad", per_run=True)}}
     rows = [row(name, "named", 0.004, 0.002, found=shared) for name in "ab"]
-    assert "Fitted phase: 0.3 rad." in words_of(Fleet(tuple(rows)))
+    assert "Fitted phase: 0.3 rad." in as_text(words_of(Fleet(tuple(rows))))
     rows.append(row("c", "named", 0.004, 0.002, found=anew))
-    said = words_of(Fleet(tuple(rows)))
+    said = as_text(words_of(Fleet(tuple(rows))))
     assert "wheel is missing in 3 of 3" in said
     assert "Fitted" not in said
 
 
 def test_what_few_robots_share_is_said_of_none() -> None:
-    said = words_of(ALL)
+    said = as_text(words_of(ALL))
     assert "a matter of their design" not in said
     assert "Missing in one robot alone" in said
     assert "- robot_8 could not be diagnosed: robot_8/<train>: no ticks" in said
@@ -154,7 +155,7 @@ def test_hundreds_of_different_troubles_stay_readable() -> None:
         for number in range(40)
     ]
     bad = [Row(f"b_{number}", 1, None, "broken") for number in range(40)]
-    said = words_of(Fleet((*named, *bad), tuple(f"l_{number}" for number in range(40))))
+    said = as_text(words_of(Fleet((*named, *bad), tuple(f"l_{number}" for number in range(40)))))
     assert "34 miss something else" in said
     assert "and 30 more; --json has the reason" in said
     assert "40 of 120 are left, l_0, " in said

@@ -21,6 +21,7 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.words import json_of, words_of
 from werrimbi_odom.report.diagnosis.words import NextSteps
 from werrimbi_odom.report.diagnosis.words import words_of as diagnosis_words
+from werrimbi_odom.report.terminal import as_text
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 
@@ -51,7 +52,7 @@ def test_the_held_out_error_falls_to_the_noise(creep: Added) -> None:
 def test_noise_is_what_remains_only_where_compare_says_so_too(creep: Added) -> None:
     """As where all legs together are as promised, and the spins among them are not."""
     assert creep.verdict.good
-    assert "What remains is noise" in words_of(creep)
+    assert "What remains is noise" in as_text(words_of(creep))
     main = creep.compared.main
     few = replace(main.by_motion["arc"].figures, count=3, nees=30.0)
     spins = {**main.by_motion, "spin": replace(main.by_motion["spin"], figures=few)}
@@ -60,13 +61,13 @@ def test_noise_is_what_remains_only_where_compare_says_so_too(creep: Added) -> N
     )
     found = replace(creep, compared=replace(creep.compared, lengths=lengths))
     assert found.covariance == creep.covariance == "honest"
-    words = " ".join(words_of(found).split())
+    words = " ".join(as_text(words_of(found)).split())
     assert "What remains is noise" not in words
     assert "The model's errors are larger than it promises in spins." in words
 
 
 def test_words_and_json_tell_the_same(creep: Added) -> None:
-    words, figures = words_of(creep), json_of(creep)
+    words, figures = as_text(words_of(creep)), json_of(creep)
     assert max(map(len, words.splitlines())) <= 80
     assert f"{1e3 * figures['holdout']['after']:.2f} mm" in words
     assert figures["parameters"]["creep"]["unit"] == "s"
@@ -86,7 +87,7 @@ def test_a_held_out_error_that_rises_by_chance_refuses_no_effect_that_the_others
     sides = found.holdout.sides
     assert sides.after > sides.before
     assert found.objection is None
-    assert "higher, which is chance" in " ".join(words_of(found).split())
+    assert "higher, which is chance" in " ".join(as_text(words_of(found)).split())
 
 
 def test_a_held_out_error_that_rises_beyond_chance_refuses_what_the_others_show() -> None:
@@ -102,7 +103,7 @@ def test_a_held_out_error_that_rises_beyond_chance_refuses_what_the_others_show(
     named = diagnose(fitted, PLAIN, [find("lateral_slip")], holdout=held)
     assert named.holdout.rose
     assert "chance does not raise it so" in " ".join(
-        diagnosis_words(Told(named, None, ()), NextSteps()).split()
+        as_text(diagnosis_words(Told(named, None, ()), NextSteps())).split()
     )
 
 
@@ -161,7 +162,7 @@ def test_a_size_that_is_off_is_moved_alone_and_told_as_one_measures_it() -> None
     assert found.robot.wheel_separation_multiplier == 1.0
     assert found.robot.left_wheel_radius_multiplier == 1.0
     assert found.robot.right_wheel_radius_multiplier == pytest.approx(1.03, abs=1e-3)
-    words = " ".join(words_of(found).split())
+    words = " ".join(as_text(words_of(found)).split())
     assert re.search(
         r"left wheel right as it is, right wheel (2\.99|3\.0)\S* ± \S+ % larger", words
     )
@@ -178,7 +179,7 @@ def test_noise_alone_is_not_known_while_something_is_missing(creep: Added) -> No
     assert not found.explained
     assert np.isnan(json_of(found)["holdout"]["noise_alone"])
     assert not json_of(found)["noise"]["written"]
-    assert "noise alone" not in words_of(found).split("Position error")[1].split("\n\n")[0]
+    assert "noise alone" not in as_text(words_of(found)).split("Position error")[1].split("\n\n")[0]
     assert found.robot.left_wheel_noise == PLAIN.left_wheel_noise
 
 
@@ -219,7 +220,7 @@ def test_headings_alone_are_judged_by_headings_beside_the_gyros_drift() -> None:
     assert found.parameters["multiplier"].value == pytest.approx(1.02, abs=1e-3)
     assert found.holdout.unit == "rad"
     assert found.holdout.sides.after < 0.7 * found.holdout.sides.before
-    words, figures = words_of(found), json_of(found)
+    words, figures = as_text(words_of(found)), json_of(found)
     assert "nan" not in words
     assert "°" in words.splitlines()[0]
     assert figures["holdout"]["rmse_yaw_rad"]["after"] == found.holdout.sides.after

@@ -21,6 +21,7 @@ from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.comparison.as_json import json_of
 from werrimbi_odom.report.comparison.words import words_of
+from werrimbi_odom.report.terminal import as_text
 
 TRUE = WhiteNoiseRobot(left_noise=5e-4, right_noise=5e-4)
 RIGHT = Robot(
@@ -68,7 +69,7 @@ def without(run: Run, *names: str) -> Run:
 
 
 def flat(comparison: Comparison) -> str:
-    return " ".join(words_of(comparison).split())
+    return " ".join(as_text(words_of(comparison)).split())
 
 
 def test_a_true_model_is_called_good_and_its_covariance_honest(runs: tuple[Run, ...]) -> None:

@@ -24,9 +24,10 @@ from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.inference.set_up.robot import mount_of
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.report.diagnosis.page import diagnosis_page
+from werrimbi_odom.report.diagnosis.document import document_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.save import save_report
+from werrimbi_odom.report.terminal import as_text
 
 OWN = '''
 import math
@@ -94,9 +95,11 @@ def test_a_users_effect_brings_its_twin_and_its_sketch(
     assert (proposed.name, proposed.do) == ("plumb_line", "hang a plumb line from the mast's top")
 
     told = Told(found, proposed, ())
-    assert "are one and the same, on any drive" in " ".join(words_of(told, NextSteps()).split())
+    assert "are one and the same, on any drive" in " ".join(
+        as_text(words_of(told, NextSteps())).split()
+    )
     page = tmp_path / "page.html"
-    save_report(diagnosis_page(told), page)
+    save_report(document_of(told), page)
     shown = page.read_text(encoding="utf-8")
     assert "the mast leans, and the robot seems to crab</text>" in shown
     assert "hang a plumb line" in shown

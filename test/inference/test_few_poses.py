@@ -25,6 +25,7 @@ from werrimbi_odom.report.adding.words import words_of as words_of_added
 from werrimbi_odom.report.diagnosis.as_json import json_of
 from werrimbi_odom.report.diagnosis.tables import tables_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.terminal import as_text
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 KICKING = find("castor_kick").using(angle=0.0, alternating=0.008, length=0.04)
@@ -77,12 +78,12 @@ def kick(runs: list[Run]) -> Added:
 def test_a_length_that_they_do_not_hold_is_no_number(first: Diagnosis, kick: Added) -> None:
     """It was printed and written as 0.15 m ± 1e+06 m."""
     found = replace(first, found=("castor_kick",), rivals=())
-    assert "castor_kick.length not determined" in " ".join(tables_of(found).split())
+    assert "castor_kick.length not determined" in " ".join(as_text(tables_of(found)).split())
     parameters = json_of(found, None)["found"][0]["parameters"]
     assert parameters["length"]["value"] is parameters["length"]["std"] is None
     assert kick.parameters["length"].value is None
     assert kick.robot.effects[0].values["length"] == find("castor_kick").nulls["length"]
-    assert "length = not determined by these drives, left at 40 mm" in words_of_added(kick)
+    assert "length = not determined by these drives, left at 40 mm" in as_text(words_of_added(kick))
     figures = json_of_added(kick)["parameters"]["length"]
     assert figures["value"] is figures["std"] is None
 
@@ -96,7 +97,7 @@ def test_rivals_are_not_forgotten_when_one_of_them_is_added(
     assert later.verdict == "none"
     others = later.rivals_of_held[first.rivals[0]]
     assert set(first.rivals[1:]) <= set(others)
-    words = " ".join(words_of(Told(later, None, ()), NextSteps()).split())
+    words = " ".join(as_text(words_of(Told(later, None, ()), NextSteps())).split())
     held = f"that it is {first.rivals[0]}, which the robot file holds, these drives do not show"
     assert held in words
     assert all(name in words for name in others)
@@ -123,7 +124,7 @@ def test_whatever_a_reference_says_no_number_is_beyond_sense(seed: int) -> None:
         seen = replace(run.reference, x=x, y=y, yaw=random.uniform(-3.0, 3.0, 2))
         runs.append(replace(run, reference=seen))
     found = diagnose(runs[:4], PLAIN, LIBRARY, holdout=runs[4:])
-    said = words_of(Told(found, None, ()), NextSteps()) + tables_of(found)
+    said = as_text(words_of(Told(found, None, ()), NextSteps())) + as_text(tables_of(found))
     assert "nan" not in said.lower()
     assert not re.search(r"± \d(\.\d+)?e\+", said)
     for item in json_of(found, None)["found"]:

@@ -27,6 +27,7 @@ from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.words import words_of as words_of_added
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.terminal import as_text
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 
@@ -76,7 +77,7 @@ def test_a_wrong_wheel_and_a_late_clock_come_to_rest_at_the_truth(wheel_and_cloc
 
 def test_a_wrong_wheel_is_told_as_one_thing_with_one_command(wheel_and_clock: Loop) -> None:
     told = Told(wheel_and_clock.first, None, ())
-    words = " ".join(words_of(told, NextSteps()).split())
+    words = " ".join(as_text(words_of(told, NextSteps())).split())
     assert "Two things are missing" in words
     assert "the size of the right wheel (" in words
     assert re.search(r"right wheel (2\.99|3\.0)\S* ± \S+ % larger \(radius 51\.", words)
@@ -113,7 +114,7 @@ def test_what_does_not_earn_its_place_is_refused_by_name() -> None:
     assert found.name == "lateral_slip,left_backlash"
     lines = [
         line.split()[0]
-        for line in words_of_added(found).split("Position error")[1].split("\n")[2:6]
+        for line in as_text(words_of_added(found)).split("Position error")[1].split("\n")[2:6]
     ]
     assert lines == ["held-out", "without", "without", "fitted"], "whose errors they are"
     assert set(found.parameters) == {"lateral_slip.creep", "left_backlash.travel"}
@@ -160,7 +161,7 @@ def test_the_rest_of_a_law_that_the_file_holds_is_no_other_effect() -> None:
     assert found.misfit is not None
     assert found.misfit.effect == "soft_tyres"
     assert "the law of soft_tyres does not fit fully" in " ".join(
-        words_of(Told(found, None, ()), NextSteps()).split()
+        as_text(words_of(Told(found, None, ()), NextSteps())).split()
     )
 
 

@@ -98,7 +98,7 @@ def test_every_verb_gives_the_same_figures(case: str) -> None:
     of_compare = [figures(each.main.all.figures) for each in compared]
     added = add_effect(find("track_width"), train, robot, kind, holdout=held)
     diagnosis = diagnose(train, robot, (), kind, holdout=held)
-    given = Recordings(ANY_FILE, all_effects(), tuple(train), tuple(held), How(kind), robot)
+    given = Recordings(ANY_FILE, all_effects(), tuple(train), tuple(held), How(kind=kind), robot)
     look = opened(given).look(robot)
     for other in (
         [figures(side.figures("before")) for side in (added.train, added.holdout)],

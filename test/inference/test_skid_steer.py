@@ -18,6 +18,7 @@ from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.as_json import json_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.terminal import as_text
 from werrimbi_odom.simulation import TrueRobot, free, record
 from werrimbi_odom.simulation.hidden.skid import LENGTH, SkidSteer
 
@@ -49,7 +50,7 @@ def diagnosed(robot: Robot, *, headings_alone: bool = False) -> Diagnosis:
 
 
 def said(diagnosis: Diagnosis) -> str:
-    return " ".join(words_of(Told(diagnosis, None, ()), NextSteps()).split())
+    return " ".join(as_text(words_of(Told(diagnosis, None, ()), NextSteps())).split())
 
 
 def test_it_is_named_with_its_numbers_and_no_mistake_is_told() -> None:

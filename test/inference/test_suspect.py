@@ -19,7 +19,7 @@ from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.judged_legs import prepare
 from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.suspect import remark_words, remarks_json
+from werrimbi_odom.report.phrases import remark_words, remarks_json
 from werrimbi_odom.simulation import Peculiarity, TrueRobot, free, hide, record, start_stop
 
 ROBOT = Robot(0.35, 0.05, 2000.0, 2000.0)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 
 from test.recorded_robots import converters
 from test.recorded_robots.runs import Drive, Read
@@ -101,6 +102,19 @@ _UPENN = (
     "wheels of 254 mm, sides 393.7 mm apart (the middle of 476.25 and 311.15)",
 )
 
+_KHEPERA = partial(
+    Robot,
+    source=CALIBRATION,
+    remarks=("Khepera III with a laser range finder, nominal values",),
+    separation=0.09,
+    radius=0.021,
+    counts=1000000.0,
+)
+_TURTLEBOT = partial(
+    Robot, source=WHEEL_SLIP, separation=0.23, radius=0.035, counts=2578.33, bits=16
+)
+_SKID = partial(Robot, source=LIDAR_SLAM, separation=0.3937, radius=0.127, counts=720.0)
+
 ROBOTS = (
     Robot(
         folder="optitrack_robot",
@@ -111,22 +125,12 @@ ROBOTS = (
         counts=2796.8,
         drives=lambda read: converters.optitrack(read, OPTITRACK_DRIVES),
     ),
-    Robot(
+    _KHEPERA(
         folder="khepera_laser_to_the_side",
-        source=CALIBRATION,
-        remarks=("Khepera III with a laser range finder, nominal values",),
-        separation=0.09,
-        radius=0.021,
-        counts=1000000.0,
         drives=lambda read: converters.khepera(read, "l90"),
     ),
-    Robot(
+    _KHEPERA(
         folder="khepera_laser_moved",
-        source=CALIBRATION,
-        remarks=("Khepera III with a laser range finder, nominal values",),
-        separation=0.09,
-        radius=0.021,
-        counts=1000000.0,
         drives=lambda read: converters.khepera(read, "lmov"),
     ),
     Robot(
@@ -138,44 +142,26 @@ ROBOTS = (
         counts=1000000.0,
         drives=converters.labyrinth,
     ),
-    Robot(
+    _TURTLEBOT(
         folder="kobuki_sound",
-        source=WHEEL_SLIP,
         remarks=("TurtleBot 2 (Kobuki), no fault", *_KOBUKI),
-        separation=0.23,
-        radius=0.035,
-        counts=2578.33,
-        bits=16,
         drives=lambda read: converters.kobuki(read, "nonfaulty", -0.0099494785, (1576, 2377)),
     ),
-    Robot(
+    _TURTLEBOT(
         folder="kobuki_left_taped",
-        source=WHEEL_SLIP,
         remarks=("TurtleBot 2 (Kobuki), a quarter turn of the left tread under tape", *_KOBUKI),
-        separation=0.23,
-        radius=0.035,
-        counts=2578.33,
-        bits=16,
         drives=lambda read: converters.kobuki(
             read, "left_faulty", -0.0101677647, (1180, 1746, 2286, 2802)
         ),
     ),
-    Robot(
+    _SKID(
         folder="upenn_skid_gyro",
-        source=LIDAR_SLAM,
         remarks=(*_UPENN, "heading: gyro, bias at rest taken off"),
-        separation=0.3937,
-        radius=0.127,
-        counts=720.0,
         drives=lambda read: converters.upenn_gyro(read, {20: 0.00043005557, 21: 0.00026089755}),
     ),
-    Robot(
+    _SKID(
         folder="upenn_skid_icp",
-        source=LIDAR_SLAM,
         remarks=(*_UPENN, "a student's scan matcher, of the robot's middle: judge as incremental"),
-        separation=0.3937,
-        radius=0.127,
-        counts=720.0,
         drives=lambda read: converters.upenn_icp(read, {20: 0.008702, 21: 0.025194}),
     ),
 )

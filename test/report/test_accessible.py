@@ -16,11 +16,12 @@ from werrimbi_odom.inference.adding.adding import Added
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.manoeuvres.told import Told
-from werrimbi_odom.report.adding.page import adding_page
+from werrimbi_odom.report.adding.document import document_of as document_of_added
+from werrimbi_odom.report.calibration.document import calibration_document
 from werrimbi_odom.report.calibration.figures import leg_figure
-from werrimbi_odom.report.calibration.page import calibration_page
-from werrimbi_odom.report.comparison.page import compare_page
-from werrimbi_odom.report.diagnosis.page import diagnosis_page
+from werrimbi_odom.report.comparison.document import document_of as document_of_comparison
+from werrimbi_odom.report.diagnosis.document import document_of as document_of_diagnosis
+from werrimbi_odom.report.document import Paragraph, Table
 from werrimbi_odom.report.page import write_page
 from werrimbi_odom.report.save import save_report
 
@@ -37,14 +38,16 @@ def pages(
 ) -> dict[str, Path]:
     folder = tmp_path_factory.mktemp("pages")
     found = {name: folder / f"{name}.html" for name in ("compare", "diagnose", "add", "fit")}
-    save_report(compare_page(comparison), found["compare"])
-    save_report(diagnosis_page(Told(diagnosis, None, ())), found["diagnose"])
-    save_report(adding_page(added), found["add"])
+    save_report(document_of_comparison(comparison), found["compare"])
+    save_report(document_of_diagnosis(Told(diagnosis, None, ())), found["diagnose"])
+    save_report(document_of_added(added), found["add"])
     errors = np.random.default_rng(1).normal(0.0, 0.01, (3000, 2))
     figure = leg_figure(errors, 0.5 * errors)
     numbers = {"wheel_separation_multiplier": (1.0, 1.01)}
-    words = "All is well.\n\nFound\n  parameter  before  after\n  k          1       1.01"
-    write_page(calibration_page("Fit", words, "Legs", "See.", figure, numbers, {}), found["fit"])
+    table = Table("Found", ["parameter", "before", "after"], [["k", "1", "1.01"]])
+    words = [Paragraph("All is well."), table]
+    fit = calibration_document("Fit", words, "Legs", "See.", lambda: figure, numbers)
+    write_page(fit, found["fit"])
     return found
 
 

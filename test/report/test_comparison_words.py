@@ -51,7 +51,13 @@ def verdict(random: np.random.Generator, lengths: tuple[AtLength, ...]) -> Verdi
     judged_at = float(random.choice([item.leg for item in lengths]))
     off = ("line",) if random.random() < 0.2 else ()
     return Verdict(
-        True, mean, (), (), noise, factor, judged_at, False, 0.0, (), off, told(lengths), ()
+        enough=True,
+        systematic=mean,
+        noise=noise,
+        factor=factor,
+        judged_at=judged_at,
+        off=off,
+        lengths=told(lengths),
     )
 
 

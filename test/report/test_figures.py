@@ -24,6 +24,7 @@ from werrimbi_odom.inference.diagnosis.response import before_after, parts_of, r
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.model.declared import DRAWINGS
 from werrimbi_odom.model.effect import Sketch
+from werrimbi_odom.report import sketches
 from werrimbi_odom.report.adding.figures import error_falling_figure, steps_of
 from werrimbi_odom.report.calibration.figures import leg_figure
 from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
@@ -36,8 +37,7 @@ from werrimbi_odom.report.over_variable import (
     error_against_figure,
     variables_of,
 )
-from werrimbi_odom.report.sketches import library as sketches
-from werrimbi_odom.report.sketches.library import effect_sketch
+from werrimbi_odom.report.sketches import effect_sketch
 from werrimbi_odom.report.style import FEWEST, MARKS, MOST, along_path
 
 RELATIVE = 1e3 * AMPLITUDE / PLAIN.wheel_radius

@@ -1,60 +1,87 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Printed text on a page, and files that cannot be made."""
+"""Parts of a document as text and on a page, and files that cannot be made."""
 
 from __future__ import annotations
 
-import textwrap
+from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.report import save
-from werrimbi_odom.report.page import Page, Shown, page_html
+from werrimbi_odom.report.document import Document, Paragraph, Shown, Table, paragraphs
+from werrimbi_odom.report.page import as_html, page_html
 from werrimbi_odom.report.save import save_report
-from werrimbi_odom.report.text import paragraphs, table, tables, unwrapped
-
-LONG = "One sentence that is longer than a line of eighty columns can hold, so it is wrapped."
+from werrimbi_odom.report.terminal import as_text
 
 
-def test_wrapped_sentences_are_unwrapped_and_kept_apart() -> None:
-    text = "\n".join([textwrap.fill(LONG, 80), textwrap.fill(LONG, 80), "- a point", "Next: this."])
-    assert unwrapped(text) == [LONG, LONG, "- a point", "Next: this."]
+def document(shown: Sequence[Shown]) -> Document:
+    return Document(title="T", words=[Paragraph("W")], draw=lambda: shown)
+
+
+def test_paragraphs_stay_apart_however_long_their_lines_are() -> None:
+    """A line that is full to the last column was once taken to go on in the next paragraph."""
+    sure = Paragraph("How sure: " + "s" * 60 + ".", hanging=True)
+    costs = Paragraph("What-it-costs: little.", hanging=True)
+    assert as_text([sure, costs]) == f"{sure.text}\n{costs.text}"
+    assert as_html([sure, costs]) == f"<p>{sure.text}</p>\n<p>{costs.text}</p>"
 
 
 def test_commands_stay_as_they_are() -> None:
-    text = "Next: add it:\n    werrimbi add x \\\n      train/* \\\n      --out NEW.yaml"
-    assert unwrapped(text)[1].splitlines() == text.splitlines()[1:]
-    assert "<pre>werrimbi add x \\\n  train/* \\\n  --out NEW.yaml</pre>" in paragraphs(text)
+    text = "    werrimbi add x \\\n      train/* \\\n      --out NEW.yaml"
+    parts = paragraphs(["Next: add it:", text])
+    assert as_text(parts) == f"Next: add it:\n{text}"
+    assert "<pre>werrimbi add x \\\n  train/* \\\n  --out NEW.yaml</pre>" in as_html(parts)
 
 
 def test_points_are_a_list_and_names_are_no_html() -> None:
-    found = paragraphs("Head <b>.\n- one\n- two `cmd`\nEnd.")
+    words = paragraphs(["Head <b>.", "- one", "", "- two `cmd`", "End."])
+    found = page_html(Document(title="T", words=words))
     assert '<p class="headline">Head &lt;b&gt;.</p>' in found
     assert "<ul><li>one</li><li>two <code>cmd</code></li></ul>" in found
 
 
-def test_a_printed_table_is_a_table_though_cells_are_empty() -> None:
-    printed = table("Title", ("effect", "chance", "with it"), [["a", "", "2 mm"], ["b", "1", ""]])
-    found = tables(printed)
+def test_a_table_is_a_table_though_cells_are_empty() -> None:
+    rows = [["a", "", "2 mm"], ["b", "1", ""]]
+    table = Table("Title", ("effect", "chance", "with it"), rows, rest="and 1 more")
+    found = as_html([table])
     assert "<caption><span>Title</span></caption>" in found
     assert '<th scope="col">with it</th>' in found
     assert '<tr><th scope="row">a</th><td></td><td>2 mm</td></tr>' in found
+    assert as_text([Paragraph("Above."), table, Paragraph("Below.")]).splitlines() == [
+        "Above.",
+        "",
+        "Title",
+        "  effect  chance  with it",
+        "  a                  2 mm",
+        "  b            1",
+        "  and 1 more",
+        "",
+        "Below.",
+    ]
+
+
+def test_names_and_their_words_have_no_heads() -> None:
+    long = " ".join(["words"] * 20)
+    found = as_html([Table("Title", (), [["name", long]])])
+    assert "<thead>" not in found
+    assert f'<th scope="row">name</th><td class="words">{long}</td>' in found
 
 
 def test_no_text_of_a_page_ends_its_script() -> None:
     import plotly.graph_objects as go
 
     figure = go.Figure().add_scatter(x=[1], y=[1], name="</script><script>alert(1)</script>")
-    text = page_html(Page("T", "W", [Shown("a", "A", "See.", {"": figure})]))
+    text = page_html(document([Shown("a", "A", "See.", {"": figure})]))
     assert "alert(1)</script>" not in text
     assert 'http-equiv="Content-Security-Policy"' in text
 
 
 def test_another_ending_is_refused(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"ends in \.html, \.pdf or \.png"):
-        save_report(Page("T", "W", []), tmp_path / "page.docx")
+        save_report(document([]), tmp_path / "page.docx")
 
 
 def test_pictures_without_a_browser_say_what_to_install(
@@ -63,7 +90,7 @@ def test_pictures_without_a_browser_say_what_to_install(
     import plotly.graph_objects as go
 
     monkeypatch.setattr(save, "find_browser", lambda: None)
-    page = Page("T", "W", [Shown("a", "A", "See.", {"": go.Figure()})])
+    page = document([Shown("a", "A", "See.", {"": go.Figure()})])
     with pytest.raises(InputError, match=r"apt install chromium.*\.html needs none"):
         save_report(page, tmp_path / "page.pdf")
     assert not list(tmp_path.iterdir())
@@ -81,7 +108,7 @@ def test_pictures_for_a_paper_are_a_file_a_figure(tmp_path: Path, kind: str) -> 
         Shown("two", "Two", "", {"": figure}),
         Shown("side", "Not for a paper", "", {"": figure}, main=False),
     ]
-    files = save_report(Page("T", "W", shown), tmp_path / f"page.{kind}")
+    files = save_report(document(shown), tmp_path / f"page.{kind}")
     assert [file.name for file in files] == [f"page.{kind}", f"page-two.{kind}"]
     head = {"pdf": b"%PDF-", "png": b"\x89PNG"}[kind]
     assert all(file.read_bytes().startswith(head) for file in files)

@@ -20,11 +20,12 @@ from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.manoeuvres.told import Told
-from werrimbi_odom.report.adding.page import adding_page
+from werrimbi_odom.report.adding.document import document_of as document_of_added
+from werrimbi_odom.report.calibration.document import calibration_document
 from werrimbi_odom.report.calibration.figures import leg_figure
-from werrimbi_odom.report.calibration.page import calibration_page
-from werrimbi_odom.report.comparison.page import compare_page as page_of_comparison
-from werrimbi_odom.report.diagnosis.page import diagnosis_page as page_of_diagnosis
+from werrimbi_odom.report.comparison.document import document_of as document_of_comparison
+from werrimbi_odom.report.diagnosis.document import document_of as document_of_diagnosis
+from werrimbi_odom.report.document import Paragraph
 from werrimbi_odom.report.page import write_page
 from werrimbi_odom.report.save import save_report
 
@@ -47,14 +48,14 @@ def assert_well_drawn(visit: Visit) -> None:
 @pytest.fixture(scope="module")
 def compare_page(comparison: Comparison, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("compare") / "page.html"
-    save_report(page_of_comparison(comparison), path)
+    save_report(document_of_comparison(comparison), path)
     return path
 
 
 @pytest.fixture(scope="module")
 def diagnosis_page(diagnosis: Diagnosis, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("diagnosis") / "page.html"
-    save_report(page_of_diagnosis(Told(diagnosis, None, ())), path)
+    save_report(document_of_diagnosis(Told(diagnosis, None, ())), path)
     return path
 
 
@@ -233,16 +234,16 @@ def test_the_evidence_map_is_there_and_a_click_opens_the_dependence(
 
 def test_the_effect_added_draws_itself(added: Added, tmp_path: Path, look: Look) -> None:
     page = tmp_path / "page.html"
-    save_report(adding_page(added), page)
+    save_report(document_of_added(added), page)
     visit = look(page, UNDRAWN, FIGURES, dark=True)
     assert_well_drawn(visit)
 
 
 def test_a_calibration_draws_itself(tmp_path: Path, look: Look) -> None:
     errors = np.random.default_rng(1).normal(0.0, 0.01, (50, 2))
-    page = calibration_page(
-        "Calibration", "All is well.", "Legs", "See.", leg_figure(errors, 0.5 * errors),
-        {"k": (1.0, 1.1)}, {},
+    page = calibration_document(
+        "Calibration", [Paragraph("All is well.")], "Legs", "See.",
+        lambda: leg_figure(errors, 0.5 * errors), {"k": (1.0, 1.1)},
     )  # fmt: skip
     write_page(page, tmp_path / "page.html")
     visit = look(tmp_path / "page.html", UNDRAWN, FIGURES, FIGURE_PAPER, dark=True)

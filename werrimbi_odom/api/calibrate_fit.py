@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from werrimbi_odom.inference.calibration.any_driving import Calibration
     from werrimbi_odom.inference.legs.cutting import MatchedRun
     from werrimbi_odom.inference.legs.gaps import LeftOut
+    from werrimbi_odom.report.document import Document
 
 
 def calibrate_fit(
@@ -53,11 +54,10 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     from werrimbi_odom.inference.calibration.any_driving import calibrate
     from werrimbi_odom.inference.legs.cutting import match_finely, stated
     from werrimbi_odom.inference.legs.no_driving import looked_at
+    from werrimbi_odom.report.calibration.document import calibration_document
     from werrimbi_odom.report.calibration.fit_words import fit_in_words
-    from werrimbi_odom.report.calibration.page import calibration_page
-    from werrimbi_odom.report.page import Page
+    from werrimbi_odom.report.document import paragraphs
     from werrimbi_odom.report.phrases import left_out_json, left_out_words
-    from werrimbi_odom.report.text import filled
 
     source, how = given.source, given.how
     given = replace(
@@ -75,30 +75,28 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     figures = _json(found)
     figures["left_out"] = left_out_json(left_out)
     figures["train"] = _judged(given.runs, given, found)
-    parts = [fit_in_words(found), *map(filled, left_out_words(left_out))]
+    said = left_out_words(left_out)
     if given.holdout:
         figures["holdout"] = _judged(given.holdout, given, found)
-        parts.append(_told(figures["holdout"]))
-    words = "\n\n".join(parts)
+        said.append(_told(figures["holdout"]))
+    words = [*fit_in_words(found), *paragraphs(said, apart=True)]
     changes = found.changes
 
-    def page() -> Page:
-        return calibration_page(
+    def document() -> Document:
+        return calibration_document(
             "Calibration by maximum likelihood",
             words,
             "Errors of short legs, before and after calibration",
             "Each mark is a short leg, seen by the robot: the error along, and to its left. After "
             "the calibration the cloud should be smaller and lie about the origin.",
-            _figure(runs, source, found),
+            lambda: _figure(runs, source, found),
             before_after(source, changes),
-            {},
         )
 
     return Result(
         found=found,
-        words=lambda: words,
+        document=document,
         figures_of_json=lambda: figures,
-        page=page,
         new_robot=NewRobot(source, changes),
     )
 

@@ -17,6 +17,7 @@ from werrimbi_odom.files.robot_file import RobotFile
 if TYPE_CHECKING:
     from werrimbi_odom.inference.calibration.out_and_back import NoiseEstimate, NoiseFit
     from werrimbi_odom.model.pose import Floats
+    from werrimbi_odom.report.document import Document
 
 COLUMNS = ("ex_m", "ey_m", "eyaw_rad")
 
@@ -50,10 +51,9 @@ def calibrate_noise(
     """
     from werrimbi_odom.inference.calibration.noise_likelihood import design
     from werrimbi_odom.inference.calibration.out_and_back import fit_noise, out_and_back
+    from werrimbi_odom.report.calibration.document import calibration_document
     from werrimbi_odom.report.calibration.figures import noise_figure
     from werrimbi_odom.report.calibration.noise_words import noise_in_words
-    from werrimbi_odom.report.calibration.page import calibration_page
-    from werrimbi_odom.report.page import Page
 
     track = robot.robot.track
     options = {
@@ -74,23 +74,21 @@ def calibrate_noise(
         "right_wheel_noise": float(f"{fit.right.value:.6g}"),
     }
 
-    def page() -> Page:
-        return calibration_page(
+    def document() -> Document:
+        return calibration_document(
             "Noise of the wheels from drives out and back",
             words,
             f"Noise of the wheels: {fit.runs} runs of {distance:g} m out and back",
             "Each mark is a drive out and back. The solid ellipse of the model should be as large "
             "and lie as the dashed one of the drives themselves.",
-            noise_figure(errors, fit.data, fit.model),
+            lambda: noise_figure(errors, fit.data, fit.model),
             before_after(robot, changes),
-            {},
         )
 
     return Result(
         found=fit,
-        words=lambda: words,
+        document=document,
         figures_of_json=lambda: _json(fit, distance),
-        page=page,
         new_robot=NewRobot(robot, changes),
     )
 

@@ -15,9 +15,12 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import RobotFile
 
 if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
     from werrimbi_odom.inference.calibration.squares import Squares
     from werrimbi_odom.inference.calibration.umbmark import Umbmark
     from werrimbi_odom.model.robot import Robot
+    from werrimbi_odom.report.document import Document
 
 
 @dataclass(frozen=True)
@@ -61,10 +64,10 @@ def calibrate_umbmark(
         When a table or drive cannot be used; the message says where.
     """
     from werrimbi_odom.inference.calibration.umbmark import corrected, recomputed, umbmark
+    from werrimbi_odom.report.calibration.document import calibration_document
     from werrimbi_odom.report.calibration.figures import OffsetCloud, umbmark_figure
-    from werrimbi_odom.report.calibration.page import calibration_page
     from werrimbi_odom.report.calibration.umbmark_words import found_in_words, gained_in_words
-    from werrimbi_odom.report.page import Page
+    from werrimbi_odom.report.document import paragraphs
 
     old = robot.robot
     read = _Reading(side, ticks_topic, reference_topic, show)
@@ -75,17 +78,21 @@ def calibrate_umbmark(
     later = _squares(driven_after, robot, new, read) if driven_after else None
     again = recomputed(squares, old, found.factors) if squares.driven_cw else None
     changes = {name: _rounded(each.value) for name, each in found.multipliers(old).items()}
-    words = "\n".join(read.notes) + "\n" if read.notes else ""
-    words += f"{found_in_words(squares, found, old)}\n\n"
-    words += gained_in_words(found, squares, later, again)
+    words = [
+        *paragraphs(read.notes),
+        *found_in_words(squares, found, old),
+        *gained_in_words(found, squares, later, again),
+    ]
 
-    def page() -> Page:
+    def figure() -> go.Figure:
         shown, name = (later, "after") if later else (again, "same runs, corrected")
-        figure = umbmark_figure(
+        return umbmark_figure(
             OffsetCloud("before", squares.cw, squares.ccw),
             OffsetCloud(name, shown.cw, shown.ccw) if shown else None,
         )
-        return calibration_page(
+
+    def document() -> Document:
+        return calibration_document(
             "UMBmark: base and radii from squares",
             words,
             f"UMBmark: squares of {squares.side:g} m",
@@ -93,14 +100,12 @@ def calibrate_umbmark(
             "calibration both clouds should lie about the origin; the circle is the larger offset.",
             figure,
             before_after(robot, changes),
-            {},
         )
 
     return Result(
         found=found,
-        words=lambda: words,
+        document=document,
         figures_of_json=lambda: _json(squares, found, old, later, again),
-        page=page,
         new_robot=NewRobot(robot, changes),
     )
 

@@ -90,8 +90,7 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
     from werrimbi_odom.inference.adding.adding import add_effects
     from werrimbi_odom.inference.adding.drafting import draft_effect
     from werrimbi_odom.inference.diagnosis.diagnosis import diagnose as search
-    from werrimbi_odom.report.adding.draft_words import draft_json, draft_words
-    from werrimbi_odom.report.adding.page import adding_page
+    from werrimbi_odom.report.adding.draft import draft_document, draft_json
 
     robot = given.robot
     diagnosis = search(
@@ -114,12 +113,10 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
         show=show,
         **given.judging,
     )
-    law = found.source.partition("\n\n\n")[2].rstrip()
     return Drafted(
         found=found,
-        words=lambda: f"{draft_words(found, tried)}\n\n{law}",
+        document=lambda: draft_document(found, tried),
         figures_of_json=lambda: draft_json(found, tried),
-        page=lambda: adding_page(tried, {}),
     )
 
 

@@ -120,13 +120,13 @@ def recordings_of(
             f"unknown option {unknown[0]}; there are {', '.join(Options.__annotations__)}"
         )
     how = How(
-        options.get("reference_kind"),
-        options.get("leg", 1.0),
-        options.get("reference_sigma_xy"),
-        options.get("reference_sigma_yaw"),
-        options.get("ticks_topic"),
-        options.get("reference_topic"),
-        tuple(Path(file) for file in options.get("effects", ())),
+        kind=options.get("reference_kind"),
+        leg=options.get("leg", 1.0),
+        sigma_xy=options.get("reference_sigma_xy"),
+        sigma_yaw=options.get("reference_sigma_yaw"),
+        ticks_topic=options.get("ticks_topic"),
+        reference_topic=options.get("reference_topic"),
+        effects=tuple(Path(file) for file in options.get("effects", ())),
         force=options.get("force_reference", False),
     )
     fitted, held = _several(runs), _several(holdout)

@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from werrimbi_odom.files.robot_file import RobotFile
     from werrimbi_odom.files.run import Run
     from werrimbi_odom.inference.recorded import Held, Info
-    from werrimbi_odom.report.page import Page
 
 DESCRIPTION = "/robot_description"
 
@@ -54,7 +53,7 @@ def info(
     InputError
         When a recording cannot be read at all, or a robot file cannot be written.
     """
-    from werrimbi_odom.report.info import info_json, info_words
+    from werrimbi_odom.report.info import document_of, info_json
 
     paths = [Path(each) for each in ([runs] if isinstance(runs, str | Path) else runs)]
     found = _look(paths, None if robot is None else Path(robot), ticks_topic, reference_topic)
@@ -62,17 +61,9 @@ def info(
         found = replace(found, written=_write(found, Path(out), force))
     return Result(
         found=found,
-        words=lambda: info_words(found),
+        document=lambda: document_of(found),
         figures_of_json=lambda: info_json(found),
-        page=lambda: _page(found),
     )
-
-
-def _page(found: Info) -> Page:
-    from werrimbi_odom.report.info import info_words
-    from werrimbi_odom.report.page import Page
-
-    return Page("What the recordings hold", info_words(found), ())
 
 
 def _look(
@@ -137,14 +128,14 @@ def _of_bag(
 ) -> tuple[Held, FirstRobot]:
     """What a bag holds, and what it says of the robot."""
     from werrimbi_odom.files.bag import opened_bag
-    from werrimbi_odom.files.contents import contents_of_bag
+    from werrimbi_odom.files.contents import contents_of
     from werrimbi_odom.files.first_robot import of_names, of_urdf, with_driver
     from werrimbi_odom.files.stamps import stamps_of
     from werrimbi_odom.inference.recorded import Held
 
     with opened_bag(bag) as opened:
         base = "" if source is None else str(source.values["base_frame_id"])
-        contents = contents_of_bag(opened, base)
+        contents = contents_of(opened, base)
         names = {each.name for each in contents.wheels}
         wheels = next(
             (

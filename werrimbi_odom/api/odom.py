@@ -79,8 +79,7 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     from werrimbi_odom.model.effect import view_of
     from werrimbi_odom.model.shown import shown
     from werrimbi_odom.report.reckoning import reckoning_of
-    from werrimbi_odom.report.reckoning_page import reckoning_page
-    from werrimbi_odom.report.text import pairs
+    from werrimbi_odom.report.reckoning_document import document_of
 
     recorded = run if isinstance(run, Run) else read_run(run, robot)
     complete, learnt = _usable(recorded, lambda: with_learnt_phases(recorded, robot))
@@ -90,9 +89,8 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     found = reckoning_of(recorded, start, driven, seen, learnt)
     return Reckoned(
         found=found,
-        words=lambda: pairs(f"{recorded.name}: wheel odometry of {robot.path}", list(found.rows())),
+        document=lambda: document_of(found, robot.path),
         figures_of_json=found.as_json,
-        page=lambda: reckoning_page(found),
     )
 
 
@@ -110,31 +108,18 @@ def _usable(recorded: Run, work: Callable[[], Found]) -> Found:
 def _reckoned(recorded: Run, robot_file: RobotFile, start: Pose) -> Trajectory:
     import numpy as np
 
-    from werrimbi_odom.model.trajectory import trajectory
+    from werrimbi_odom.files.start_pose import driven
 
-    ticks = recorded.ticks
-    driven = _usable(
-        recorded,
-        lambda: trajectory(
-            robot_file.robot,
-            ticks.time,
-            ticks.left,
-            ticks.right,
-            start=start,
-            tolerance=robot_file.tolerance,
-            limits=robot_file.limits,
-            channels=ticks.channels,
-        ),
-    )
-    for values in (driven.x, driven.y, driven.yaw, *driven.covariance):
+    found = _usable(recorded, lambda: driven(recorded, robot_file, start))
+    for values in (found.x, found.y, found.yaw, *found.covariance):
         wrong = np.flatnonzero(~np.isfinite(values))
         if wrong.size:
-            row = int(driven.row[wrong[0]]) + 1
+            row = int(found.row[wrong[0]]) + 1
             raise InputError(
                 f"{recorded.path}: the pose grows beyond all numbers at row {row} of the ticks; "
                 "are the counts, and wheel_radius, right?"
             )
-    return driven
+    return found
 
 
 def _write_rows(

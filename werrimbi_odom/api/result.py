@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from werrimbi_odom.files.robot_file import RobotFile
     from werrimbi_odom.model.effect import AppliedEffect
-    from werrimbi_odom.report.page import Page
+    from werrimbi_odom.report.document import Document
 
 Found = TypeVar("Found")
 
@@ -43,14 +43,15 @@ class Result(Generic[Found]):
     """
 
     found: Found
-    words: Callable[[], str] = field(compare=False)
+    document: Callable[[], Document] = field(compare=False)
     figures_of_json: Callable[[], dict[str, Any]] = field(compare=False)
-    page: Callable[[], Page] = field(compare=False)
     new_robot: NewRobot | None = None
 
     def summary(self) -> str:
         """The words and tables of the terminal."""
-        return self.words()
+        from werrimbi_odom.report.terminal import printed
+
+        return printed(self.document())
 
     def to_dict(self) -> dict[str, Any]:
         """What `--json` writes: numbers, words, lists, dictionaries; None: not known."""
@@ -64,7 +65,7 @@ class Result(Generic[Found]):
         """The figures of the report, by name; of several to choose from each by NAME: CHOICE."""
         return {
             f"{part.key}: {choice}" if choice and len(part.figures) > 1 else part.key: figure
-            for part in self.page().shown
+            for part in self.document().draw()
             for choice, figure in part.figures.items()
         }
 
@@ -85,7 +86,7 @@ class Result(Generic[Found]):
         """
         from werrimbi_odom.report.save import save_report
 
-        return save_report(replace(self.page(), made=made or {}), Path(path))
+        return save_report(replace(self.document(), made=made or {}), Path(path))
 
     def write_robot(self, path: str | Path, *, force: bool = False) -> RobotFile:
         """Write the robot file with what was found, comments and order kept.
@@ -114,5 +115,5 @@ class Result(Generic[Found]):
 
         from werrimbi_odom.report.page import page_html
 
-        page = escape(page_html(self.page()), quote=True)
+        page = escape(page_html(self.document()), quote=True)
         return f'<iframe srcdoc="{page}" width="100%" height="800" frameborder="0"></iframe>'

@@ -73,26 +73,16 @@ def compared(
     from werrimbi_odom.inference.comparison.compare import compare as judge
     from werrimbi_odom.inference.comparison.compare import judged
     from werrimbi_odom.report.comparison.as_json import json_of
-    from werrimbi_odom.report.comparison.page import compare_page
-    from werrimbi_odom.report.comparison.tables import tables_of
-    from werrimbi_odom.report.comparison.words import words_of
+    from werrimbi_odom.report.comparison.document import document_of
 
     if over is None:
         found = judge(given.runs, given.robot, **given.judging, show=show)
     else:
         found = judged(over, given.robot, show=show)
-    step = "`werrimbi diagnose`"
-
-    def words() -> str:
-        told = words_of(found, next_step=step)
-        following = [next_command(["diagnose"], given)] if step in told else []
-        return "\n".join([told, *following, "", tables_of(found)])
-
     return Result(
         found=found,
-        words=words,
+        document=lambda: document_of(found, next_command(["diagnose"], given)),
         figures_of_json=lambda: json_of(found),
-        page=lambda: compare_page(found, next_step=step, made={}),
     )
 
 
@@ -119,9 +109,8 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
     """`diagnose` for what was read already."""
     from werrimbi_odom.inference.manoeuvres.told import told_of
     from werrimbi_odom.report.diagnosis.as_json import json_of
-    from werrimbi_odom.report.diagnosis.page import diagnosis_page
-    from werrimbi_odom.report.diagnosis.tables import tables_of
-    from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+    from werrimbi_odom.report.diagnosis.document import document_of
+    from werrimbi_odom.report.diagnosis.words import NextSteps
 
     told = told_of(given, show)
 
@@ -134,9 +123,8 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
 
     return Result(
         found=told,
-        words=lambda: f"{words_of(told, steps())}\n\n{tables_of(told.diagnosis, told.sights)}",
+        document=lambda: document_of(told, steps()),
         figures_of_json=lambda: json_of(told.diagnosis, told.manoeuvre, told.sights),
-        page=lambda: diagnosis_page(told, steps(), {}),
     )
 
 
@@ -200,8 +188,8 @@ def effects_of(wanted: str | Effect | Sequence[str | Effect], given: Recordings)
 def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> Result[Added]:
     """`add` for what was read already, whatever speaks against it."""
     from werrimbi_odom.inference.adding.adding import add_effects
-    from werrimbi_odom.report.adding.page import adding_page
-    from werrimbi_odom.report.adding.words import json_of, words_of
+    from werrimbi_odom.report.adding.document import document_of
+    from werrimbi_odom.report.adding.words import json_of
 
     found = add_effects(
         effects,
@@ -213,9 +201,8 @@ def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> 
     )
     return Result(
         found=found,
-        words=lambda: words_of(found),
+        document=lambda: document_of(found),
         figures_of_json=lambda: json_of(found),
-        page=lambda: adding_page(found, {}),
         new_robot=NewRobot(given.source, found.changes, found.robot.effects),
     )
 

@@ -5,23 +5,23 @@
 from __future__ import annotations
 
 import argparse
-from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.cli.examples import Formatter, epilog_of
+from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings, remark
+from werrimbi_odom.cli.result_files import add_file_arguments, tell_written, write_asked
+
+if TYPE_CHECKING:
+    from werrimbi_odom.api.result import Result
 
 HELP = "better numbers for the robot file, with error bars"
-
-KINDS = {
-    "umbmark": "wheel base and radii from squares in both senses (the paper's section 3)",
-    "noise": "noise of the wheels from drives out and back (the paper's section 5.2)",
-    "fit": "all of them from any driving with a reference",
-}
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the three ways of calibrating and their options."""
     kinds = parser.add_subparsers(dest="kind", metavar="KIND", required=True)
-    for kind, says in KINDS.items():
+    for kind, (says, declare, _) in KINDS.items():
         below = kinds.add_parser(
             kind,
             help=says,
@@ -29,7 +29,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             epilog=epilog_of(f"calibrate {kind}"),
             formatter_class=Formatter,
         )
-        import_module(_module(kind)).add_arguments(below)
+        declare(below)
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -40,8 +40,142 @@ def run(arguments: argparse.Namespace) -> int:
     InputError
         When something given cannot be used.
     """
-    return int(import_module(_module(arguments.kind)).run(arguments))
+    _, _, calibrate = KINDS[arguments.kind]
+    result = calibrate(arguments)
+    print(result.summary())
+    tell_written(write_asked(arguments, result))
+    return 0
 
 
-def _module(kind: str) -> str:
-    return f"werrimbi_odom.cli.calibrate_{kind}"
+def _add_umbmark_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Drive squares from a mark on the floor, at least 2 (better 5) clockwise and as many "
+        "anticlockwise, all corners turned, the last one too. Measure where each ends, subtract "
+        "where the odometry says it ends (x along the first leg, y to its left, in metres), and "
+        "write a line for each: sense,x_m,y_m with sense cw or ccw. Or give recorded runs."
+    )
+    parser.add_argument(
+        "results",
+        metavar="RESULTS.csv|RUN",
+        nargs="+",
+        type=Path,
+        help="a table of offsets, or recorded runs of one square each, with a reference",
+    )
+    parser.add_argument(
+        "--side", metavar="D", type=float, required=True, help="side of the square [m]"
+    )
+    parser.add_argument(
+        "--after",
+        metavar="RESULTS2.csv|RUN",
+        nargs="+",
+        type=Path,
+        help="squares driven with the new robot file: says what the calibration gained",
+    )
+    parser.add_argument(
+        "--ticks-topic", metavar="T", help="topic of the ticks, in bags with several"
+    )
+    parser.add_argument(
+        "--reference-topic", metavar="T", help="topic of the reference, in bags with several"
+    )
+    add_file_arguments(parser)
+
+
+def _umbmark(arguments: argparse.Namespace) -> Result[Any]:
+    from werrimbi_odom.api.calibrate_umbmark import calibrate_umbmark
+    from werrimbi_odom.cli.progress import share_done
+    from werrimbi_odom.files.robot_file import read_robot_file
+
+    source = read_robot_file(arguments.robot)
+    remark(source)
+    with share_done("reading squares") as show:
+        return calibrate_umbmark(
+            source,
+            arguments.results,
+            arguments.side,
+            after=arguments.after or (),
+            ticks_topic=arguments.ticks_topic,
+            reference_topic=arguments.reference_topic,
+            show=show,
+        )
+
+
+def _add_noise_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Drive forwards by --distance and backwards to the mark, 30 times or more (the paper: 60 "
+        "times 10 m). After each run write a line ex_m,ey_m,eyaw_rad: measured minus odometry, x "
+        "along the way out, y to its left. Calibrate base and radii before."
+    )
+    parser.add_argument("results", metavar="RESULTS.csv", type=Path, help="a line for each run")
+    parser.add_argument(
+        "--distance", metavar="D", type=float, required=True, help="way out [m]; as long back"
+    )
+    parser.add_argument(
+        "--turn-round",
+        action="store_true",
+        help="the robot turned round at the far end and came back forwards, and turned again",
+    )
+    parser.add_argument(
+        "--reference-sigma-xy",
+        metavar="S",
+        type=float,
+        default=0.0,
+        help="standard deviation of each measured position, per coordinate [m] (default 0)",
+    )
+    parser.add_argument(
+        "--reference-sigma-yaw",
+        metavar="S",
+        type=float,
+        default=0.0,
+        help="standard deviation of each measured heading [rad] (default 0)",
+    )
+    add_file_arguments(parser)
+
+
+def _noise(arguments: argparse.Namespace) -> Result[Any]:
+    from werrimbi_odom.api.calibrate_noise import calibrate_noise
+    from werrimbi_odom.files.robot_file import read_robot_file
+
+    source = read_robot_file(arguments.robot)
+    remark(source)
+    return calibrate_noise(
+        source,
+        arguments.results,
+        arguments.distance,
+        turn_round=arguments.turn_round,
+        reference_sigma_xy=arguments.reference_sigma_xy,
+        reference_sigma_yaw=arguments.reference_sigma_yaw,
+    )
+
+
+def _add_fit_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.description = (
+        "Maximum likelihood of wheel separation, both radii and the noise of both wheels, from "
+        "recorded drives with a reference, several at once. What the driving does not determine is "
+        "left alone; when calibration is not what is missing, that is said."
+    )
+    add_recording_arguments(parser, holdout=True, force="overwrite --out if it exists")
+    parser.add_argument(
+        "--out", metavar="NEW", type=Path, required=True, help="robot file to write"
+    )
+
+
+def _fit(arguments: argparse.Namespace) -> Result[Any]:
+    from werrimbi_odom.api.calibrate_fit import calibrated
+
+    return calibrated(read_recordings(arguments))
+
+
+KINDS = {
+    "umbmark": (
+        "wheel base and radii from squares in both senses (the paper's section 3)",
+        _add_umbmark_arguments,
+        _umbmark,
+    ),
+    "noise": (
+        "noise of the wheels from drives out and back (the paper's section 5.2)",
+        _add_noise_arguments,
+        _noise,
+    ),
+    "fit": ("all of them from any driving with a reference", _add_fit_arguments, _fit),
+}
+"""What each way is good for, its options, and how it calibrates."""

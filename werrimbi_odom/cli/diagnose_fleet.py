@@ -13,8 +13,8 @@ from contextlib import closing
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.json_file import write_json
 from werrimbi_odom.cli.recordings import how_of, read_effects
+from werrimbi_odom.cli.result_files import made_of, tell_written, write_json
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
@@ -158,14 +158,13 @@ def _tell(arguments: argparse.Namespace, fleet: Fleet) -> None:
     """Words and table, then the files that were asked for."""
     from werrimbi_odom.report.fleet.tables import fleet_table
     from werrimbi_odom.report.fleet.words import words_of
+    from werrimbi_odom.report.terminal import as_text
 
     columns = shutil.get_terminal_size((100, 24)).columns
-    print(words_of(fleet))
+    print(as_text(words_of(fleet)))
     print()
     print(fleet_table(fleet, min(max(columns, _NARROW), _WIDE)))
-    written = _write(arguments, fleet)
-    if written:
-        print(f"\nwritten: {', '.join(map(str, written))}")
+    tell_written(_write(arguments, fleet))
 
 
 def _write(arguments: argparse.Namespace, fleet: Fleet) -> list[Path]:
@@ -176,8 +175,7 @@ def _write(arguments: argparse.Namespace, fleet: Fleet) -> list[Path]:
         write_json(arguments.json, fleet_json(fleet))
         written.append(arguments.json)
     if arguments.report is not None:
-        from werrimbi_odom.cli.report_made import made_of
-        from werrimbi_odom.report.fleet.page import write_fleet_page
+        from werrimbi_odom.report.fleet.document import write_fleet_page
 
         made = {"fleet": str(arguments.fleet), **made_of(arguments)}
         written += write_fleet_page(fleet, arguments.report, made)

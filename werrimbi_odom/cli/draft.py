@@ -9,9 +9,8 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.json_file import write_json
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
-from werrimbi_odom.cli.result_files import tell_written
+from werrimbi_odom.cli.result_files import made_of, tell_written, write_json
 
 if TYPE_CHECKING:
     from werrimbi_odom.files.asked import Recordings
@@ -58,8 +57,6 @@ def run(arguments: argparse.Namespace) -> int:
         write_json(arguments.json, figures)
         written.append(arguments.json)
     if arguments.report is not None:
-        from werrimbi_odom.cli.report_made import made_of
-
         written += result.write_report(arguments.report, made_of(arguments))
     tell_written(written)
     print(_next(arguments.out, given, result.found.name))

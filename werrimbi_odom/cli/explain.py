@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from werrimbi_odom.cli.json_file import write_json
+from werrimbi_odom.cli.result_files import write_json
 
 if TYPE_CHECKING:
     from rich.console import Console

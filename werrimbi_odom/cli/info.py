@@ -47,8 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
         When a recording cannot be read at all, or a file cannot be written.
     """
     from werrimbi_odom.api.info import info
-    from werrimbi_odom.cli.json_file import write_json
-    from werrimbi_odom.cli.result_files import tell_written
+    from werrimbi_odom.cli.result_files import tell_written, write_json
     from werrimbi_odom.files.asked import refuse_twice
 
     refuse_twice(arguments.runs)

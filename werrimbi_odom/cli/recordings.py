@@ -172,15 +172,15 @@ def how_of(arguments: argparse.Namespace) -> How:
 
     topics = tuple(arguments.reference_topic or ())
     return How(
-        arguments.reference_kind,
-        arguments.leg,
-        arguments.reference_sigma_xy,
-        arguments.reference_sigma_yaw,
-        arguments.ticks_topic,
-        topics if len(topics) > 1 else next(iter(topics), None),
-        tuple(arguments.effects),
-        tuple(arguments.reference),
-        arguments.force,
+        kind=arguments.reference_kind,
+        leg=arguments.leg,
+        sigma_xy=arguments.reference_sigma_xy,
+        sigma_yaw=arguments.reference_sigma_yaw,
+        ticks_topic=arguments.ticks_topic,
+        reference_topic=topics if len(topics) > 1 else next(iter(topics), None),
+        effects=tuple(arguments.effects),
+        references=tuple(arguments.reference),
+        force=arguments.force,
     )
 
 

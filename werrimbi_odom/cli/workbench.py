@@ -10,8 +10,8 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.json_file import write_json
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
+from werrimbi_odom.cli.result_files import write_json
 
 if TYPE_CHECKING:
     from werrimbi_odom.files.asked import Recordings

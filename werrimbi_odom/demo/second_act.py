@@ -18,7 +18,8 @@ from werrimbi_odom.cli.progress import share_done
 from werrimbi_odom.demo.pictures import save_and_tell
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.report.adding.words import value_told
-from werrimbi_odom.report.text import pairs
+from werrimbi_odom.report.document import Table
+from werrimbi_odom.report.terminal import as_text
 
 if TYPE_CHECKING:
     from werrimbi_odom.api.result import Result
@@ -103,15 +104,13 @@ def _in_short(added: Added, place: Path, drives: int) -> str:
     side = added.holdout
     errors = (side.error("before"), side.error("after"), added.noise_alone(side))
     before, after, noise = (f"{1e3 * error:.2f} mm" for error in errors)
-    return pairs(
-        "In short",
-        [
-            ("hidden", f"{'; '.join(was)} ({place / 'truth.json'})"),
-            ("found", f"{added.name}: {sizes}"),
-            ("error", f"{before} before, {after} after, over legs of {side.after.leg:g} m of "
-             f"{drives} drives that took no part; noise alone makes {noise}"),
-        ],
-    )  # fmt: skip
+    rows = [
+        ("hidden", f"{'; '.join(was)} ({place / 'truth.json'})"),
+        ("found", f"{added.name}: {sizes}"),
+        ("error", f"{before} before, {after} after, over legs of {side.after.leg:g} m of "
+         f"{drives} drives that took no part; noise alone makes {noise}"),
+    ]  # fmt: skip
+    return as_text([Table("In short", (), rows)])
 
 
 def _command(words: Sequence[str]) -> None:

@@ -26,7 +26,7 @@ BAG = "metadata.yaml"
 _NAMED = 8  # runs of a folder that are named before "..."
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class How:
     """How drives are read and judged."""
 

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """What a bag holds: what tells the wheels, and what measures the robot, independent of them or not.
 
-`contents_of(path)` reads a bag once and gives `Contents`: `wheels` (each a `Wheels`: what may be
+`contents_of(bag)` reads a bag once and gives `Contents`: `wheels` (each a `Wheels`: what may be
 given to --ticks-topic) and `references` (each a `Measured`: what may be given to --reference-topic,
 with what it measures, its frames, whether it is independent of the wheels, and why). Nothing is
 judged from numbers here: whether poses follow the wheels too closely to be measured is asked where
@@ -15,7 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from werrimbi_odom.files.bag import Bag, Topic, opened_bag
+from werrimbi_odom.files.bag import Bag, Topic
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Chain, Edge, EdgeCollector, chains_to_base, frame
 from werrimbi_odom.files.made_from_wheels import ODOMETRY, is_asked_for, why_from_wheels
@@ -104,25 +104,14 @@ class Contents:
         return tuple(each for each in self.references if each.independent)
 
 
-def contents_of(path: str | Path, base: str = "") -> Contents:
-    """What a bag holds.
+def contents_of(bag: Bag, base: str = "") -> Contents:
+    """What an open bag holds.
 
     Parameters
     ----------
     base
         The robot's frame, as `base_frame_id` of its file; "" for what is called a base.
-
-    Raises
-    ------
-    InputError
-        When it cannot be read as a bag.
     """
-    with opened_bag(Path(path)) as bag:
-        return contents_of_bag(bag, base)
-
-
-def contents_of_bag(bag: Bag, base: str = "") -> Contents:
-    """What an open bag holds; see `contents_of`."""
     edges = EdgeCollector()
     names = [each.name for each in bag.topics if each.kind in TRANSFORMS]
     for message in bag.messages(names) if names else ():

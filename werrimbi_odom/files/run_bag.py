@@ -14,7 +14,7 @@ from werrimbi_odom.files.bag_chain import ChainCollector
 from werrimbi_odom.files.bag_reference import ReferenceCollector, kinds_in_words
 from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
 from werrimbi_odom.files.choosing import Chosen, choose_reference
-from werrimbi_odom.files.contents import Contents, Wheels, contents_of_bag
+from werrimbi_odom.files.contents import Contents, Wheels, contents_of
 from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference, Run
@@ -65,7 +65,7 @@ def read_run_bag(
     """
     path = Path(path)
     with opened_bag(path) as bag:
-        held = contents_of_bag(bag, str(robot_file.values["base_frame_id"]))
+        held = contents_of(bag, str(robot_file.values["base_frame_id"]))
         source = choose_ticks(held, ticks_topic, robot_file)
         topics = source.name.split(",")
         chosen = _chosen(held, source, reference_topic, force)
@@ -106,7 +106,7 @@ def read_reference_bag(
     """Read a reference from a bag whose wheels, if it has any, are not asked for."""
     nothing = Wheels("", "", 0, "counts")
     with opened_bag(path) as bag:
-        held = contents_of_bag(bag, str(robot_file.values["base_frame_id"]))
+        held = contents_of(bag, str(robot_file.values["base_frame_id"]))
         chosen = _chosen(held, nothing, reference_topic, force)
         collectors = [_collector(path, each, robot_file) for each in chosen]
         _collect(bag, [(each.topics, each) for each in collectors], None)

@@ -20,7 +20,7 @@ _LATE = 0.1
 _FEWEST = 3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, kw_only=True)
 class Stamps:
     """Stamps of one topic; times in seconds."""
 
@@ -97,17 +97,17 @@ def _judged(header: Floats, received: Floats) -> Stamps:
     after = received - header
     usual = float(np.median(told))
     return Stamps(
-        header.size,
-        1.0 / usual if usual > 0.0 else 0.0,
-        _spread(told) if has_header else None,
-        _spread(gaps),
-        float(told.max()),
-        float(np.median(after)) if has_header else None,
-        float(np.subtract(*np.quantile(after, [0.99, 0.01]))) if has_header else None,
-        float(after.max()) if has_header else None,
-        float(np.mean(gaps < _BURST * usual)),
-        float(np.mean(after > np.median(after) + _LATE)) if has_header else 0.0,
-        int(np.count_nonzero(np.diff(header) < 0.0)) if has_header else 0,
+        messages=header.size,
+        rate=1.0 / usual if usual > 0.0 else 0.0,
+        jitter=_spread(told) if has_header else None,
+        received_jitter=_spread(gaps),
+        longest=float(told.max()),
+        offset=float(np.median(after)) if has_header else None,
+        wander=float(np.subtract(*np.quantile(after, [0.99, 0.01]))) if has_header else None,
+        latest=float(after.max()) if has_header else None,
+        bursts=float(np.mean(gaps < _BURST * usual)),
+        late=float(np.mean(after > np.median(after) + _LATE)) if has_header else 0.0,
+        back=int(np.count_nonzero(np.diff(header) < 0.0)) if has_header else 0,
     )
 
 

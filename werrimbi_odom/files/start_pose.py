@@ -59,7 +59,7 @@ def start_of(run: Run, robot_file: RobotFile) -> Start:
         row = (reference.x[first], reference.y[first], reference.yaw[first])
         first_pose, told = Pose(*map(float, row)), "the reference's first pose"
     else:
-        path = shown(_driven(run, robot_file, Pose()), right_handed)
+        path = shown(driven(run, robot_file, Pose()), right_handed)
         first_pose, told = _pieced_together(reference, path, float(reference.time[first]))
     start = axle_of(first_pose, right_handed)
     if not reference.has_position.any():
@@ -96,7 +96,8 @@ def _seen_how(view: View) -> str:
     return f", which it measures {', '.join(parts)}" if parts else ""
 
 
-def _driven(run: Run, robot_file: RobotFile, start: Pose) -> Trajectory:
+def driven(run: Run, robot_file: RobotFile, start: Pose) -> Trajectory:
+    """A run dead reckoned, by everything that the robot file says."""
     return trajectory(
         robot_file.robot,
         run.ticks.time,
@@ -114,7 +115,7 @@ def _brought_back(
 ) -> Pose:
     """A start from which the reference, whose stamps are early, shows its first pose at once."""
     for _ in range(2):  # an effect may look at the heading, so once is not quite enough
-        path = shown(_driven(run, robot_file, start), view)
+        path = shown(driven(run, robot_file, start), view)
         begin = Pose(float(path.x[0]), float(path.y[0]), float(path.yaw[0]))
         start = compose(first_pose, between(begin, start))
     return start

@@ -37,7 +37,7 @@ class Span(NamedTuple, Generic[Number]):
         return self.end - self.start
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Drive(Generic[Number]):
     """One step, or all steps of a run (arrays of shape (n,)), before any effect."""
 

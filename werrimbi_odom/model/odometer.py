@@ -47,16 +47,14 @@ class Estimate(NamedTuple):
     are asked for.
     """
 
-    step: WheelStep
-    """Travel of the wheels since the last message, before any effect."""
+    time: float
+    """Stamp of the message [s]."""
     late: WheelStep
-    """The same, over the time of which the twist is the mean."""
+    """Travel of the wheels, before any effect, over the time of which the twist is the mean."""
     late_motion: BodyMotion[float]
     """In that time."""
     pose: Pose
     """In the odometry frame; yaw goes on counting past a whole turn."""
-    motion: BodyMotion[float]
-    """Since the last message, after all effects."""
     distance: float
     """Travel of the axle's midpoint since the start, both directions counted [m]."""
     closed: Piece | None
@@ -68,11 +66,6 @@ class Estimate(NamedTuple):
     """Of the pose there."""
     stretch: Stretch
     """The open piece as far as it has been driven."""
-
-    @property
-    def time(self) -> float:
-        """Stamp of the message [s]."""
-        return self.step.time
 
     @property
     def errors(self) -> Uncertainty[float]:
@@ -196,10 +189,9 @@ class Odometer:
         self._late = late
         piece = self._piece
         return Estimate(
-            step,
+            step.time,
             *late,
             pose,
-            motion,
             self.distance,
             closed,
             self.robot,

@@ -52,9 +52,9 @@ class WatchedDrive(Drive[Floats]):
     __slots__ = ("asked",)
     asked: set[str]
 
-    def __init__(self, *quantities: Any, **named: Any) -> None:
+    def __init__(self, **quantities: Any) -> None:
         object.__setattr__(self, "asked", set())
-        super().__init__(*quantities, **named)
+        super().__init__(**quantities)
 
     def __getattribute__(self, name: str) -> Any:
         value = object.__getattribute__(self, name)
@@ -83,7 +83,7 @@ class _WatchedChannels(Mapping[str, Span[Floats]]):
 
 def watched(drive: Drive[Floats]) -> WatchedDrive:
     """The same drive, watched."""
-    return WatchedDrive(*(getattr(drive, item.name) for item in fields(drive)))
+    return WatchedDrive(**{item.name: getattr(drive, item.name) for item in fields(drive)})
 
 
 def after_effects(
@@ -175,7 +175,7 @@ def _rows_of(drive: Drive[Floats], steps: slice) -> Drive[Floats]:
             return value[steps]
         return {name: some(span) for name, span in value.items()}
 
-    return Drive(*(some(getattr(drive, item.name)) for item in fields(drive)))
+    return Drive(**{item.name: some(getattr(drive, item.name)) for item in fields(drive)})
 
 
 Headings = Callable[[Driven], Floats]

@@ -14,9 +14,9 @@ from werrimbi_odom.files.contents import Measured
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.spans import Driven
 from werrimbi_odom.inference.recorded import Held, Info, can_tell, measures_of
+from werrimbi_odom.report.document import Document, Paragraph, paragraphs
 from werrimbi_odom.report.numbers import listed
 from werrimbi_odom.report.phrases import left_out_json, left_out_words
-from werrimbi_odom.report.text import COMMAND, filled
 
 _GIVES = {
     "counts": "counters",
@@ -28,15 +28,17 @@ _MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"
 _WANDERS = 0.1  # of stamps against receipt, from which on it is worth saying [s]
 
 
-def info_words(found: Info) -> str:
-    """What is printed."""
-    parts = [_of_one(each, found) for each in found.held]
-    return "\n\n".join([*parts, _next(found)])
+def document_of(found: Info) -> Document:
+    """Everything that is told."""
+    words = [part for each in found.held for part in _of_one(each, found)]
+    step, command = _next(found)
+    words += [Paragraph(step, apart=True), *([Paragraph(command, "command")] if command else [])]
+    return Document(title="What the recordings hold", words=words)
 
 
-def _of_one(held: Held, found: Info) -> str:
-    lines = [f"{held.path}", *(filled(f"- {each}") for each in _lines(held, found))]
-    return "\n".join(lines)
+def _of_one(held: Held, found: Info) -> list[Paragraph]:
+    head = Paragraph(str(held.path), apart=True)
+    return [head, *paragraphs(f"- {each}" for each in _lines(held, found))]
 
 
 def _lines(held: Held, found: Info) -> Iterator[str]:
@@ -176,24 +178,24 @@ def _driven(held: Held, drive: Driven, sizes: bool) -> str:
     return f"In {whole:.1f} s the robot {listed(told) if told else 'did nothing'}.{way}"
 
 
-def _next(found: Info) -> str:
+def _next(found: Info) -> tuple[str, str]:
+    """The next step, and its command; "" where it has none."""
     usable = [each for each in found.held if not each.problem and each.run is not None]
     if not usable:
-        return "Nothing of it can be judged."
+        return "Nothing of it can be judged.", ""
     if any(measures_of(each) == "nothing" for each in usable):
-        return filled(
-            "Record again with something that measures the robot beside its wheels: an IMU's gyro "
-            "shows its turning, a localiser or a scan matcher its poses."
-        )
+        again = "Record again with something that measures the robot beside its wheels"
+        how = "an IMU's gyro shows its turning, a localiser or a scan matcher its poses"
+        return f"{again}: {how}.", ""
     if found.given is None and found.written is None:
         if not found.first.has_sizes:
-            return filled(
+            return (
                 "Next: measure the wheels' radius and the distance between them, enter both in a "
                 "robot file (config/robot.yaml is one to copy), and give it with --robot. Or give "
                 "the parameter file of the diff_drive_controller with --robot."
-            )
-        return f"Next: a first robot file.\n{command_of(found)}"
-    return f"Next:\n{command_of(found)}"
+            ), ""
+        return "Next: a first robot file.", command_of(found)
+    return "Next:", command_of(found)
 
 
 def command_of(found: Info) -> str:
@@ -202,14 +204,14 @@ def command_of(found: Info) -> str:
     paths = [str(each.path) for each in usable]
     robot = found.given or found.written
     if robot is None:
-        return COMMAND + shlex.join(["werrimbi", "info", *paths, "--out", "robot.yaml"])
+        return shlex.join(["werrimbi", "info", *paths, "--out", "robot.yaml"])
     words = ["werrimbi", "compare", "--robot", str(robot)]
     if found.leg != 1.0:
         words += ["--leg", f"{found.leg:g}"]
     held = usable[0]
     if held.contents is not None and held.wheels is not None and held.reference is not None:
         words += ["--ticks-topic", held.wheels.name, "--reference-topic", held.reference.name]
-    return COMMAND + shlex.join([*words, *paths])
+    return shlex.join([*words, *paths])
 
 
 def info_json(found: Info) -> dict[str, Any]:
@@ -227,14 +229,8 @@ def info_json(found: Info) -> dict[str, Any]:
         }
         if found.given is None
         else None,
-        "next": _command(found),
+        "next": _next(found)[1] or None,
     }
-
-
-def _command(found: Info) -> str | None:
-    words = _next(found)
-    place = words.find(COMMAND + "werrimbi")
-    return words[place:].strip() if place >= 0 else None
 
 
 def _json_of(held: Held, found: Info) -> dict[str, Any]:

@@ -9,22 +9,21 @@ from __future__ import annotations
 
 import html
 import json
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+import re
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from importlib.metadata import PackageNotFoundError, version
 from importlib.resources import files
+from itertools import groupby
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.files.replacing import replacing
 from werrimbi_odom.files.text import readable
+from werrimbi_odom.report.document import Document, Entry, Paragraph, Part, Shown, Table
 from werrimbi_odom.report.style import IN_THE_DARK
-from werrimbi_odom.report.text import paragraphs, tables
 
 if TYPE_CHECKING:
     from importlib.resources.abc import Traversable
-
-    import plotly.graph_objects as go
 
 
 def drawing_program() -> Traversable:
@@ -38,44 +37,7 @@ _POLICY = (
 )
 
 
-NOTHING_SAID: Mapping[str, str] = {}
-"""Of how a page was made."""
-
-
-@dataclass(frozen=True)
-class Shown:
-    """One place on the page: a figure, or several to choose from, or a drawing."""
-
-    key: str
-    """Short name, in file names and links."""
-    title: str
-    see: str
-    """One sentence: what to see."""
-    figures: Mapping[str, go.Figure] = field(default_factory=dict)
-    """By the words to choose them by; the first is shown."""
-    choose: str = ""
-    """What is chosen, where there are several."""
-    html: str = ""
-    """Below the figure: a drawing, a list, a table; trusted."""
-    main: bool = True
-    """Whether it is one for a paper."""
-
-
-@dataclass(frozen=True)
-class Page:
-    """A report."""
-
-    title: str
-    words: str
-    """The verdict, plain text as it is printed."""
-    shown: Sequence[Shown]
-    tables: str = ""
-    """Plain text as it is printed."""
-    made: Mapping[str, str] = field(default_factory=dict)
-    """How it was made: command, files, options."""
-
-
-def write_page(page: Page, path: Path) -> None:
+def write_page(page: Document, path: Path) -> None:
     """Write a self-contained page.
 
     Raises
@@ -87,27 +49,28 @@ def write_page(page: Page, path: Path) -> None:
         file.write(readable(page_html(page)))
 
 
-def page_html(page: Page) -> str:
+def page_html(page: Document) -> str:
     """The whole page."""
     assets = files("werrimbi_odom.report")
     style = (assets / "page.css").read_text(encoding="utf-8")
     script = (assets / "page.js").read_text(encoding="utf-8")
+    drawn = page.draw()
     figures = {
         f"{shown.key}-{number}": json.loads(figure.to_json())
-        for shown in page.shown
+        for shown in drawn
         for number, figure in enumerate(shown.figures.values())
     }
     data = {"figures": figures, "dark": dict(IN_THE_DARK)}
     links = "".join(
-        f'<li><a href="#{shown.key}">{html.escape(shown.title)}</a></li>' for shown in page.shown
+        f'<li><a href="#{shown.key}">{html.escape(shown.title)}</a></li>' for shown in drawn
     )
     nav = ""
-    if len(page.shown) > 1:
+    if len(drawn) > 1:
         nav = f'<nav aria-label="On this page"><ul>{links}</ul></nav>'
-    body = "\n".join(_section(shown) for shown in page.shown)
-    numbers = ""
-    if page.tables:
-        numbers = f'<section id="tables"><h2>Tables</h2>\n{tables(page.tables)}</section>'
+    body = "\n".join(_section(shown) for shown in drawn)
+    numbers = as_html(page.tables)
+    if numbers:
+        numbers = f'<section id="tables"><h2>Tables</h2>\n{numbers}</section>'
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -130,7 +93,7 @@ def page_html(page: Page) -> str:
 {nav}
 <main>
 <section id="words" aria-label="Verdict">
-{paragraphs(page.words)}
+{_headed(page.words)}
 </section>
 {body}
 {numbers}
@@ -146,6 +109,91 @@ def page_html(page: Page) -> str:
 </body>
 </html>
 """
+
+
+def _headed(parts: Sequence[Part]) -> str:
+    """The verdict, its first paragraph as the headline."""
+    first = parts[0]
+    if not isinstance(first, Paragraph) or first.kind != "words":
+        return as_html(parts)
+    rest = as_html(parts[1:])
+    return f'<p class="headline">{_inline(first.text)}</p>\n{rest}'
+
+
+def as_html(parts: Iterable[Part]) -> str:
+    """Parts of a document; points together in lists."""
+    return "\n".join(html_of(list(group)) for html_of, group in groupby(parts, key=_written_by))
+
+
+def _written_by(part: Part) -> Callable[[Sequence[Any]], str]:
+    if isinstance(part, Table):
+        return _tables
+    if isinstance(part, Entry):
+        return _entries
+    return {"words": _paragraphs, "point": _points}.get(part.kind, _verbatim)
+
+
+def _paragraphs(parts: Sequence[Paragraph]) -> str:
+    return "\n".join(f"<p>{_inline(part.text)}</p>" for part in parts)
+
+
+def _points(parts: Sequence[Paragraph]) -> str:
+    points = "".join(f"<li>{_inline(part.text)}</li>" for part in parts)
+    return f"<ul>{points}</ul>"
+
+
+def _verbatim(parts: Sequence[Paragraph]) -> str:
+    return "\n".join(f"<pre>{html.escape(part.text)}</pre>" for part in parts)
+
+
+def _entries(parts: Sequence[Entry]) -> str:
+    rows = "".join(f"<dt>{_inline(part.term)}</dt><dd>{_inline(part.says)}</dd>" for part in parts)
+    return f"<dl>{rows}</dl>"
+
+
+def _tables(parts: Sequence[Table]) -> str:
+    return "\n".join(map(table_html, parts))
+
+
+def table_html(table: Table) -> str:
+    """A table that may be wider than the page."""
+    words = table.words if table.heads else (1,)
+
+    def cell(tag: str, at: int, text: str, scope: str = "") -> str:
+        mark = ' class="words"' if at in words else ""
+        return f"<{tag}{scope}{mark}>{_lines(text)}</{tag}>"
+
+    heads = "".join(cell("th", at, text, ' scope="col"') for at, text in enumerate(table.heads))
+    rows = "".join(
+        "<tr>"
+        + cell("th", 0, row[0], ' scope="row"')
+        + "".join(cell("td", at, text) for at, text in enumerate(row[1:], start=1))
+        + "</tr>"
+        for row in table.rows
+    )
+    label = html.escape(table.title or "Table", quote=True)
+    return (
+        f'<div class="wide" tabindex="0" role="group" aria-label="{label}"><table>'
+        + (f"<caption><span>{html.escape(table.title)}</span></caption>" if table.title else "")
+        + (f"<thead><tr>{heads}</tr></thead>" if heads else "")
+        + f"<tbody>{rows}</tbody></table></div>"
+        + (f"<p>{html.escape(table.rest)}</p>" if table.rest else "")
+    )
+
+
+def _lines(cell: str) -> str:
+    """Escaped; an indented line stays so."""
+    kept = (line.replace("  ", "\N{NO-BREAK SPACE}" * 3) for line in cell.splitlines())
+    return "<br>".join(map(html.escape, kept))
+
+
+_WITH_SPREAD = re.compile(r"\(?[-\d.]+ ± [\d.]+\)?(?:e-?\d+)?")
+
+
+def _inline(text: str) -> str:
+    """Escaped, with `commands` in their own type, and values on one line with their spread."""
+    coded = re.sub(r"`([^`]*)`", r"<code>\1</code>", html.escape(text))
+    return _WITH_SPREAD.sub(r'<span class="value">\g<0></span>', coded)
 
 
 def _section(shown: Shown) -> str:

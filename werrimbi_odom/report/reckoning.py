@@ -18,6 +18,7 @@ from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.pose import Floats, Pose, between, compose, wrap
 from werrimbi_odom.model.shown import Path as ShownPath
 from werrimbi_odom.model.trajectory import Trajectory
+from werrimbi_odom.report.numbers import counted
 
 KINDS = ("line", "arc", "spin")
 _NO_MOTION = 1e-3
@@ -122,7 +123,7 @@ class Reckoning:
     def rows(self) -> Iterator[tuple[str, str]]:
         """For the table on the terminal."""
         yield "distance", f"{self.distance:.3f} m in {self.duration:.1f} s"
-        counts = (_counted(len(pieces), kind) for kind, pieces in self._pieces.items())
+        counts = (counted(len(pieces), kind) for kind, pieces in self._pieces.items())
         yield "pieces", ", ".join(counts)
         yield "start", f"{_told(self.start.pose)}: {self.start.told}"
         yield "final pose", _told(self.final)
@@ -270,10 +271,6 @@ def _told(pose: Pose) -> str:
     if math.isfinite(pose.yaw):
         parts.append(f"heading {math.degrees(wrap(pose.yaw)):.2f}°")
     return ", ".join(parts)
-
-
-def _counted(count: int, word: str) -> str:
-    return f"{count} {word}" if count == 1 else f"{count} {word}s"
 
 
 def _pose_json(pose: Pose) -> dict[str, float]:

@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.replacing import replacing
-from werrimbi_odom.report.page import Page, drawing_program, write_page
+from werrimbi_odom.report.document import Document
+from werrimbi_odom.report.page import drawing_program, write_page
 from werrimbi_odom.report.style import KEPT_HERE
 
 if TYPE_CHECKING:
@@ -81,7 +82,7 @@ def refuse_report(path: Path) -> None:
         )
 
 
-def save_report(page: Page, path: Path) -> list[Path]:
+def save_report(document: Document, path: Path) -> list[Path]:
     """A report as a page (.html), or its main figures as pictures for a paper (.pdf, .png).
 
     Pictures are a file for each figure: the first has the name that was asked for, the others have
@@ -94,9 +95,9 @@ def save_report(page: Page, path: Path) -> list[Path]:
     """
     refuse_report(path)
     if path.suffix.lower() in PAGES:
-        write_page(page, path)
+        write_page(document, path)
         return [path]
-    main = [shown for shown in page.shown if shown.main and shown.figures]
+    main = [shown for shown in document.draw() if shown.main and shown.figures]
     files = [
         path if number == 0 else path.with_name(f"{path.stem}-{shown.key}{path.suffix}")
         for number, shown in enumerate(main)

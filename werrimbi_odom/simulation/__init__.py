@@ -33,10 +33,9 @@ from .manoeuvres import (
     start_stop,
 )
 from .recorder import record
-from .recording import Recording
+from .recording import Recording, write_run
 from .robot import Nominal, TrueRobot
 from .robot_file import write_robot_file
-from .run_folder import write_run
 from .sensors import ReferenceSensor
 from .sessions import drives, session
 

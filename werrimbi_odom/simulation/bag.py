@@ -64,14 +64,7 @@ def write_bag(recording: Recording, robot: TrueRobot, folder: str | Path) -> Pat
         (float(t), 0, wheels(float(t), (float(a), float(b))))
         for t, a, b in zip(recording.t_s, left, right, strict=True)
     ]
-    poses = zip(
-        recording.reference_t_s,
-        recording.reference_x_m,
-        recording.reference_y_m,
-        recording.reference_yaw_rad,
-        strict=True,
-    )
-    messages += [(float(t), 1, pose(float(t), *map(float, xyyaw))) for t, *xyyaw in poses]
+    messages += [(float(t), 1, pose(float(t), *map(float, xyyaw))) for t, *xyyaw in recording.poses]
     messages.sort(key=lambda message: message[0])
     with Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP) as writer:
         connections = [

@@ -17,10 +17,9 @@ from pathlib import Path
 from .bag import write_bag
 from .manoeuvres import chain, figure_eight, square
 from .recorder import record
-from .recording import Recording
+from .recording import Recording, write_run
 from .robot import TrueRobot
 from .robot_file import write_robot_file
-from .run_folder import write_run
 
 ROBOT = TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
 """True geometry, and the wheel noise that the paper measured on its robot."""

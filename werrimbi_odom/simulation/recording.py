@@ -1,11 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What one drive leaves behind: counters, a reference, and, for judging alone, the truth."""
+"""What one drive leaves behind: counters, a reference, and, for judging alone, the truth.
+
+Written to a folder (ticks.csv and reference.csv), the truth is left out.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -48,3 +52,48 @@ class Recording:
     reference_yaw_rad: Floats
     true_path: TruePath
     channels: Mapping[str, Floats] = field(default_factory=dict)
+
+    @property
+    def poses(self) -> Iterator[tuple[float, float, float, float]]:
+        """Rows of the reference: t, x, y, yaw."""
+        return zip(
+            self.reference_t_s,
+            self.reference_x_m,
+            self.reference_y_m,
+            self.reference_yaw_rad,
+            strict=True,
+        )
+
+
+def write_run(recording: Recording, folder: str | Path) -> Path:
+    """Write `recording` as a run folder, made with its parents; the truth is left out.
+
+    Parameters
+    ----------
+    recording : Recording
+    folder : path
+
+    Returns
+    -------
+    Path of the folder
+    """
+    folder = Path(folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    names = "".join(f",{name}" for name in recording.channels)
+    lines = [f"t_s,left_ticks,right_ticks{names}\n"]
+    ticks = zip(
+        recording.t_s,
+        recording.left_ticks,
+        recording.right_ticks,
+        *recording.channels.values(),
+        strict=True,
+    )
+    for t, left, right, *channels in ticks:
+        extra = "".join(f",{value:.6g}" for value in channels)
+        lines.append(f"{t:.6f},{left},{right}{extra}\n")
+    (folder / "ticks.csv").write_text("".join(lines), encoding="utf-8")
+
+    lines = ["t_s,x_m,y_m,yaw_rad\n"]
+    lines += [f"{t:.6f},{x:.6f},{y:.6f},{yaw:.6f}\n" for t, x, y, yaw in recording.poses]
+    (folder / "reference.csv").write_text("".join(lines), encoding="utf-8")
+    return folder

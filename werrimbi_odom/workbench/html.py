@@ -4,13 +4,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from inspect import isawaitable
 from typing import Any, Protocol
 
 from nicegui import ui
 from nicegui.elements.mixins.text_element import TextElement
 from nicegui.events import GenericEventArguments
+
+from werrimbi_odom.report.document import Part
+from werrimbi_odom.report.page import as_html
 
 
 def text(tag: str, words: str = "", classes: str = "", **attributes: object) -> Any:
@@ -79,39 +82,6 @@ def _dressed(element: Any, classes: str, attributes: dict[str, object]) -> Any:
     return element
 
 
-def paragraphs(words: str, classes: str = "") -> None:
-    """Lines of text as paragraphs; those that begin with "- " as a list, indented ones as code."""
-    points: list[str] = []
-
-    def flush() -> None:
-        if points:
-            with box("ul"):
-                for point in points:
-                    text("li", point)
-            points.clear()
-
-    for line in words.splitlines():
-        if line.startswith("- "):
-            points.append(line[2:])
-            continue
-        flush()
-        if line.startswith("    "):
-            text("pre", line.strip())
-        elif line.strip():
-            text("p", line.strip(), classes)
-    flush()
-
-
-def rows(heads: list[str], lines: list[list[str]], caption: str) -> None:
-    """A table of texts; the first column names its row."""
-    with box("div", "wide", tabindex="0", role="group", aria_label=caption), box("table"):
-        text("caption", caption)
-        with box("thead"), box("tr"):
-            for head in heads:
-                text("th", head, scope="col")
-        with box("tbody"):
-            for line in lines:
-                with box("tr"):
-                    text("th", line[0], scope="row")
-                    for cell in line[1:]:
-                        text("td", cell)
+def prose(parts: Iterable[Part]) -> None:
+    """Parts of a document, as its page has them."""
+    ui.html(as_html(parts), sanitize=False)

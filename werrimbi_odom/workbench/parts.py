@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison
 from werrimbi_odom.inference.comparison.legs import LegStatistics, statistics
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.comparison.phrases import NAMES
 
 Which = NDArray[np.bool_]
-
-MOTIONS = {"line": "straight driving", "arc": "curves", "spin": "spins"}
 
 MOST_OF = 0.2
 """Share of the legs that are shown for a cell of the evidence map: those that err the most."""
@@ -39,7 +38,7 @@ class MotionPart:
     @property
     def words(self) -> str:
         """What it is."""
-        return MOTIONS[self.kind]
+        return NAMES[self.kind]
 
     def legs(self, comparison: Comparison) -> Which:
         """Which legs, shape (m,)."""

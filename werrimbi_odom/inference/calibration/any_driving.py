@@ -44,7 +44,7 @@ class Multiplier:
     determined: bool
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Calibration:
     """What a fit of calibration and noise says."""
 
@@ -130,15 +130,15 @@ def calibrate(
     changes = {name: item.value for name, item in multipliers.items() if item.determined}
     outer = np.outer(spread, spread)
     return Calibration(
-        with_noise(fit.robot, wheels),
-        multipliers,
-        noises,
-        changes | {name: item.value for name, item in wheels.items()},
-        covariance / np.where(outer > 0.0, outer, 1.0),
-        misfit,
-        strange,
-        fit.point.excluded,
-        fit,
+        robot=with_noise(fit.robot, wheels),
+        multipliers=multipliers,
+        noises=noises,
+        changes=changes | {name: item.value for name, item in wheels.items()},
+        correlation=covariance / np.where(outer > 0.0, outer, 1.0),
+        misfit=misfit,
+        strange=strange,
+        excluded=fit.point.excluded,
+        fit=fit,
     )
 
 

@@ -97,7 +97,7 @@ class RunFigures:
     legs: LegFigures
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Comparison:
     """Everything that was found, and the legs themselves for whoever draws them."""
 
@@ -202,28 +202,28 @@ def judged(
     kept = ~legs.outlier
     chosen = legs.errors.chosen(kept)
     return Comparison(
-        prepared,
-        model,
-        tuple(
+        prepared=prepared,
+        model=model,
+        runs=tuple(
             _run_figures(run, driven[index], of_runs[index], model.of_run(index))
             for index, run in enumerate(prepared.runs)
         ),
-        tuple(lengths),
-        by_variables(
+        lengths=tuple(lengths),
+        variables=by_variables(
             chosen, spread[kept], {name: part[kept] for name, part in legs.variables.items()}
         ),
-        cells_of(
+        cells=cells_of(
             chosen,
             spread[kept],
             0.5 * (legs.x + legs.end_x)[kept],
             0.5 * (legs.y + legs.end_y)[kept],
             prepared.leg,
         ),
-        legs,
-        spread,
-        driven,
-        prepared.left_out,
-        remarks_on(prepared),
+        legs=legs,
+        left=spread,
+        paths=driven,
+        left_out=prepared.left_out,
+        remarks=remarks_on(prepared),
     )
 
 

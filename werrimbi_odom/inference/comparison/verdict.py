@@ -50,32 +50,32 @@ class Depends:
     p_value: float
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
     """What is to be said."""
 
     enough: bool
     """Whether there are legs enough to say anything."""
-    systematic: tuple[Systematic, ...]
+    systematic: tuple[Systematic, ...] = ()
     """The largest first, compared with what is promised; consequences of another left out."""
-    depends: tuple[Depends, ...]
-    cells: tuple[Cell, ...]
+    depends: tuple[Depends, ...] = ()
+    cells: tuple[Cell, ...] = ()
     noise: Noise
     factor: NoiseFactor
     """On the variance of the wheels' noise, at the longest legs that are many."""
     judged_at: float
     """Their length [m]."""
-    gross: bool
+    gross: bool = False
     """Whether errors are those of a set-up mistake."""
-    few: float
+    few: float = 0.0
     """Share of the squared errors that the worst twentieth of the legs holds."""
-    few_and_bad: tuple[str, ...]
+    few_and_bad: tuple[str, ...] = ()
     """Motion types of too few legs to say more than that their errors are larger than promised."""
-    off: tuple[str, ...]
+    off: tuple[str, ...] = ()
     """Motion types whose NEES is too large when their systematic part is taken off."""
-    lengths: tuple[AtLength, ...]
+    lengths: tuple[AtLength, ...] = ()
     """What the legs of each length say of the covariance, where enough; the shortest first."""
-    runs: tuple[int, ...]
+    runs: tuple[int, ...] = ()
     """Runs whose own legs say that it is too small, where all legs together do not."""
 
     @property
@@ -111,7 +111,7 @@ def verdict_of(comparison: Comparison) -> Verdict:
     off = tuple(kind for kind in KINDS if _scatters(main.by_motion[kind]))
     cells = tuple(cell for cell in comparison.cells if cell.stands_out and _too_small(cell.figures))
     if not enough:
-        return Verdict(False, (), (), (), "unknown", factor, leg, False, 0.0, (), (), (), ())
+        return Verdict(enough=False, noise="unknown", factor=factor, judged_at=leg)
     gross = _gross(main, systematic)
     few = _held_by_few(comparison)
     bad = tuple(kind for kind in KINDS if _bad(main.by_motion[kind]))
@@ -122,19 +122,19 @@ def verdict_of(comparison: Comparison) -> Verdict:
         if item.legs.figures.count >= FEWEST_LEGS and _too_small(item.legs.figures)
     )
     return Verdict(
-        True,
-        systematic,
-        depends,
-        cells,
-        noise,
-        factor,
-        leg,
-        gross,
-        few,
-        bad,
-        off,
-        lengths,
-        () if _too_small(main.all.figures) else runs,
+        enough=True,
+        systematic=systematic,
+        depends=depends,
+        cells=cells,
+        noise=noise,
+        factor=factor,
+        judged_at=leg,
+        gross=gross,
+        few=few,
+        few_and_bad=bad,
+        off=off,
+        lengths=lengths,
+        runs=() if _too_small(main.all.figures) else runs,
     )
 
 

@@ -34,7 +34,7 @@ DRIVES = 2
 Found = TypeVar("Found")
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Together:
     """Several matched runs on common arrays: n steps, m legs."""
 
@@ -168,19 +168,21 @@ def together(runs: Sequence[MatchedRun], finer: Together | None = None) -> Toget
     legs = _starts([run.legs for run in runs])
     poses = [np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1) for run in runs]
     return Together(
-        tuple(runs),
-        steps,
-        legs,
-        np.concatenate([run.ends[:-1] + first for run, first in zip(runs, steps, strict=False)]),
-        np.concatenate([run.ends[1:] + first for run, first in zip(runs, steps, strict=False)]),
-        np.repeat(np.arange(len(runs)), np.diff(legs)),
-        np.concatenate([pose[:-1] for pose in poses]),
-        np.concatenate([pose[1:] for pose in poses]),
-        np.concatenate([run.intervals for run in runs]),
-        np.concatenate([np.diff(run.time[run.ends]) for run in runs]),
-        np.concatenate([run.gap for run in runs]),
-        finer,
-        {} if finer is None else finer._features,  # they are of steps, which are the same
+        runs=tuple(runs),
+        steps=steps,
+        legs=legs,
+        begin=np.concatenate(
+            [run.ends[:-1] + first for run, first in zip(runs, steps, strict=False)]
+        ),
+        end=np.concatenate([run.ends[1:] + first for run, first in zip(runs, steps, strict=False)]),
+        run_of_leg=np.repeat(np.arange(len(runs)), np.diff(legs)),
+        start=np.concatenate([pose[:-1] for pose in poses]),
+        finish=np.concatenate([pose[1:] for pose in poses]),
+        intervals=np.concatenate([run.intervals for run in runs]),
+        duration=np.concatenate([np.diff(run.time[run.ends]) for run in runs]),
+        gap=np.concatenate([run.gap for run in runs]),
+        finer=finer,
+        _features={} if finer is None else finer._features,  # they are of steps, which are the same
     )
 
 
@@ -248,5 +250,8 @@ def _joined(parts: Sequence[Any]) -> Any:
         common = [name for name in first if all(name in part for part in parts)]
         return {name: _joined([part[name] for part in parts]) for name in common}
     return type(first)(
-        *(_joined([getattr(part, item.name) for part in parts]) for item in fields(first))
+        **{
+            item.name: _joined([getattr(part, item.name) for part in parts])
+            for item in fields(first)
+        }
     )

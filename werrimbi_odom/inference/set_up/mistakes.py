@@ -12,19 +12,30 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.calibration_sizes import skidding
 from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.rules import FEWEST_CUTS, SURE_SIZE
 from werrimbi_odom.inference.set_up.delay import lag_of
-from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding, as_skid
-from werrimbi_odom.inference.set_up.headings import search_headings
+from werrimbi_odom.inference.set_up.explanation import Estimate, Setting, setting_of, wirings
+from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding, as_skid, findings_of
 from werrimbi_odom.inference.set_up.poses import degrees_gain, search_poses
 from werrimbi_odom.inference.set_up.positions import search_positions
-from werrimbi_odom.inference.set_up.records import measured_by, record_of
+from werrimbi_odom.inference.set_up.records import (
+    Record,
+    cut,
+    effective_track,
+    measured_by,
+    record_of,
+)
+from werrimbi_odom.inference.set_up.regression import swept, turning
 from werrimbi_odom.inference.set_up.robot import with_findings
 from werrimbi_odom.inference.set_up.sparse import is_sparse, search_sparse
 from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pose import wrap_all
 from werrimbi_odom.model.robot import Robot
 
 __all__ = ["IN_DEGREES", "SetUp", "SetUpFinding", "look_for_mistakes"]
@@ -100,7 +111,7 @@ def look_for_mistakes(
     elif measured == "position":
         found, setting = search_positions(records, robot)
     else:
-        found, setting = search_headings(records, robot)
+        found, setting = _search_headings(records, robot)
     mount = [each for each in found if find(each.effect).stage == "reference"]
     wheels = sorted((each for each in found if each not in mount), key=lambda each: -each.gain)
     if skidding(robot):
@@ -109,6 +120,36 @@ def look_for_mistakes(
     late = [each for each in extra if each.effect != IN_DEGREES]
     mended, findings = with_findings(robot, [*degrees, *wheels, *late, *mount], setting)
     return SetUp(findings, mended)
+
+
+def _search_headings(
+    records: Sequence[Record], robot: Robot
+) -> tuple[list[SetUpFinding], Setting | None]:
+    """Signs, and radii over base, where yaw alone was measured, by a gyro perhaps.
+
+    Mount, lever arm, a factor common to base and radii, and which way is forwards do not show;
+    sizes are not measured, so the second is always None.
+    """
+    cuts = cut(records, robot, "heading")
+    fit = turning(cuts, with_bias=True) if cuts.count >= FEWEST_CUTS else None
+    if fit is None:
+        return [], None
+    if abs(fit.left) < SURE_SIZE * fit.left_std or abs(fit.right) < SURE_SIZE * fit.right_std:
+        return [], None
+    track = effective_track(robot)
+    estimate = Estimate(fit.left, fit.right, None, None)
+    ways = wirings(estimate)
+    setting = setting_of(estimate, ways[0], track)
+
+    def misfit(tried: Setting) -> float:
+        left, right, _, _ = tried.numbers(track)
+        off = wrap_all(cuts.turn - swept(cuts, left, right)[1])
+        # A gyro's bias, as it would be seen with this set-up.
+        rate = float(np.median(off[cuts.duration > 0.0] / cuts.duration[cuts.duration > 0.0]))
+        off = off - rate * cuts.duration
+        return float(np.exp(0.5 * np.mean(np.log1p((off / fit.scatter) ** 2))))
+
+    return findings_of(setting, ways, misfit, yaw_alone=True), None
 
 
 def _in_degrees(gain: float) -> SetUpFinding:

@@ -51,7 +51,6 @@ class Moving:
     arm: complex
     """exp(-i yaw) (ahead + i left) [m]; 0 where the drives do not show it."""
     half_base_std: float
-    arm_std: float
     scatter: float
     """Of a cut [m], outliers aside."""
 
@@ -86,10 +85,10 @@ def moving(cuts: Cuts, left: float, right: float) -> Moving | None:
         return None
     if both is not None and both[1][0] < ARM_TOLD * abs(both[0][0]):
         value, std, scatter = both
-        return Moving(complex(value[0]), complex(value[1]), float(std[0]), float(std[1]), scatter)
+        return Moving(complex(value[0]), complex(value[1]), float(std[0]), scatter)
     # A circle is a circle about any point: base and lever arm are then one.
     value, std, scatter = alone
-    return Moving(complex(value[0]), 0j, float(std[0]), np.inf, scatter)
+    return Moving(complex(value[0]), 0j, float(std[0]), scatter)
 
 
 def swept(cuts: Cuts, left: float, right: float) -> tuple[Complexes, Floats]:

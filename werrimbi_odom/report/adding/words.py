@@ -5,22 +5,26 @@
 from __future__ import annotations
 
 import math
-import textwrap
 from typing import Any
 
 from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.values import FittedParameter
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.report.comparison.words import headline
+from werrimbi_odom.report.document import Entry, Part, Table, paragraphs
 from werrimbi_odom.report.numbers import listed, picked, quantity, scaled_with_std
 from werrimbi_odom.report.phrases import jumps_words, left_out_json, left_out_words, sizes_words
-from werrimbi_odom.report.text import WIDTH, filled, table
 
 
-def words_of(added: Added) -> str:
-    """A few sentences, the parameters and the errors, in 80 columns."""
-    parts = [_headline(added), _parameters(added), _errors(added), *_remarks(added)]
-    return "\n\n".join(part for part in parts if part)
+def words_of(added: Added) -> list[Part]:
+    """A few sentences, the parameters and the errors."""
+    return [
+        *paragraphs([_headline(added)]),
+        *_parameters(added),
+        *paragraphs([_sizes(added)], apart=True),
+        _errors(added),
+        *paragraphs(_remarks(added)),
+    ]
 
 
 def _headline(added: Added) -> str:
@@ -38,26 +42,24 @@ def _headline(added: Added) -> str:
         text += f" Put right with it, as one set-up: {', '.join(added.also)}."
     if added.objection is not None:
         text += f" Forced, against this objection: {added.objection}."
-    return filled(text)
+    return text
 
 
-def _parameters(added: Added) -> str:
-    lines = []
-    for name, item in added.parameters.items():
-        lines.append(f"  {name} = {value_told(item)}")
-        told = item.declared.says + remark_told(item)
-        lines.append(textwrap.fill(told, WIDTH, initial_indent="    ", subsequent_indent="    "))
-    return "\n".join([*lines, *_sizes(added)])
+def _parameters(added: Added) -> list[Entry]:
+    return [
+        Entry(f"{name} = {value_told(item)}", item.declared.says + remark_told(item), number == 0)
+        for number, (name, item) in enumerate(added.parameters.items())
+    ]
 
 
-def _sizes(added: Added) -> list[str]:
+def _sizes(added: Added) -> str:
     """Base and radii that moved, as what they are on the robot; where none did, that."""
     stds = added.multiplier_stds
     found = {name: (getattr(added.robot, name), stds[name]) for name in MULTIPLIERS}
     words = sizes_words(added.given, found)
     if not words:
-        return ["", filled("Base and radii stay as the robot file has them.")]
-    return ["", filled(f"On the robot: {words}. It is written as the robot file's multipliers.")]
+        return "Base and radii stay as the robot file has them."
+    return f"On the robot: {words}. It is written as the robot file's multipliers."
 
 
 def value_told(item: FittedParameter) -> str:
@@ -84,7 +86,7 @@ def remark_told(item: FittedParameter) -> str:
     return ""
 
 
-def _errors(added: Added) -> str:
+def _errors(added: Added) -> Table:
     sides = (("held-out drives", added.holdout), ("fitted drives", added.train))
     columns = {"before": "before", "calibrated": "calibrated", "after": "with it"}
     unit = added.holdout.unit
@@ -114,7 +116,7 @@ def _errors(added: Added) -> str:
         for name, error in added.without.items()
     ]
     head = "[mm]" if unit == "m" else "[°]"
-    return table(title, [head, *columns.values(), *floors], rows)
+    return Table(title, [head, *columns.values(), *floors], rows)
 
 
 def _remarks(added: Added) -> list[str]:
@@ -131,8 +133,7 @@ def _remarks(added: Added) -> list[str]:
         )
     else:
         texts.append("The written values are fitted on RUN alone; --holdout only judged them.")
-    texts += [*left_out_words(added.left_out), *jumps_words(added.left_out)]
-    return ["\n".join(filled(text) for text in texts)]
+    return [*texts, *left_out_words(added.left_out), *jumps_words(added.left_out)]
 
 
 def _rest(added: Added) -> str:

@@ -7,8 +7,8 @@ from __future__ import annotations
 from werrimbi_odom.inference.calibration.any_driving import Calibration
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
+from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
 from werrimbi_odom.report.numbers import listed, scaled_with_std
-from werrimbi_odom.report.text import filled, table
 
 _MOST = 3  # dependences that are told
 _UNITS = {
@@ -20,34 +20,28 @@ _UNITS = {
 }
 
 
-def fit_in_words(result: Calibration) -> str:
+def fit_in_words(result: Calibration) -> list[Part]:
     """Whether the model explains the drives, the values, and how far they may be believed."""
-    parts = [_verdict(result), _values(result)]
+    said = []
     if result.twin:
-        parts.append(filled(_twin_words(result)))
+        said.append(_twin_words(result))
     elif held := [name for name in result.fit.held if name != "wheel_radius_scale"]:
-        parts.append(
-            filled(f"What these drives do not determine is left as it was: {listed(held)}.")
-        )
+        said.append(f"What these drives do not determine is left as it was: {listed(held)}.")
     if unwritten := [name for name in _UNITS if _strange(result, name)]:
-        parts.append(
-            filled(
-                f"{_capital(listed(unwritten))} stays as it was in the robot file: a noise that no "
-                "wheel has is not written."
-            )
+        said.append(
+            f"{_capital(listed(unwritten))} stays as it was in the robot file: a noise that no "
+            "wheel has is not written."
         )
     left_out = sum(int(legs.sum()) for legs in result.excluded)
     if left_out:
-        parts.append(f"{left_out} legs on which the reference jumped were left out.")
+        said.append(f"{left_out} legs on which the reference jumped were left out.")
     if not result.trusted:
-        parts.append(
-            filled(
-                "These values are the best of a model that does not fit, so they have no error "
-                "bars. `werrimbi diagnose` says which physical effect explains the drives, or what "
-                "is set up wrongly: how the reference is mounted, its axes, its clock."
-            )
+        said.append(
+            "These values are the best of a model that does not fit, so they have no error bars. "
+            "`werrimbi diagnose` says which physical effect explains the drives, or what is set up "
+            "wrongly: how the reference is mounted, its axes, its clock."
         )
-    return "\n\n".join(parts)
+    return [*_verdict(result), _values(result), *paragraphs(said, apart=True)]
 
 
 def _twin_words(result: Calibration) -> str:
@@ -69,17 +63,17 @@ def _strange(result: Calibration, name: str) -> bool:
     )
 
 
-def _verdict(result: Calibration) -> str:
+def _verdict(result: Calibration) -> tuple[Paragraph, ...]:
     if result.trusted:
-        return "The model explains these drives to their noise."
+        return paragraphs(["The model explains these drives to their noise."])
     lines = ["Something else is missing: calibration does not explain these drives."]
     lines += [f"- {words}." for words in result.strange]
     strongest = ordered_cells(result.misfit)[:_MOST]
     lines += [f"- {_capital(dependence_words(cell))}." for cell in strongest]
-    return "\n".join(filled(line) for line in lines)
+    return paragraphs(lines)
 
 
-def _values(result: Calibration) -> str:
+def _values(result: Calibration) -> Table:
     rows = []
     for name, item in result.multipliers.items():
         value = f"{item.value:.6f}"
@@ -95,7 +89,7 @@ def _values(result: Calibration) -> str:
         elif noise.determined:
             value = f"{noise.value:.2e} {unit}"
         rows.append([name, "" if before is None else f"{before:.2e}", value])
-    return table("Of greatest likelihood", ("parameter", "before", "after"), rows)
+    return Table("Of greatest likelihood", ("parameter", "before", "after"), rows)
 
 
 def _capital(words: str) -> str:

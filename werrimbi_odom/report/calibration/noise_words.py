@@ -8,13 +8,13 @@ import numpy as np
 
 from werrimbi_odom.inference.calibration.out_and_back import NoiseEstimate, NoiseFit, pivot_scatter
 from werrimbi_odom.inference.rules import ADVISED_RUNS, SURE_WHEN_ASKED
+from werrimbi_odom.report.document import Part, Table, paragraphs
 from werrimbi_odom.report.numbers import scaled_with_std
-from werrimbi_odom.report.text import filled, table
 
 PIVOT_TURNS = 10.0
 
 
-def noise_in_words(fit: NoiseFit, distance: float, track: float, *, turn_round: bool) -> str:
+def noise_in_words(fit: NoiseFit, distance: float, track: float, *, turn_round: bool) -> list[Part]:
     """The k of both wheels, and how far they may be believed."""
     heads = ("wheel", "k [m^0.5]", "95 % interval", "ellipses matched")
     rows = [
@@ -33,8 +33,8 @@ def noise_in_words(fit: NoiseFit, distance: float, track: float, *, turn_round: 
         sentences.append(
             f"{ADVISED_RUNS} runs would tell each k to about 15 %; here are {fit.runs}."
         )
-    parts = [filled(_verdict(fit)), table(title, heads, rows), *map(filled, sentences)]
-    return "\n\n".join(parts)
+    verdict = paragraphs([_verdict(fit)])
+    return [*verdict, Table(title, heads, rows), *paragraphs(sentences, apart=True)]
 
 
 def _wheel(side: str, estimate: NoiseEstimate, matched: float) -> list[str]:

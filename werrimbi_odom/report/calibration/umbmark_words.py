@@ -17,38 +17,36 @@ from werrimbi_odom.inference.chances import NORMAL_95
 from werrimbi_odom.inference.rules import ADVISED_SQUARES, SURE_WHEN_ASKED
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
 from werrimbi_odom.report.numbers import scaled_with_std
-from werrimbi_odom.report.text import filled, table
 
 
-def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> str:
+def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> list[Part]:
     """Verdict, offsets, angles, factors, and what to make of them."""
-    parts = [
-        _verdict(squares, result),
-        table(
+    exact = (
+        "What is written is exact; the paper's equations are of first order. A factor common to "
+        "both radii does not show in squares: compare a long straight line with a tape."
+    )
+    return [
+        *_verdict(squares, result),
+        Table(
             f"Ends of squares of {squares.side:g} m, measured minus odometry",
             ("", "squares", "x [mm]", "y [mm]", "one scatters by"),
             [_centre("clockwise", squares.cw), _centre("anticlockwise", squares.ccw)],
         ),
         _angles(result),
         _factors(result, old),
-        filled(
-            "What is written is exact; the paper's equations are of first order. A factor common "
-            "to both radii does not show in squares: compare a long straight line with a tape."
-        ),
+        *paragraphs([exact, *_doubts(squares, result)], apart=True),
     ]
-    return "\n\n".join([*parts, *(filled(doubt) for doubt in _doubts(squares, result))])
 
 
-def _verdict(squares: Squares, result: Umbmark) -> str:
+def _verdict(squares: Squares, result: Umbmark) -> tuple[Paragraph, ...]:
     base, ratio = result.base, result.ratio
     base_off, radii_off = _significant(base, 1.0), _significant(ratio, 1.0)
     size = f"E_max,syst is {_mm(result.e_max)} mm on squares of {squares.side:g} m"
     if not (base_off or radii_off):
-        return filled(
-            f"Base and radii were right, as far as these squares can tell: {size}, no more than "
-            "the scatter of the runs explains."
-        )
+        right = "Base and radii were right, as far as these squares can tell"
+        return paragraphs([f"{right}: {size}, no more than the scatter of the runs explains."])
     what = "Base and radii are" if base_off and radii_off else "The base is"
     lines = [f"{what if base_off else 'The radii are'} off: {size}."]
     if base_off:
@@ -63,7 +61,7 @@ def _verdict(squares: Squares, result: Umbmark) -> str:
             f"- The {larger} wheel is larger against the other than the file says, by "
             f"{_share(ratio)}: what should be straight bends to the {bend}."
         )
-    return "\n".join(map(filled, lines))
+    return paragraphs(lines)
 
 
 def _centre(sense: str, offsets: Floats) -> list[str]:
@@ -72,13 +70,13 @@ def _centre(sense: str, offsets: Floats) -> list[str]:
     return [sense, str(len(offsets)), _mm(x), _mm(y), f"{_mm(spread_x)}, {_mm(spread_y)}"]
 
 
-def _angles(result: Umbmark) -> str:
+def _angles(result: Umbmark) -> Table:
     first = result.angles
     rows = [
         _angle("alpha: a corner falls short", result.alpha, first.alpha_by_x, first.alpha_by_y),
         _angle("beta: a leg bends to the left", result.beta, first.beta_by_x, first.beta_by_y),
     ]
-    return table("Angles", ("", "[degrees]", "[mrad]", "by x alone", "by y"), rows)
+    return Table("Angles", ("", "[degrees]", "[mrad]", "by x alone", "by y"), rows)
 
 
 def _angle(says: str, estimate: Estimate, by_x: float, by_y: float) -> list[str]:
@@ -92,7 +90,7 @@ def _angle(says: str, estimate: Estimate, by_x: float, by_y: float) -> list[str]
     ]
 
 
-def _factors(result: Umbmark, old: Robot) -> str:
+def _factors(result: Umbmark, old: Robot) -> Table:
     paper, multipliers = result.paper, result.multipliers(old)
     rows = [
         [
@@ -108,7 +106,7 @@ def _factors(result: Umbmark, old: Robot) -> str:
             ("right_wheel_radius_multiplier", result.right, paper.right),
         )
     ]
-    return table("Corrections C_B, C_L, C_R", ("", "old", "correction", "by paper", "new"), rows)
+    return Table("Corrections C_B, C_L, C_R", ("", "old", "correction", "by paper", "new"), rows)
 
 
 def _doubts(squares: Squares, result: Umbmark) -> list[str]:
@@ -130,7 +128,7 @@ def _doubts(squares: Squares, result: Umbmark) -> list[str]:
 
 def gained_in_words(
     result: Umbmark, squares: Squares, later: Squares | None, again: Squares | None
-) -> str:
+) -> list[Part]:
     """E_max,syst after the calibration, and of other vehicles (paper, Table 2)."""
     parts = []
     if later is not None:
@@ -162,8 +160,8 @@ def gained_in_words(
     rows.append(
         [f"this robot, {when}, {squares.side:g} m", f"{size:.{1 if size < 10.0 else 0}f} mm"]
     )
-    others = table("Others on squares of 4 m", ("", "E_max,syst"), rows)
-    return "\n\n".join([filled(" ".join(parts)), others])
+    others = Table("Others on squares of 4 m", ("", "E_max,syst"), rows)
+    return [Paragraph(" ".join(parts), apart=True), others]
 
 
 def _significant(estimate: Estimate, null: float) -> bool:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A comparison in tables of plain text that fit into 80 columns."""
+"""A comparison in tables that fit into 80 columns."""
 
 from __future__ import annotations
 
@@ -8,47 +8,46 @@ import math
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
 from werrimbi_odom.inference.comparison.groups import ByVariable
-from werrimbi_odom.inference.comparison.verdict import verdict_of
+from werrimbi_odom.inference.comparison.verdict import Verdict
 from werrimbi_odom.inference.rules import SURE_OF_LEGS
-from werrimbi_odom.report.text import filled, table
+from werrimbi_odom.report.document import Part, Table, paragraphs
 
 _MOST = 3  # variables with a table of their own
 _NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
 _FIGURES = ("legs", "position", "heading", "NEES", "inside 95 %")
 
 
-def tables_of(comparison: Comparison) -> str:
-    """All tables, each with its heading, parted by empty lines."""
-    tables = [_motions(comparison.main), _lengths(comparison)]
+def tables_of(comparison: Comparison, verdict: Verdict) -> tuple[Part, ...]:
+    """All tables, each with its heading."""
+    tables: list[Part] = [_motions(comparison.main), _lengths(comparison)]
     if len(comparison.runs) > 1 or math.isfinite(comparison.runs[0].end_error_m):
         tables.append(_runs(comparison))
-    said = list(dict.fromkeys(item.variable for item in verdict_of(comparison).depends))
+    said = list(dict.fromkeys(item.variable for item in verdict.depends))
     by_name = {item.name: item for item in comparison.variables}
     tables += [_variable(by_name[name]) for name in said[:_MOST]]
     calm = [item.name.split(" [")[0] for item in comparison.variables if not _depends(item)]
     if calm:
-        told = f"The errors are not seen to go with: {', '.join(calm)}."
-        tables.append(filled(told))
-    return "\n\n".join(tables)
+        tables += paragraphs([f"The errors are not seen to go with: {', '.join(calm)}."])
+    return tuple(tables)
 
 
 def _depends(item: ByVariable) -> bool:
     return any(p_value < SURE_OF_LEGS for p_value in item.p_values.values())
 
 
-def _motions(main: OfLength) -> str:
+def _motions(main: OfLength) -> Table:
     rows = [
         [_NAMES[kind], *_cells(main.by_motion[kind])]
         for kind in KINDS
         if main.by_motion[kind].figures.count
     ]
     rows.append(["all", *_cells(main.all)])
-    return table(f"Errors of legs of {main.leg:g} m (rms)", ("by motion", *_FIGURES), rows)
+    return Table(f"Errors of legs of {main.leg:g} m (rms)", ("by motion", *_FIGURES), rows)
 
 
-def _lengths(comparison: Comparison) -> str:
+def _lengths(comparison: Comparison) -> Table:
     rows = [[f"{item.leg:g} m", *_cells(item.all)] for item in comparison.lengths]
-    return table("Errors by length of leg (rms)", ("leg", *_FIGURES), rows)
+    return Table("Errors by length of leg (rms)", ("leg", *_FIGURES), rows)
 
 
 def _cells(figures: LegFigures) -> list[str]:
@@ -62,7 +61,7 @@ def _cells(figures: LegFigures) -> list[str]:
     ]
 
 
-def _runs(comparison: Comparison) -> str:
+def _runs(comparison: Comparison) -> Table:
     rows = [
         [
             _short(item.run.name),
@@ -75,7 +74,7 @@ def _runs(comparison: Comparison) -> str:
         ]
         for item in comparison.runs
     ]
-    return table(
+    return Table(
         "Runs, dead reckoning begun at the first pose of the reference",
         ("run", "driven", "time", "end error", "heading", "legs", "NEES"),
         rows,
@@ -86,7 +85,7 @@ def _short(name: str, most: int = 26) -> str:
     return name if len(name) <= most else f"{name[: most - 3]}..."
 
 
-def _variable(item: ByVariable) -> str:
+def _variable(item: ByVariable) -> Table:
     name, _, unit = item.name.partition(" [")
     unit = unit.rstrip("]")
     with_it = [channel for channel, p in item.p_values.items() if p < SURE_OF_LEGS]
@@ -108,7 +107,7 @@ def _variable(item: ByVariable) -> str:
         )
     heads = ("degrees" if angles else unit or name, "legs", "along", "sideways", "heading", "NEES")
     title = f"Mean errors by {name} ({', '.join(with_it)} {'go' if len(with_it) > 1 else 'goes'}"
-    return table(f"{title} with it)", heads, rows)
+    return Table(f"{title} with it)", heads, rows)
 
 
 def _length(value: float, *, signed: bool = False) -> str:

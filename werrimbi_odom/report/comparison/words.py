@@ -11,10 +11,9 @@ from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFig
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
 from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
+from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.numbers import counted, listed
-from werrimbi_odom.report.phrases import left_out_words
-from werrimbi_odom.report.suspect import remark_words
-from werrimbi_odom.report.text import filled
+from werrimbi_odom.report.phrases import left_out_words, remark_words
 
 _AGREES = {"line": "is", "arc": "are", "spin": "are"}
 _CHANNELS = {
@@ -28,28 +27,31 @@ _CHANNELS = {
 def words_of(
     comparison: Comparison,
     *,
-    next_step: str = "werrimbi diagnose",
+    next_step: str = "`werrimbi diagnose`",
     verdict: Verdict | None = None,
-) -> str:
-    """A few sentences, filled to 80 columns.
+    command: str = "",
+) -> tuple[Paragraph, ...]:
+    """A few sentences.
 
     Parameters
     ----------
     next_step : str
-        Command that looks for what is missing.
+        Command that looks for what is missing; none: nothing is said of it.
     verdict : Verdict, optional
         If it is known already.
+    command : str
+        The whole command of the next step.
     """
     verdict = verdict or verdict_of(comparison)
-    paragraphs = [headline(comparison, verdict)]
+    said = [headline(comparison, verdict)]
     if verdict.enough:
-        paragraphs += _by_motion(comparison, verdict)
+        said += _by_motion(comparison, verdict)
         if not verdict.gross:
-            paragraphs += _elsewhere(comparison, verdict)
-            paragraphs += covariance_words(verdict, comparison.main.all.figures.nees)
-    paragraphs += _reference(comparison)
-    paragraphs.append(_next(verdict, next_step))
-    return "\n".join(filled(text) for text in paragraphs if text)
+            said += _elsewhere(comparison, verdict)
+            said += covariance_words(verdict, comparison.main.all.figures.nees)
+    said += _reference(comparison)
+    step = _next(verdict, next_step)
+    return paragraphs([*said, step, command if step else ""])
 
 
 def headline(comparison: Comparison, verdict: Verdict) -> str:
@@ -222,7 +224,7 @@ def _reference(comparison: Comparison) -> list[str]:
 
 
 def _next(verdict: Verdict, next_step: str) -> str:
-    if not verdict.enough or verdict.good:
+    if not next_step or not verdict.enough or verdict.good:
         return ""
     if verdict.gross:
         return f"Next: {next_step} looks for the mistake."

@@ -19,8 +19,7 @@ from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
 from werrimbi_odom.inference.manoeuvres.told import beyond_chance, one_each, significant
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.numbers import picked
-from werrimbi_odom.report.phrases import left_out_json
-from werrimbi_odom.report.suspect import remarks_json
+from werrimbi_odom.report.phrases import left_out_json, remarks_json
 
 
 def json_of(

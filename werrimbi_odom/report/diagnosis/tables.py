@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A diagnosis in tables of plain text that fit into 80 columns."""
+"""A diagnosis in tables that fit into 80 columns."""
 
 from __future__ import annotations
 
@@ -12,22 +12,20 @@ from werrimbi_odom.inference.diagnosis.pairs import Sides
 from werrimbi_odom.inference.diagnosis.values import values_of
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.report.diagnosis.dependence import short_words
+from werrimbi_odom.report.document import Part, Table, paragraphs
 from werrimbi_odom.report.numbers import error_words, in_unit, p_words
-from werrimbi_odom.report.text import table
 
 _RANKED = 8
 _MAPPED = 10
 
 
-def tables_of(diagnosis: Diagnosis, sights: Sequence[DetectionLimit] = ()) -> str:
-    """Parameters, ranking, evidence map, and what would have been seen; parted by empty lines."""
-    parts = [_parameters(diagnosis), _ranking(diagnosis), _map(diagnosis)]
-    if diagnosis.verdict == "none":
-        parts.append(_sights(sights))
-    return "\n\n".join(part for part in parts if part)
+def tables_of(diagnosis: Diagnosis, sights: Sequence[DetectionLimit] = ()) -> list[Part]:
+    """Parameters, ranking, evidence map, and what would have been seen."""
+    parts = [*_parameters(diagnosis), _ranking(diagnosis), *_map(diagnosis)]
+    return [*parts, *_sights(sights)] if diagnosis.verdict == "none" else parts
 
 
-def _parameters(diagnosis: Diagnosis) -> str:
+def _parameters(diagnosis: Diagnosis) -> list[Part]:
     names = list(dict.fromkeys([*diagnosis.found, *diagnosis.rivals]))
     rows = [
         [
@@ -41,12 +39,11 @@ def _parameters(diagnosis: Diagnosis) -> str:
         for name in names
         for parameter, item in values_of(diagnosis, name).items()
     ]
-    if not rows:
-        return ""
-    return table("Fitted values (± one standard deviation)", ("parameter", "value", "unit"), rows)
+    title = "Fitted values (± one standard deviation)"
+    return [Table(title, ("parameter", "value", "unit"), rows)] if rows else []
 
 
-def _ranking(diagnosis: Diagnosis) -> str:
+def _ranking(diagnosis: Diagnosis) -> Table:
     ranked = diagnosis.ranking[:_RANKED]
     rows = [
         [item.effect, p_words(item.p_value), *_fall(item.train), *_fall(item.holdout)]
@@ -54,10 +51,10 @@ def _ranking(diagnosis: Diagnosis) -> str:
     ]
     heads = ("effect", "chance", "train", "with it", "held out", "with it")
     if not any(row[2] for row in rows):
-        return table("Effects, best first", heads[:2], [row[:2] for row in rows])
+        return Table("Effects, best first", heads[:2], [row[:2] for row in rows])
     of = "heading" if diagnosis.holdout.unit == "rad" else "position"
     title = f"Effects, best first (chance without a cause; {of} error without it, with it)"
-    return table(title, heads, rows)
+    return Table(title, heads, rows)
 
 
 def _fall(sides: Sides | None) -> tuple[str, str]:
@@ -66,20 +63,20 @@ def _fall(sides: Sides | None) -> tuple[str, str]:
     return error_words(sides.before, sides.unit), error_words(sides.after, sides.unit)
 
 
-def _map(diagnosis: Diagnosis) -> str:
+def _map(diagnosis: Diagnosis) -> Sequence[Part]:
     """How strongly each error goes with each variable: the logarithm of the chance, in marks."""
     title = "What the errors go with, before anything is put in"
     cells = list(diagnosis.depends_on)
     sure = list(dict.fromkeys(short_words(cell) for cell in cells if cell.p_value < SURE))
     if not sure:
-        return f"{title}: nothing."
+        return paragraphs([f"{title}: nothing."], apart=True)
     rows = [
         [name, *(_strength(cells, channel, name) for channel in CHANNELS)]
         for name in sure[:_MAPPED]
     ]
-    text = table(f"{title} (explained χ²; . is none)", ("goes with", *CHANNELS), rows)
-    rest = len(sure) - _MAPPED
-    return text if rest <= 0 else f"{text}\n  and {rest} more"
+    rest = f"and {len(sure) - _MAPPED} more" if len(sure) > _MAPPED else ""
+    title = f"{title} (explained χ²; . is none)"
+    return [Table(title, ("goes with", *CHANNELS), rows, rest=rest)]
 
 
 def _strength(cells: Iterable[Dependence], channel: str, name: str) -> str:
@@ -96,7 +93,7 @@ def _from(limit: DetectionLimit) -> str:
     return f"{size:.2g} {limit.unit}".rstrip() if size < 1e3 else "never"
 
 
-def _sights(sights: Sequence[DetectionLimit]) -> str:
+def _sights(sights: Sequence[DetectionLimit]) -> list[Part]:
     rows = [
         [
             sight.effect,
@@ -106,10 +103,6 @@ def _sights(sights: Sequence[DetectionLimit]) -> str:
         ]
         for sight in sights
     ]
-    if not rows:
-        return ""
-    return table(
-        "From which size on an effect would have been seen",
-        ("effect", "parameter", "seen from", "usual"),
-        rows,
-    )
+    heads = ("effect", "parameter", "seen from", "usual")
+    title = "From which size on an effect would have been seen"
+    return [Table(title, heads, rows)] if rows else []

@@ -29,10 +29,9 @@ from werrimbi_odom.report.diagnosis.phrases import (
     sizes_found,
     whole,
 )
+from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.numbers import chance_words, error_words, listed
-from werrimbi_odom.report.phrases import jumps_words, left_out_words
-from werrimbi_odom.report.suspect import remark_words
-from werrimbi_odom.report.text import filled
+from werrimbi_odom.report.phrases import jumps_words, left_out_words, remark_words
 
 
 @dataclass(frozen=True)
@@ -47,8 +46,8 @@ class NextSteps:
     diagnose: str = "werrimbi diagnose"
 
 
-def words_of(told: Told, steps: NextSteps) -> str:
-    """All sentences, filled to 80 columns; commands are left whole."""
+def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
+    """All sentences, and the commands of the next step."""
     diagnosis = told.diagnosis
     tell = {
         "none": _none,
@@ -56,22 +55,14 @@ def words_of(told: Told, steps: NextSteps) -> str:
         "ambiguous": _ambiguous,
         "unknown": _unknown,
     }[diagnosis.verdict]
-    paragraphs = [*tell(told, steps), *otherwise(diagnosis)]
+    said = [*tell(told, steps), *otherwise(diagnosis)]
     suspect = [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*suspect, *left_out_words(diagnosis.left_out), *jumps_words(diagnosis.left_out)]
-    last = (index for index, text in enumerate(paragraphs) if text.startswith("Next: "))
-    place = next(last, len(paragraphs))
-    paragraphs[place:place] = left_out
-    return "\n".join(_filled(text) for text in paragraphs if text)
-
-
-def _filled(text: str) -> str:
-    """Paragraphs filled; what begins with four blanks is a command and is left alone."""
-    if text.startswith("    ") or not text.strip():
-        return text.rstrip()
-    first, _, _ = text.partition(": ")
-    head = first in _HEADS or first.startswith("Check ")
-    return filled(text, hanging=head)
+    last = (index for index, text in enumerate(said) if text.startswith("Next: "))
+    place = next(last, len(said))
+    said[place:place] = left_out
+    checks = [f"Check {name}" for name in diagnosis.rivals]
+    return paragraphs(said, hanging=[*_HEADS, *checks])
 
 
 _HEADS = (
@@ -177,10 +168,13 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
     move = told.manoeuvre
     if move is not None:
         lines.append(f"Why: {move.why}.")
-        time = f" About {move.minutes:.0f} min of it are enough." if move.minutes else ""
-        lines.append(f"Next: {move.do} ({move.name}).{time}")
+        time = ""
         if move.minutes:
-            lines.append(f"  Then give that drive to `{steps.diagnose}` together with these.")
+            time = (
+                f" About {move.minutes:.0f} min of it are enough. Then give that drive to "
+                f"`{steps.diagnose}` together with these."
+            )
+        lines.append(f"Next: {move.do} ({move.name}).{time}")
     else:
         lines.append(
             "No manoeuvre of the library tells them apart in reasonable time; a ruler may."

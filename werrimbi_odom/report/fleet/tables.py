@@ -4,12 +4,12 @@
 
 from __future__ import annotations
 
-import html
 from io import StringIO
 
+from werrimbi_odom.report.document import Table
 from werrimbi_odom.report.fleet.rows import ERROR, Fleet, Row
 from werrimbi_odom.report.fleet.words import error_words, missing_words, next_words
-from werrimbi_odom.report.text import table
+from werrimbi_odom.report.terminal import as_text
 
 HEADS = ("robot", "runs", "verdict", "what is missing", "held-out error [mm]", "next step")
 _ROBOT, _RUNS, _VERDICT, _MISSING, _ERROR, _NEXT = range(len(HEADS))
@@ -24,13 +24,12 @@ def fleet_table(fleet: Fleet, width: int = 100) -> str:
     try:
         from rich import box
         from rich.console import Console
-        from rich.table import Table
+        from rich.table import Table as Grid
         from rich.text import Text
     except ModuleNotFoundError:
-        return table(
-            "The robots", HEADS, [[" ".join(cell.split()) for cell in row] for row in rows]
-        )
-    made = Table(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0), expand=True)
+        plain = [[" ".join(cell.split()) for cell in row] for row in rows]
+        return as_text([Table("The robots", HEADS, plain)])
+    made = Grid(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0), expand=True)
     for number, head in enumerate(HEADS):
         made.add_column(
             Text(head.replace(" error", "\nerror")),
@@ -48,24 +47,10 @@ def fleet_table(fleet: Fleet, width: int = 100) -> str:
     return "\n".join(line.rstrip() for line in lines if line.strip())
 
 
-def fleet_table_html(fleet: Fleet) -> str:
+def robots_table(fleet: Fleet) -> Table:
     """The same for a page, whole."""
-    heads = "".join(f'<th scope="col"{_class(at)}>{head}</th>' for at, head in enumerate(HEADS))
-    body = "".join(
-        "<tr>"
-        + "".join(
-            f'<th scope="row">{_lines(cell)}</th>'
-            if at == _ROBOT
-            else f"<td{_class(at)}>{_lines(cell)}</td>"
-            for at, cell in enumerate(cells(row, whole=True))
-        )
-        + "</tr>"
-        for row in fleet.rows
-    )
-    return (
-        f'<div class="wide"><table><thead><tr>{heads}</tr></thead>'
-        f"<tbody>{body}</tbody></table></div>"
-    )
+    words = [at for at in range(len(HEADS)) if at not in _RIGHT]
+    return Table("", HEADS, [cells(row, whole=True) for row in fleet.rows], words)
 
 
 def cells(row: Row, *, whole: bool = False) -> list[str]:
@@ -83,13 +68,3 @@ def cells(row: Row, *, whole: bool = False) -> list[str]:
     if row.verdict == ERROR:
         missing, then = (row.error, "") if whole else ("could not be diagnosed", "see above")
     return [row.robot, str(row.runs), row.verdict, missing, error, then]
-
-
-def _class(at: int) -> str:
-    return "" if at in _RIGHT else ' class="words"'
-
-
-def _lines(cell: str) -> str:
-    """Escaped; an indented line stays so."""
-    kept = (line.replace("  ", "\N{NO-BREAK SPACE}" * 3) for line in cell.splitlines())
-    return "<br>".join(map(html.escape, kept))

@@ -8,9 +8,9 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.fleet.rows import ERROR, Fleet, Row, believed
 from werrimbi_odom.report.numbers import listed, with_std
-from werrimbi_odom.report.text import filled
 
 _GROUPS = 6
 """Different things missing that are counted in the first sentence."""
@@ -20,10 +20,10 @@ _TOLD = 10
 """Robots whose error is told; the others' are in the JSON."""
 
 
-def words_of(fleet: Fleet) -> str:
-    """All sentences, filled to 80 columns."""
+def words_of(fleet: Fleet) -> tuple[Paragraph, ...]:
+    """All sentences."""
     lines = [headline(fleet), *_shared(fleet), *_alone(fleet), *_errors(fleet), *_left(fleet)]
-    return "\n".join(map(filled, lines))
+    return paragraphs(lines)
 
 
 def headline(fleet: Fleet) -> str:

@@ -1,3 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A drawing of the physics of each effect."""
+"""A sketch of an effect's physics, as the effect declares it: one small drawing a family."""
+
+from __future__ import annotations
+
+from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.report.sketches import body, records
+from werrimbi_odom.report.sketches.parts import drawing
+
+DRAWINGS = {**body.DRAWINGS, **records.DRAWINGS}
+
+
+def effect_sketch(effect: Effect) -> str | None:
+    """The drawing (SVG); None for an effect that declares none."""
+    sketch = effect.sketch
+    if sketch is None:
+        return None
+    parts = DRAWINGS[sketch.drawing](*sketch.labels)
+    return drawing(effect.name, sketch.says, sketch.caption, parts)

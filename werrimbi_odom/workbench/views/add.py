@@ -6,11 +6,11 @@ from __future__ import annotations
 
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.report.adding.words import remark_told, value_told, words_of
+from werrimbi_odom.report.document import Table
 from werrimbi_odom.report.numbers import listed
-from werrimbi_odom.report.text import unwrapped
 from werrimbi_odom.workbench.drawings import gain_figure
 from werrimbi_odom.workbench.figure import figure
-from werrimbi_odom.workbench.html import box, button, paragraphs, rows, text
+from werrimbi_odom.workbench.html import box, button, prose, text
 from werrimbi_odom.workbench.steps import Step
 from werrimbi_odom.workbench.tab import Tab, millimetres, percent
 
@@ -66,22 +66,15 @@ def _values(number: int, added: Added) -> None:
     with box("section", "values"):
         text("h3", f"{number}. {listed([effect.name for effect in added.effects])}")
         if added.parameters:
-            rows(
-                ["parameter", "value ± 1 σ", "what it is"],
-                [
-                    [name, value_told(item), item.declared.says + remark_told(item)]
-                    for name, item in added.parameters.items()
-                ],
-                "Fitted with all calibration",
-            )
+            heads = ("parameter", "value ± 1 σ", "what it is")
+            rows = [
+                (name, value_told(item), item.declared.says + remark_told(item))
+                for name, item in added.parameters.items()
+            ]
+            prose([Table("Fitted with all calibration", heads, rows, words=(1, 2))])
         with box("details"):
             text("summary", "All words and figures of this step")
-            parts = words_of(added).split("\n\n")
-            for part in parts:
-                if "\n  " in part:
-                    text("pre", part)
-                else:
-                    paragraphs("\n".join(unwrapped(part)))
+            prose(words_of(added))
 
 
 def _proposed(tab: Tab, step: Step) -> None:

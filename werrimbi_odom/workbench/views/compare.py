@@ -11,9 +11,9 @@ import numpy as np
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.consistency import consistency
 from werrimbi_odom.inference.comparison.legs import LegStatistics
+from werrimbi_odom.report.comparison.tables import tables_of
 from werrimbi_odom.report.comparison.words import words_of
-from werrimbi_odom.report.text import unwrapped
-from werrimbi_odom.workbench.html import box, button, paragraphs, rows, text
+from werrimbi_odom.workbench.html import box, button, prose, text
 from werrimbi_odom.workbench.parts import (
     Part,
     PlacePart,
@@ -40,15 +40,14 @@ def compare_view(tab: Tab) -> None:
             floor(tab)
     with box("details"):
         text("summary", "All figures as tables")
-        _tables(comparison)
+        prose(tables_of(comparison, tab.verdict))
 
 
 def _words(tab: Tab) -> None:
-    told = words_of(tab.comparison, next_step="step 2, Diagnose,", verdict=tab.verdict)
-    lines = unwrapped(told)
+    first, *others = words_of(tab.comparison, next_step="", verdict=tab.verdict)
     with box("div", "verdict"):
-        text("p", lines[0], "headline")
-        paragraphs("\n".join(line for line in lines[1:] if not line.startswith("Next:")))
+        text("p", first.text, "headline")
+        prose(others)
 
 
 def _next(tab: Tab) -> None:
@@ -125,46 +124,3 @@ def _places(tab: Tab, comparison: Comparison) -> None:
         for index, cell in enumerate(places[:4]):
             part = PlacePart(cell.x, cell.y, cell.side)
             _chip(tab, part, part.words, cell.figures, f"place-{index}")
-
-
-def _tables(comparison: Comparison) -> None:
-    heads = ["legs of", "legs", "position", "heading", "NEES", "inside 95 %"]
-    rows(
-        heads,
-        [[f"{item.leg:g} m", *_figures(item.all.figures)] for item in comparison.lengths],
-        "By length of leg (rms)",
-    )
-    rows(
-        [
-            "run",
-            "driven",
-            "time",
-            "end error",
-            "legs",
-            "position",
-            "heading",
-            "NEES",
-            "inside 95 %",
-        ],
-        [
-            [
-                item.run.name,
-                f"{item.distance_m:.1f} m",
-                f"{item.duration_s:.0f} s",
-                millimetres(item.end_error_m),
-                *_figures(item.legs.figures),
-            ]
-            for item in comparison.runs
-        ],
-        "By run",
-    )
-
-
-def _figures(item: LegStatistics) -> list[str]:
-    return [
-        str(item.count),
-        millimetres(item.rmse_position_m),
-        f"{np.degrees(item.rmse_yaw_rad):.2f}°" if np.isfinite(item.rmse_yaw_rad) else "–",
-        f"{item.nees:.2f}",
-        f"{100.0 * item.coverage_95:.0f} %" if np.isfinite(item.coverage_95) else "–",
-    ]

@@ -14,9 +14,8 @@ from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_wo
 from werrimbi_odom.report.diagnosis.phrases import at_bounds_words
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.numbers import chance_words, error_words, listed
-from werrimbi_odom.report.text import unwrapped
 from werrimbi_odom.workbench.figure import figure
-from werrimbi_odom.workbench.html import box, button, paragraphs, text
+from werrimbi_odom.workbench.html import box, button, prose, text
 from werrimbi_odom.workbench.parts import CellPart
 from werrimbi_odom.workbench.steps import Diagnosed
 from werrimbi_odom.workbench.tab import Tab, millimetres
@@ -24,7 +23,7 @@ from werrimbi_odom.workbench.views.floor import floor
 from werrimbi_odom.workbench.views.why import why
 
 SHORT = 5
-"""Lines of the verdict that are open at once."""
+"""Paragraphs of the verdict that are open at once."""
 
 MOST_ROWS = 12
 """Variables in the map."""
@@ -86,15 +85,15 @@ def _ask(tab: Tab) -> None:
                 why(tab, tab.why)
 
 
-def _verdict(told: Told) -> None:
-    lines = unwrapped(words_of(told, STEPS))
+def _verdict(found: Told) -> None:
+    parts = words_of(found, STEPS)
     with box("div", "verdict"):
-        text("p", lines[0], "headline", data_key="verdict")
-        paragraphs("\n".join(lines[1:SHORT]))
-        if len(lines) > SHORT:
+        text("p", parts[0].text, "headline", data_key="verdict")
+        prose(parts[1:SHORT])
+        if len(parts) > SHORT:
             with box("details"):
                 text("summary", "More words")
-                paragraphs("\n".join(lines[SHORT:]))
+                prose(parts[SHORT:])
 
 
 def _add_all(tab: Tab, diagnosis: Diagnosis) -> None:

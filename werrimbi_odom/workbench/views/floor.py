@@ -6,9 +6,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from werrimbi_odom.report.document import Table
 from werrimbi_odom.workbench.drawings import floor_figure
 from werrimbi_odom.workbench.figure import figure
-from werrimbi_odom.workbench.html import box, button, rows, text
+from werrimbi_odom.workbench.html import box, button, prose, text
 from werrimbi_odom.workbench.parts import figures_of, worst
 from werrimbi_odom.workbench.tab import Tab, millimetres
 
@@ -50,7 +51,7 @@ def floor(tab: Tab) -> None:
                 ]
             )
         heads = ["run", "when", "motion", "along", "sideways", "heading"]
-        rows(heads, lines, "The worst of these legs, measured minus predicted")
+        prose([Table("The worst of these legs, measured minus predicted", heads, lines)])
 
 
 def _which_drives(tab: Tab) -> None:

@@ -14,12 +14,6 @@ from werrimbi_odom.workbench.html import box, button, text
 from werrimbi_odom.workbench.tab import VIEWS, Tab, millimetres, percent
 
 TITLES = {"compare": "Compare", "diagnose": "Diagnose", "add": "Add", "save": "Save"}
-ASKS = {
-    "compare": "Where does the model fail?",
-    "diagnose": "Which effect is missing?",
-    "add": "Does it help?",
-    "save": "The new robot file",
-}
 
 
 def strip(tab: Tab) -> None:

@@ -9,7 +9,7 @@ from nicegui import ui
 from werrimbi_odom.effects.page import MEANING, numbers, page_of
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.report.sketches.library import effect_sketch
+from werrimbi_odom.report.sketches import effect_sketch
 from werrimbi_odom.workbench.html import box, text
 from werrimbi_odom.workbench.tab import Tab
 

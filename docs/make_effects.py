@@ -2,12 +2,11 @@
 # SPDX-License-Identifier: Apache-2.0
 """The chapter of docs/effects.md that is made from the library; the rest of it is written by hand.
 
-``python -m werrimbi_odom.effects.handbook docs/effects.md`` makes it anew.
+`python docs/make_effects.py` makes it anew.
 """
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -15,7 +14,7 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.effects.page import as_markdown
 from werrimbi_odom.model.effect import Effect
 
-BEGIN = "<!-- made by werrimbi_odom.effects.handbook; write elsewhere -->"
+BEGIN = "<!-- made by docs/make_effects.py; write elsewhere -->"
 END = "<!-- made until here -->"
 
 
@@ -38,5 +37,5 @@ def _chapter(effects: Sequence[Effect]) -> str:
 
 
 if __name__ == "__main__":
-    page = Path(sys.argv[1])
+    page = Path(__file__).with_name("effects.md")
     page.write_text(with_chapter(page.read_text(encoding="utf-8")), encoding="utf-8")

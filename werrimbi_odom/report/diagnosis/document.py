@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping
 
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -26,26 +25,16 @@ from werrimbi_odom.report.diagnosis.figures import ranking_figure, set_up_figure
 from werrimbi_odom.report.diagnosis.manoeuvre_figure import ideal_of, manoeuvre_figure
 from werrimbi_odom.report.diagnosis.tables import tables_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
+from werrimbi_odom.report.document import Document, Shown
 from werrimbi_odom.report.over_variable import before_after_figure
-from werrimbi_odom.report.page import NOTHING_SAID, Page, Shown
-from werrimbi_odom.report.sketches.library import effect_sketch
+from werrimbi_odom.report.sketches import effect_sketch
 
 _LISTED = 8
 
 
-def diagnosis_page(
-    told: Told, steps: NextSteps | None = None, made: Mapping[str, str] = NOTHING_SAID
-) -> Page:
-    """The report as a page; `made`: command, files, options."""
+def document_of(told: Told, steps: NextSteps | None = None) -> Document:
+    """Everything that is told."""
     diagnosis = told.diagnosis
-    shown = [
-        *_effects(diagnosis),
-        *_before_after(diagnosis),
-        *_ranking(diagnosis),
-        *_evidence(diagnosis),
-        *_next(diagnosis, told.manoeuvre),
-        *_sketches(diagnosis),
-    ]
     title = {
         "none": "Nothing is missing",
         "named": f"What is missing: {', '.join(diagnosis.found)}",
@@ -55,8 +44,18 @@ def diagnosis_page(
     if diagnosis.set_up.wrong:
         mistakes = ", ".join(item.effect for item in diagnosis.set_up.wrong)
         title = f"What is set up wrongly: {mistakes}"
-    return Page(
-        title, words_of(told, steps or NextSteps()), shown, tables_of(diagnosis, told.sights), made
+    return Document(
+        title=title,
+        words=words_of(told, steps or NextSteps()),
+        tables=tables_of(diagnosis, told.sights),
+        draw=lambda: [
+            *_effects(diagnosis),
+            *_before_after(diagnosis),
+            *_ranking(diagnosis),
+            *_evidence(diagnosis),
+            *_next(diagnosis, told.manoeuvre),
+            *_sketches(diagnosis),
+        ],
     )
 
 

@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.report.adding.figures import (
     error_falling_figure,
@@ -13,14 +11,23 @@ from werrimbi_odom.report.adding.figures import (
     steps_of,
 )
 from werrimbi_odom.report.adding.words import words_of
+from werrimbi_odom.report.diagnosis.document import effect_card
 from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure
-from werrimbi_odom.report.diagnosis.page import effect_card
+from werrimbi_odom.report.document import Document, Shown
 from werrimbi_odom.report.numbers import listed
-from werrimbi_odom.report.page import NOTHING_SAID, Page, Shown
 
 
-def adding_page(added: Added, made: Mapping[str, str] = NOTHING_SAID) -> Page:
-    """The report as a page; `made`: command, files, options."""
+def document_of(added: Added) -> Document:
+    """Everything that is told."""
+    return Document(
+        title=f"Added: {listed([effect.name for effect in added.effects])}",
+        words=words_of(added),
+        draw=lambda: figures_of(added),
+    )
+
+
+def figures_of(added: Added) -> list[Shown]:
+    """The error falling, and what is left."""
     shown = [
         Shown(
             "falling",
@@ -61,9 +68,4 @@ def adding_page(added: Added, made: Mapping[str, str] = NOTHING_SAID) -> Page:
                 main=False,
             )
         )
-    return Page(
-        f"Added: {listed([effect.name for effect in added.effects])}",
-        words_of(added),
-        shown,
-        made=made,
-    )
+    return shown

@@ -4,18 +4,28 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 
-from werrimbi_odom.report.page import Page, Shown
+from werrimbi_odom.report.document import Document, Shown, Table
 from werrimbi_odom.report.path_figure import PathDrawing, path_figure, spread_along_path
 from werrimbi_odom.report.reckoning import Reckoning
-from werrimbi_odom.report.text import pairs
 
 _POINTS = 2000  # of the path, that are drawn
 
 
-def reckoning_page(found: Reckoning) -> Page:
-    """The report as a page."""
+def document_of(found: Reckoning, robot: Path) -> Document:
+    """Everything that is told; `robot`: its file."""
+    title = f"{found.run.name}: wheel odometry"
+    return Document(
+        title=title,
+        words=[Table(f"{title} of {robot}", (), list(found.rows()))],
+        draw=lambda: [_path(found)],
+    )
+
+
+def _path(found: Reckoning) -> Shown:
     driven, reference = found.driven, found.run.reference
     some = np.concatenate([[0], spread_along_path(driven.x, driven.y, _POINTS)])
     drawing = PathDrawing(
@@ -25,10 +35,8 @@ def reckoning_page(found: Reckoning) -> Page:
         None if reference is None else reference.x,
         None if reference is None else reference.y,
     )
-    title = f"{found.run.name}: wheel odometry"
     see = (
         "Ellipses hold the robot 95 times in 100, if the model is right: what was measured should "
         "lie in them."
     )
-    shown = Shown("path", "The path, and how sure it is", see, {"": path_figure(drawing)})
-    return Page(title, pairs(title, list(found.rows())), [shown])
+    return Shown("path", "The path, and how sure it is", see, {"": path_figure(drawing)})

@@ -6,14 +6,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.report.document import Document, Shown
 from werrimbi_odom.report.fleet.rows import ERROR, Fleet, Row
-from werrimbi_odom.report.fleet.tables import fleet_table_html
+from werrimbi_odom.report.fleet.tables import robots_table
 from werrimbi_odom.report.fleet.words import missing_words, words_of
-from werrimbi_odom.report.page import Page, Shown
+from werrimbi_odom.report.page import table_html
 from werrimbi_odom.report.save import save_report
 from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, PAPER, escaped, plain
 
@@ -142,14 +144,18 @@ def write_fleet_page(fleet: Fleet, path: Path, made: Mapping[str, str]) -> list[
     InputError
         When it cannot be written, or a picture was asked for and there is nothing to draw.
     """
-    page = fleet_page(fleet, made)
-    if path.suffix.lower() in (".pdf", ".png") and not any(each.figures for each in page.shown):
+    document = replace(document_of(fleet), made=made)
+    if path.suffix.lower() in (".pdf", ".png") and fleet_figure(fleet) is None:
         raise InputError(f"--report {path}: no robot has a held-out error to draw; try .html")
-    return save_report(page, path)
+    return save_report(document, path)
 
 
-def fleet_page(fleet: Fleet, made: Mapping[str, str]) -> Page:
-    """The report as a page."""
+def document_of(fleet: Fleet) -> Document:
+    """Everything that is told."""
+    return Document(title=_title(fleet), words=words_of(fleet), draw=lambda: _figures(fleet))
+
+
+def _figures(fleet: Fleet) -> list[Shown]:
     figure = fleet_figure(fleet)
     shown = []
     if figure is not None:
@@ -169,10 +175,10 @@ def fleet_page(fleet: Fleet, made: Mapping[str, str]) -> Page:
             "The robots",
             "What each of them is missing, how large that is (± one standard deviation), and what "
             "to do next.",
-            html=fleet_table_html(fleet),
+            html=table_html(robots_table(fleet)),
         )
     )
-    return Page(_title(fleet), words_of(fleet), shown, "", made)
+    return shown
 
 
 def _title(fleet: Fleet) -> str:

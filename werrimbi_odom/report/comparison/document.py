@@ -4,16 +4,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.inference.comparison.compare import Comparison
+from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
 from werrimbi_odom.report.comparison.path_figure import path_figure
 from werrimbi_odom.report.comparison.tables import tables_of
 from werrimbi_odom.report.comparison.words import words_of
+from werrimbi_odom.report.document import Document, Shown
 from werrimbi_odom.report.over_variable import error_against_figure, variables_of
-from werrimbi_odom.report.page import NOTHING_SAID, Page, Shown
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
@@ -21,15 +21,20 @@ if TYPE_CHECKING:
 _RUNS = 40  # that can be chosen one by one: more would make the file too large to mail
 
 
-def compare_page(
-    comparison: Comparison,
-    *,
-    next_step: str = "`werrimbi diagnose`",
-    made: Mapping[str, str] = NOTHING_SAID,
-) -> Page:
-    """The report as a page; `made`: command, files, options."""
+def document_of(comparison: Comparison, command: str = "") -> Document:
+    """Everything that is told; `command`: the whole one of the next step."""
+    verdict = verdict_of(comparison)
+    return Document(
+        title="Model against measurement",
+        words=words_of(comparison, verdict=verdict, command=command),
+        tables=tables_of(comparison, verdict),
+        draw=lambda: _figures(comparison),
+    )
+
+
+def _figures(comparison: Comparison) -> list[Shown]:
     against = {name: error_against_figure(comparison, name) for name in variables_of(comparison)}
-    shown = [
+    return [
         Shown(
             "path",
             "Where the model fails",
@@ -63,13 +68,6 @@ def compare_page(
             "Errors against:",
         ),
     ]
-    return Page(
-        "Model against measurement",
-        words_of(comparison, next_step=next_step),
-        shown,
-        tables_of(comparison),
-        made,
-    )
 
 
 def _paths(comparison: Comparison) -> dict[str, go.Figure]:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The table of parameters for docs/node.md, from their one declaration.
 
-python -m werrimbi_odom.files.parameter_table
+python docs/make_parameter_table.py
 """
 
 from __future__ import annotations
