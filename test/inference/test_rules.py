@@ -74,6 +74,7 @@ ELSEWHERE = {
         "_MEDIAN_CHI2_3": "a quantile",
         "_TAIL": "Student's t until jumps are known; the fit itself is without it",
     },
+    "fitting/wandering.py": {"ANEW": "as good as infinite"},
     "fitting/knobs.py": {"STEP": "of a derivative"},
     "fitting/noise.py": {
         "_LOWEST": "where the search of a variance ends",

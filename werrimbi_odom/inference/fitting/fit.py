@@ -10,7 +10,7 @@ their likelihood. What the driving does not excite is left as it was.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +41,7 @@ from werrimbi_odom.inference.rules import (
     NOISE_NUMBERS,
     TYPICAL_GYRO_WALK,
     TYPICAL_STAMP_NOISE,
+    TYPICAL_WALK,
 )
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -97,9 +98,10 @@ def start_point(
         sigma_xy or MOTION_CAPTURE_XY,
         sigma_yaw or MOTION_CAPTURE_YAW,
         TYPICAL_STAMP_NOISE,
+        *TYPICAL_WALK,
     )
     if headings_alone(laid) and sigma_yaw is None:
-        guess = (*guess[:3], TYPICAL_GYRO_WALK, guess[4])
+        guess = (*guess[:3], TYPICAL_GYRO_WALK, *guess[4:])
     own = tuple(_nuisances(robot, run) for run in laid.runs)
     return Point(
         Model(robot, own),
@@ -263,13 +265,9 @@ def moved(model: Model, design: Design, step: Floats) -> Model:
 
 
 def _scaled(variances: Variances, factor: float) -> Variances:
-    return Variances(
-        variances.left * factor,
-        variances.right * factor,
-        variances.xy * factor,
-        variances.yaw * factor,
-        variances.stamp * factor,
-    )
+    parts = {item.name: getattr(variances, item.name) for item in fields(variances)}
+    scaled = {name: part * factor for name, part in parts.items() if name != "reversion"}
+    return replace(variances, **scaled)
 
 
 def _nuisances(robot: Robot, run: MatchedRun) -> dict[str, float]:
