@@ -203,6 +203,16 @@ def test_a_localiser_shows_nothing_where_nothing_is(seed: int) -> None:
     assert found.verdict == "none"
 
 
+def test_a_wrong_base_shows_in_turns_and_not_in_the_lines_after_them(runs: list[Run]) -> None:
+    """The reference's heading would be doubted for it, and every line after a turn go sideways."""
+    robot = TRUE.entered()
+    wrong = replace(robot, wheel_separation_multiplier=1.0 / 1.1)
+    right, off = (
+        compare(runs[:3], one, "local_map").main.by_motion["line"].figures for one in (robot, wrong)
+    )
+    assert off.rmse_position_m < 1.4 * right.rmse_position_m
+
+
 def test_few_poses_have_the_noise_that_is_usual() -> None:
     [run] = session(range(1), jumps=0)
     assert run.reference is not None

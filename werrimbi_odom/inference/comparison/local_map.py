@@ -23,10 +23,13 @@ from werrimbi_odom.inference.fitting.own_values import with_own_values
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import Record, cut_finely
-from werrimbi_odom.inference.rules import NOISE_NUMBERS, UNKNOWN_HEADING
+from werrimbi_odom.inference.rules import HONEST_WITHIN, NOISE_NUMBERS, UNKNOWN_HEADING
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+
+_MEDIAN_OF_A_SHARE = 2.366 / 3.0
+_ROUNDS = 6
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,22 +72,37 @@ def errors_on_map(
 ) -> tuple[Floats, Floats]:
     """Errors of legs, (m, 3), NaN where not measured, and their covariances, (m, 3, 3).
 
-    Legs on which the reference jumped have what they have by their two poses.
+    A model that is wrong would lay its own errors upon the reference, and show them in all legs
+    after; so errors are those of a filter that doubts the wheels as much as they warrant, and their
+    covariance is that of the noise as stated. Legs on which the reference jumped have what they
+    have by their two poses.
     """
     robot = model.robot
     wheels = np.square([robot.left_wheel_noise, robot.right_wheel_noise])
-    found = innovations(
-        robot,
-        runs,
-        prediction,
-        replace(variances, left=wheels[:1], right=wheels[1:]),
-        "local_map",
-        excluded=jumped,
-        start_yaws=model.start_yaws,
-        heading=UNKNOWN_HEADING,
-    )
+    doubt, honest = 1.0, None
+    for _ in range(_ROUNDS):
+        found = innovations(
+            robot,
+            runs,
+            prediction,
+            replace(variances, left=doubt * wheels[:1], right=doubt * wheels[1:]),
+            "local_map",
+            excluded=jumped,
+            start_yaws=model.start_yaws,
+            heading=UNKNOWN_HEADING,
+        )
+        honest = found.covariance[0] if honest is None else honest
+        counted = found.known.any(axis=1)
+        if not counted.any():
+            break
+        share = np.sum(found.whitened()[counted] ** 2, axis=1) / found.known[counted].sum(axis=1)
+        usual = float(np.median(share)) / _MEDIAN_OF_A_SHARE
+        if usual <= HONEST_WITHIN:
+            break
+        doubt *= usual
+    assert honest is not None
     view = view_of(robot.effects)
     start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
     plain = errors_between(start, finish, prediction)
     error = np.where(found.known, found.value[0], np.where(jumped[:, None], plain, np.nan))
-    return error, found.covariance[0]
+    return error, honest

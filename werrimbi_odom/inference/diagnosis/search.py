@@ -135,7 +135,8 @@ def instead_of_calibration(
     nuisances = model.nuisance_knobs
     held = {applied.name for applied in model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
-    looked_at = candidates(effects, held, channels, len(runs.runs))
+    wanders = kind == "local_map"  # on a map that somebody made, by a laser's metre
+    looked_at = candidates(effects, held, channels, len(runs.runs), own_scale=wanders)
     found = scores(runs, point, kind, (*calibrated.knobs, *nuisances), looked_at)
     results = []
     for score in worth_fitting(best_of_each(found))[:INSTEAD_FITTED]:

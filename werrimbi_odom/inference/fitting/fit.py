@@ -27,7 +27,7 @@ from werrimbi_odom.inference.fitting.knobs import (
     Model,
     shared_of,
 )
-from werrimbi_odom.inference.fitting.likelihood import Variances, headings_alone
+from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import held_variances, likeliest, prior_cost
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict, predict_all
 from werrimbi_odom.inference.fitting.together import Together, laid_out
@@ -100,7 +100,7 @@ def start_point(
         TYPICAL_STAMP_NOISE,
         *TYPICAL_WALK,
     )
-    if headings_alone(laid) and sigma_yaw is None:
+    if laid.headings_alone and sigma_yaw is None:
         guess = (*guess[:3], TYPICAL_GYRO_WALK, *guess[4:])
     own = tuple(_nuisances(robot, run) for run in laid.runs)
     return Point(
@@ -202,7 +202,7 @@ def without_jumps(runs: Together, point: Point, kind: ReferenceKind) -> Point:
 
 def _jumps(runs: Together, point: Point, kind: ReferenceKind) -> tuple[NDArray[np.bool_], ...]:
     nothing = tuple(np.zeros(size, dtype=np.bool_) for size in np.diff(runs.legs))
-    if headings_alone(runs):
+    if runs.headings_alone:
         return nothing  # a gyro does not jump; legs that deviate are those that turn
     white = unexpected(runs, replace(point, excluded=nothing), kind).whitened()
     deviation = np.sum(white**2, axis=-1)

@@ -133,7 +133,7 @@ def innovations(
     skip = runs.gap if excluded is None else runs.gap | excluded
     view = view_of(robot.effects)
     start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
-    gyro = headings_alone(runs)
+    gyro = runs.headings_alone
     if kind == "incremental" and not gyro:
         return _of_increments(robot, runs, (start, finish), prediction, variances, skip)
     begins = np.zeros(count, dtype=np.bool_)
@@ -212,11 +212,6 @@ def errors_between(start: Floats, finish: Floats, prediction: Prediction) -> Flo
     return np.asarray(error)
 
 
-def headings_alone(runs: Together) -> bool:
-    """Whether the references measure headings and nothing else: gyros, mostly."""
-    return not np.isfinite(runs.finish[:, :2]).any()
-
-
 def stamp_noise(prediction: Prediction, duration: Floats) -> Floats:
     """Variance of a heading for stamps that err by 1 s, at the turn rate of each leg; (m,)."""
     return np.asarray(np.square(prediction.turn / duration))
@@ -226,7 +221,7 @@ def _reading(
     robot: Robot, variances: Variances, runs: Together, prediction: Prediction, *, adds_up: bool
 ) -> Floats:
     """Covariance of a measured pose, and of the counters' reading with it; (g, 1 or m, 3, 3)."""
-    alone = headings_alone(runs)
+    alone = runs.headings_alone
     reading = np.zeros((variances.left.size, runs.count if alone else 1, 3, 3))
     reading[..., 0, 0] = reading[..., 1, 1] = variances.xy[:, None]
     if not adds_up:

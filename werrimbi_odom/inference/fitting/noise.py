@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.chances import NORMAL_95
 from werrimbi_odom.inference.fitting.costs import Costs
-from werrimbi_odom.inference.fitting.likelihood import Variances, headings_alone
+from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.prediction import Prediction
 from werrimbi_odom.inference.fitting.together import laid_out
 from werrimbi_odom.inference.rules import (
@@ -143,7 +143,7 @@ def _prior(costs: Costs) -> tuple[Floats, Floats]:
     if costs.kind == "local_map":
         middle[2:4], spread[2:4] = TYPICAL_MATCH, MATCH_SPREAD
         spread[5:] = WALK_SPREAD
-    if costs.kind == "incremental" and headings_alone(runs):
+    if costs.kind == "incremental" and runs.headings_alone:
         seconds = float(runs.duration.sum() / runs.intervals.sum())
         middle[3], spread[3] = TYPICAL_GYRO_WALK * np.sqrt(seconds), GYRO_WALK_SPREAD
     return np.log(middle), spread
