@@ -40,7 +40,7 @@ def localised(
     thrown = random.choice(np.arange(30, kept.size), jumps, replace=False)
     for row, share in enumerate(kept):
         new = share * error[-1] + math.sqrt(1.0 - share**2) * size * random.standard_normal(3)
-        error.append(new + (np.array([0.4, -0.4, 0.15]) if row in thrown else 0.0))
+        error.append(new + (np.array([0.15, -0.15, 0.08]) if row in thrown else 0.0))
     x, y, yaw = np.array(error).T
     seen = Reference(reference.time, reference.x + x, reference.y + y, reference.yaw + yaw)
     return replace(run, reference=seen)
@@ -192,7 +192,7 @@ def test_legs_are_as_wrong_as_promised_at_every_length(runs: list[Run]) -> None:
 def test_a_localiser_shows_a_wrong_base(runs: list[Run]) -> None:
     robot = replace(TRUE.entered(), wheel_separation_multiplier=1.0 / 1.03)
     others = [find(name) for name in ("castor_kick", "floor_slope", "lateral_slip")]
-    found = diagnose(runs[:2], robot, others, "local_map")
+    found = diagnose(runs[:3], robot, others, "local_map")
     assert (found.verdict, found.effect) == ("named", "track_width")
 
 
