@@ -78,6 +78,8 @@ def test_a_false_metre_is_larger_wheels_on_a_wider_base() -> None:
         find("track_width").using(multiplier=1.01),
     )
     np.testing.assert_allclose(larger, measured() * [1.01, 1.01, 1.0], atol=1e-12)
+    own = measured(find("reference_scale").using(multiplier=1.01))
+    np.testing.assert_allclose(larger, own, atol=1e-12)
 
 
 def test_a_skidding_robot_is_a_wider_base_and_another_point_measured() -> None:
@@ -112,7 +114,11 @@ def test_with_yaw_alone_these_do_not_show(name: str) -> None:
 
 # -- everybody else ---------------------------------------------------------------------------
 
-CONTINUOUS = [effect for effect in LIBRARY if not effect.is_mistake]
+CONTINUOUS = [
+    effect
+    for effect in LIBRARY
+    if not effect.is_mistake and effect.name != "reference_scale"  # base and radii together
+]
 CALIBRATION = ("track_width", "unequal_wheel_radii", "wheel_radius_scale")
 
 

@@ -61,6 +61,7 @@ def test_a_chain_is_composed_where_it_was_measured(tmp_path: Path, ros: Any, rob
         expected = np.array([truth(t) for t in reference.time])
         found = np.stack([reference.x, reference.y, np.unwrap(reference.yaw)], axis=1)
         np.testing.assert_allclose(found, expected, atol=1e-9)
+        assert reference.kind == "local_map", "a localiser's error wanders"
 
 
 def test_fixed_transforms_are_part_of_it_and_it_may_go_upwards(

@@ -57,6 +57,7 @@ def test_a_covariance_of_each_pose_is_kept(tmp_path: Path, ros: Any, robot: Any)
     assert reference is not None
     np.testing.assert_allclose(reference.sigma_xy, [math.sqrt(0.02), np.nan])
     np.testing.assert_allclose(reference.sigma_yaw, [0.02, np.nan])
+    assert reference.kind == "local_map", "on a map: AMCL, SLAM"
 
 
 def test_what_is_no_pose_is_not_measured(tmp_path: Path, ros: Any, robot: Any) -> None:

@@ -11,15 +11,17 @@ import pytest
 
 from test.recorded_robots import ROBOTS, with_recordings
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
-from werrimbi_odom.effects import LIBRARY
+from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, judged_by, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.diagnosis.values import values_of
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.manoeuvres.by_hand import for_twins
 from werrimbi_odom.inference.rules import STRANGE_NOISE
 from werrimbi_odom.model.robot import Robot
 
@@ -102,10 +104,42 @@ def test_a_gyro_gives_base_and_delay_and_nothing_else_at_any_rate(
     runs = [gyro_drive(seed, late=0.08, stamps=2e-3, every=every) for seed in range(20, 24)]
     found = diagnose(runs, NOMINAL, LIBRARY, kind)
     assert set(found.found) == {"reference_delay", "track_width"}
-    assert found.rivals == ()
+    first = found.effect == "track_width"
+    assert found.rivals == (("track_width", "reference_scale") if first else ())
     assert found.final.held == ("wheel_radius_scale",)
     assert found.holdout.unit == "rad"
     assert found.holdout.after < 0.2 * found.holdout.before
+
+
+@pytest.mark.parametrize("scale", [1.02, pytest.param(0.85, marks=pytest.mark.evidence)])
+def test_a_gyros_own_scale_is_told_beside_the_base_and_not_as_certain(scale: float) -> None:
+    """By headings alone no drive can tell them; where positions are measured too, it can."""
+    random = np.random.default_rng(31)
+    true = WhiteNoiseRobot(0.35, 0.05, 0.05, 5e-4, 5e-4)
+    whole = [drive(true, wandering(random, 60.0), random, every=5) for _ in range(2)]
+    gyros = []
+    for number, run in enumerate(whole):
+        assert run.reference is not None
+        time, nothing = run.reference.time, np.full(run.reference.time.size, np.nan)
+        seen = Reference(time, nothing, nothing, scale * run.reference.yaw)
+        gyros.append(replace(run, name=f"run_{number}", reference=seen))
+    found = diagnose(gyros, NOMINAL, LIBRARY, "incremental")
+    assert (found.verdict, found.rivals) == ("ambiguous", ("track_width", "reference_scale"))
+    own = values_of(found, "reference_scale")["multiplier"]
+    assert abs(own.value - scale) < max(3.0 * own.std, 1e-3 * scale)
+    move = for_twins([find(name) for name in found.rivals], positions=False)
+    assert move is not None
+    assert move.name == "ten_turns_by_hand"
+    known = replace(NOMINAL, effects=(find("reference_scale").using(multiplier=scale),))
+    assert diagnose(gyros, known, LIBRARY, "incremental").verdict == "none"
+
+
+def test_a_base_beyond_what_a_gyro_can_be_off_is_the_base() -> None:
+    runs = [gyro_drive(seed) for seed in (40, 41)]
+    narrow = replace(NOMINAL, wheel_separation_multiplier=0.8)
+    found = diagnose(runs, narrow, LIBRARY, "incremental")
+    assert found.effect == "track_width"
+    assert "reference_scale" not in found.rivals
 
 
 def test_a_noise_that_no_wheel_has_is_not_written() -> None:

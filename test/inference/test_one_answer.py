@@ -63,6 +63,7 @@ CASES: dict[str, tuple[Callable[[Run], Run], ReferenceKind, Robot]] = {
     "headings alone": (lambda run: parts(run, "yaw"), "absolute", WRONG),
     "increments": (lambda run: run, "incremental", WRONG),
     "increments with gaps": (silent, "incremental", WRONG),
+    "on a map with gaps": (silent, "local_map", WRONG),
     "differing measures": (differing, "absolute", WRONG),
     "a phase that nobody knows": (silent, "absolute", UNKNOWN_PHASE),
 }
@@ -84,7 +85,7 @@ def figures(statistics: LegStatistics) -> list[float]:
     return [statistics.rmse_position_m, statistics.median_position_m, statistics.rmse_yaw_rad]
 
 
-LONG = ("positions alone", "a gap of the ticks", "a gap of the reference")
+LONG = ("positions alone", "a gap of the ticks", "a gap of the reference", "on a map with gaps")
 
 
 @pytest.mark.parametrize(

@@ -33,6 +33,10 @@ ELSEWHERE = {
     "calibration/umbmark_equations.py": {"QUARTER": "a corner of a square"},
     "chances.py": {"MEDIAN_TO_SIGMA": "of the normal law", "NORMAL_95": "a quantile"},
     "comparison/legs.py": {"CHI2_95": "quantiles"},
+    "comparison/local_map.py": {
+        "_MEDIAN_OF_A_SHARE": "a quantile",
+        "_ROUNDS": "passes of the search of a doubt",
+    },
     "comparison/over_variable.py": {
         "_BINS": "of a figure",
         "_FEWEST": "of a figure",
@@ -74,6 +78,7 @@ ELSEWHERE = {
         "_MEDIAN_CHI2_3": "a quantile",
         "_TAIL": "Student's t until jumps are known; the fit itself is without it",
     },
+    "fitting/wandering.py": {"ANEW": "as good as infinite"},
     "fitting/knobs.py": {"STEP": "of a derivative"},
     "fitting/noise.py": {
         "_LOWEST": "where the search of a variance ends",

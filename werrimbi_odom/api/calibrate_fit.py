@@ -64,12 +64,13 @@ def calibrated(given: Recordings) -> Result[Calibration]:
         given, runs=tuple(looked_at(run, source.robot, source.limits) for run in given.runs)
     )
     runs = match_finely(given.runs, source.robot, how.leg, source.limits)
+    kind = given.judging["kind"]
     found = calibrate(
         runs,
         source.robot,
-        given.judging["kind"],
-        sigma_xy=how.sigma_xy or stated(runs, "sigma_xy"),
-        sigma_yaw=how.sigma_yaw or stated(runs, "sigma_yaw"),
+        kind,
+        sigma_xy=how.sigma_xy or stated(runs, "sigma_xy", kind),
+        sigma_yaw=how.sigma_yaw or stated(runs, "sigma_yaw", kind),
     )
     left_out = _left_out(given, runs, found)
     figures = _json(found)

@@ -28,8 +28,9 @@ class Options(TypedDict, total=False):
     """How drives are judged; what is left out is as the command line has it."""
 
     reference_kind: ReferenceKind | None
-    """"absolute": each pose of the reference has noise of its own; "incremental": it adds up. Not
-    given: incremental for a gyro, and a localiser (map -> odom -> base_link), in a bag."""
+    """"absolute": each pose of the reference has noise of its own; "incremental": it adds up;
+    "local_map": it also wanders slowly. Not given: incremental for a gyro, local_map for a
+    localiser (map -> odom -> base_link, AMCL), in a bag."""
     leg: float
     """Length of the legs that are judged [m]; 1 where it is not given."""
     reference_sigma_xy: float | None

@@ -64,10 +64,11 @@ def add_recording_arguments(
     )
     parser.add_argument(
         "--reference-kind",
-        choices=("absolute", "incremental"),
+        choices=("absolute", "incremental", "local_map"),
         help="absolute: each pose has noise of its own (motion capture); incremental: it adds up "
-        "along the way (scan matcher). If not given: incremental for a gyro and for the poses "
-        "of a localiser (map -> odom -> base_link), else absolute",
+        "along the way (each scan matched with the last one); local_map: it also wanders slowly, "
+        "about a map (a localiser, SLAM, scans matched with a map). If not given: incremental for "
+        "a gyro, local_map for a localiser (map -> odom -> base_link, AMCL), else absolute",
     )
     parser.add_argument(
         "--reference-sigma-xy",
@@ -146,15 +147,13 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
         found = read(asked, collection, show)
     circles = refuse_circles(found)
     wanders = any(
-        run.reference is not None
-        and run.reference.kind == "incremental"
-        and run.reference.has_position.any()
+        run.reference is not None and run.reference.kind == "local_map"
         for run in (*found.runs, *found.holdout)
     )
     if arguments.reference_kind is None and wanders:
         circles.append(
-            "the reference is a localiser, whose errors wander: they are taken to add up along the "
-            "way (--reference-kind absolute: to be new at each pose)"
+            "the reference is a localiser, whose errors wander: that is reckoned with "
+            "(--reference-kind local_map; absolute: they are new at each pose)"
         )
     remark(found.source, *words_about((*found.runs, *found.holdout)), *circles)
     return found

@@ -16,6 +16,7 @@ from werrimbi_odom.effects.radius_drift import radius_drift
 from werrimbi_odom.effects.reference_clock import reference_delay, reference_heading_delay
 from werrimbi_odom.effects.reference_mirrored import reference_mirrored
 from werrimbi_odom.effects.reference_mount import reference_lever_arm, reference_yaw_offset
+from werrimbi_odom.effects.reference_scale import reference_scale
 from werrimbi_odom.effects.sideways_drift import sideways_drift
 from werrimbi_odom.effects.skid_steer import skid_steer
 from werrimbi_odom.effects.track_width import track_width
@@ -51,6 +52,7 @@ LIBRARY: tuple[Effect, ...] = (
     reference_yaw_offset,
     reference_delay,
     reference_heading_delay,
+    reference_scale,
     encoder_skew,
     wheels_swapped,
     left_wheel_reversed,

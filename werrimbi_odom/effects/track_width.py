@@ -4,14 +4,14 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.effects.twins import radii_over_base
+from werrimbi_odom.effects.twins import own_scale, radii_over_base
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, Sketch, body_effect
 from werrimbi_odom.model.motion import BodyMotion, Number
 
 
 @body_effect(
-    twins=(radii_over_base("wheel_radius_scale"),),
+    twins=(radii_over_base("wheel_radius_scale"), own_scale("reference_scale", inverse=True)),
     sketch=Sketch(
         "track",
         "the wheels' contact points are farther apart than entered",

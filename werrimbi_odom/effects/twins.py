@@ -48,6 +48,21 @@ def radii_over_base(name: str) -> Twin:
     )
 
 
+def own_scale(name: str, inverse: bool = False) -> Twin:
+    """The base, or both radii, or what a gyro takes for a turn."""
+    return Twin(
+        name,
+        told_apart_by="where headings alone are measured a base that is wider and a gyro that "
+        "shows too little of a turn are one; a hand can tell",
+        do="turn the robot by hand ten times, from a line on the floor back onto it: the "
+        "reference's heading must change by 3600 degrees, and over that it is its own scale",
+        manoeuvre="ten_turns_by_hand",
+        values={"multiplier": ("multiplier", 1.0)},
+        of_headings=True,
+        inverse=inverse,
+    )
+
+
 def turning_about_another_point(name: str) -> Twin:
     """A robot that turns about another point than its middle, or a marker that is not there."""
     return Twin(

@@ -4,14 +4,14 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.effects.twins import radii_over_base
+from werrimbi_odom.effects.twins import own_scale, radii_over_base
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
 
 @wheel_effect(
-    twins=(radii_over_base("track_width"),),
+    twins=(radii_over_base("track_width"), own_scale("reference_scale")),
     sketch=Sketch(
         "radius", "both wheels are larger than entered", "each turn goes farther than was entered"
     ),
@@ -31,7 +31,8 @@ def wheel_radius_scale(
     Signature  every distance and every turn is off by the same share
     Ruler      drive straight between two chalk marks: multiplier = distance by tape / by odometry
     Twins      left_wheel_radius_multiplier and right_wheel_radius_multiplier of the robot file
-               together. A reference whose own metre is wrong (a calibration board printed at 99 %)
-               shows as this and track_width with the same multiplier: lay a tape beside it
+               together. A reference whose own metre is wrong (reference_scale; a calibration board
+               printed at 99 %) shows as this and track_width with the same multiplier: lay a tape
+               beside it
     """
     return WheelTravel(travel.left * multiplier, travel.right * multiplier)

@@ -162,16 +162,17 @@ def gathered(
         found.append(run)
     if how.kind is None:
         how = replace(how, kind=_kind_of(found))
-    if how.kind == "absolute":
+    if how.kind != "incremental":
         found = [without_held_poses(run, source.robot) for run in found]
     count = len(runs)
     return Recordings(source, collection, tuple(found[:count]), tuple(found[count:]), how)
 
 
 def _kind_of(runs: Sequence[Run]) -> ReferenceKind:
-    """Incremental where that is known of the reference of any drive."""
+    """What is known of the reference of any drive, else absolute."""
     kinds = {run.reference.kind for run in runs if run.reference is not None}
-    return "incremental" if "incremental" in kinds else "absolute"
+    known: tuple[ReferenceKind, ...] = ("local_map", "incremental")
+    return next((kind for kind in known if kind in kinds), "absolute")
 
 
 def _read(path: Path, source: RobotFile, how: How, reference: Path | None) -> Run:

@@ -97,8 +97,8 @@ class ChainCollector:
             names = " and ".join(f"{each.parent} -> {each.child}" for each in measured)
             told += f", composed at each change of {names}"
             # A localiser corrects itself little by little: its error at one correction is much
-            # that of the one before, and what it errs between two of them adds up along the way.
-            kind = "incremental"
+            # that of the one before.
+            kind = "local_map"
         x, y = where[:, 0].copy(), where[:, 1].copy()
         return Reference(time, x, y, yaw, kind=kind), told
 

@@ -24,6 +24,10 @@ from werrimbi_odom.model.pose import Floats
 NAN = math.nan
 
 
+LOCALISED = "geometry_msgs/msg/PoseWithCovarianceStamped"
+"""What localisers publish."""
+
+
 class _Row(NamedTuple):
     frames: tuple[str, str]
     """Parent and child."""
@@ -78,6 +82,8 @@ class ReferenceCollector:
         sigmas = (each if np.isfinite(each).any() else None for each in (sigma_xy, sigma_yaw))
         told = f"{parent} -> {child}" if parent and child else f"frame {parent or child}"
         kind: ReferenceKind | None = "incremental" if self._source.kind == IMU else None
+        if self._source.kind == LOCALISED and parent == "map":
+            kind = "local_map"  # AMCL, SLAM: what they err by wanders
         return Reference(time, x, y, yaw, *sigmas, kind=kind), told
 
     def _frames(self) -> tuple[str, str]:
@@ -186,7 +192,7 @@ def _integrated(time: Floats, rate: Floats) -> Floats:
 _ROWS: dict[str, Callable[[Message], Iterator[_Row]]] = {
     "nav_msgs/msg/Odometry": _of_odometry,
     "geometry_msgs/msg/PoseStamped": _of_pose,
-    "geometry_msgs/msg/PoseWithCovarianceStamped": _of_pose_with_covariance,
+    LOCALISED: _of_pose_with_covariance,
     "geometry_msgs/msg/TransformStamped": _of_transform,
     "geometry_msgs/msg/PointStamped": _of_point,
     FIX: _of_fix,

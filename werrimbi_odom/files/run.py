@@ -18,8 +18,9 @@ from werrimbi_odom.model.pose import Floats
 EXACT = 2.0**53
 """Whole numbers below this are told apart by a float64."""
 
-ReferenceKind = Literal["absolute", "incremental"]
-"""Poses on one map, or each pose told from the last one (a matcher of scans)."""
+ReferenceKind = Literal["absolute", "incremental", "local_map"]
+"""Poses each with noise of its own (motion capture); each told from the last one, so that noise
+adds up (a gyro); or on a map, with an error that wanders slowly as well (a localiser)."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -112,6 +112,7 @@ DRAWINGS: Mapping[str, int] = {
     "lost_counts": 1,
     "mirrored": 0,
     "radius": 0,
+    "scale": 0,
     "shrinking": 0,
     "sideways": 0,
     "skid": 0,

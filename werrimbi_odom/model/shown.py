@@ -46,6 +46,7 @@ def shown(driven: Trajectory, view: View) -> Path:
     yaw = delayed(axle, view.delay + view.heading_delay).yaw + view.yaw
     dx, dy = _turned(view.ahead, view.left, seen.yaw)
     point = Path(driven.time, seen.x + dx, seen.y + dy, yaw, carried(seen.covariance, dx, dy))
+    point = _scaled(point, view.scale)
     return mirrored(point) if view.mirrored else point
 
 
@@ -58,10 +59,20 @@ def axle_of(measured: Pose, view: View) -> Pose:
     if view.mirrored:
         y, yaw = -y, -yaw
     yaw -= view.yaw
+    x, y = x / view.scale, y / view.scale
     cos, sin = math.cos(yaw), math.sin(yaw)
     return Pose(
         x - (cos * view.ahead - sin * view.left), y - (sin * view.ahead + cos * view.left), yaw
     )
+
+
+def _scaled(path: Path, scale: float) -> Path:
+    """Lengths as a reference shows them whose own metre is off."""
+    p, squared = path.covariance, scale * scale
+    larger = PoseCovariance(
+        squared * p.xx, squared * p.xy, scale * p.xyaw, squared * p.yy, scale * p.yyaw, p.yawyaw
+    )
+    return Path(path.time, scale * path.x, scale * path.y, path.yaw, larger)
 
 
 def mirrored(path: Path) -> Path:

@@ -22,3 +22,5 @@ class View(NamedTuple):
     """Its heading is later than its position by this [s]."""
     mirrored: bool = False
     """Its frame is left-handed."""
+    scale: float = 1.0
+    """What it shows over what was: of ways, or where headings alone are measured, of turns."""

@@ -4,6 +4,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -40,7 +42,9 @@ def covariance_along(comparison: Comparison, index: int) -> Floats:
     robot = comparison.model.of_run(index)
     group = next(item for item in comparison.prepared.groups if index in item.index)
     own = group.index.index(index)
-    xy, heading = float(group.sigma_xy[own]), float(group.sigma_yaw[own])
+    wander = group.own.noise.wander
+    xy = math.hypot(group.own.sigma_xy[own], wander[0])
+    heading = math.hypot(group.own.sigma_yaw[own], wander[1])
     yaw = float(path.predicted_yaw[0]) - view_of(robot.effects).yaw
     begin = int(np.clip(np.searchsorted(run.ticks.time, path.time[0]), 0, run.ticks.time.size - 2))
     ticks = run.ticks

@@ -24,13 +24,12 @@ from werrimbi_odom.inference.comparison.legs import (
     joined,
     statistics,
 )
+from werrimbi_odom.inference.comparison.own_noise import OwnNoise, ReferenceNoise, noise_of
 from werrimbi_odom.inference.comparison.reference_noise import (
     Measure,
     Residual,
     measured_alike,
-    reference_noise,
     residuals_of,
-    stamp_noise,
 )
 from werrimbi_odom.inference.fitting.knobs import YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.own_values import known_at_home
@@ -61,27 +60,10 @@ from werrimbi_odom.inference.rules import (
     OTHER_DRIVE_LEGS,
     OTHER_DRIVE_TURN,
     QUARTER_TURN,
-    TAPE_XY,
-    TAPE_YAW,
 )
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
-
-
-@dataclass(frozen=True, slots=True)
-class ReferenceNoise:
-    """Standard deviations of the reference itself, and how they are known."""
-
-    sigma_xy: float
-    """[m]"""
-    sigma_yaw: float
-    """[rad]"""
-    xy_told: str
-    """given (an option), stated (in the record), estimated, or assumed (too few poses)."""
-    yaw_told: str
-    sigma_stamp: float = 0.0
-    """Of the stamps of a reference of headings alone [s]."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -126,10 +108,8 @@ class _Group:
     whole: tuple[bool, ...]
     """Whether all rows of a run's reference are in `every`."""
     jumps: tuple[Floats, ...]
-    noise: ReferenceNoise
-    sigma_xy: Floats
-    """Of each run [m]."""
-    sigma_yaw: Floats
+    own: OwnNoise
+    """What the references err by themselves."""
     plain: tuple[Residual, ...]
     """Paths by the robot by whose travel the legs are cut."""
 
@@ -159,7 +139,7 @@ class Prepared:
     @property
     def noises(self) -> tuple[tuple[Measure, ReferenceNoise], ...]:
         """The reference's noise, for each of the ways in which it measures."""
-        return tuple((group.measure, group.noise) for group in self.groups)
+        return tuple((group.measure, group.own.noise) for group in self.groups)
 
     @property
     def left_out(self) -> tuple[LeftOut, ...]:
@@ -216,7 +196,7 @@ def prepare(
         record = record_of(alike, robot, limits, leg)
         members.setdefault(measure, []).append((index, record, alike is run))
     groups = tuple(
-        _group(robot, measure, found, kind, sigma_xy, sigma_yaw)
+        _group(robot, measure, found, kind, leg, sigma_xy, sigma_yaw)
         for measure, found in members.items()
     )
     show(0.5, "cutting legs")
@@ -293,19 +273,14 @@ def _group(
     measure: Measure,
     members: list[tuple[int, Record, bool]],
     kind: ReferenceKind,
+    leg: float,
     sigma_xy: float | None,
     sigma_yaw: float | None,
 ) -> _Group:
     every = together([every_pose(record) for _, record, _ in members])
     plain = Model(robot, tuple({} for _ in members))
     residuals, _ = residuals_of(plain, every, measure)
-    estimated = reference_noise(robot, residuals, kind)
-    position, of_position, told = _known(
-        sigma_xy, [run.sigma_xy for run in every.runs], estimated[0], TAPE_XY
-    )
-    heading, of_heading, yaw_told = _known(
-        sigma_yaw, [run.sigma_yaw for run in every.runs], estimated[1], TAPE_YAW
-    )
+    own = noise_of(robot, every, residuals, measure, kind, leg, (sigma_xy, sigma_yaw))
     jumps = tuple(
         jumps_of(residual, run.gap) for residual, run in zip(residuals, every.runs, strict=True)
     )
@@ -315,25 +290,9 @@ def _group(
         every,
         tuple(whole for _, _, whole in members),
         jumps,
-        ReferenceNoise(position, heading, told, yaw_told, stamp_noise(every, residuals, measure)),
-        of_position,
-        of_heading,
+        own,
         residuals,
     )
-
-
-def _known(
-    given: float | None, stated: list[float | None], estimated: float | None, usual: float
-) -> tuple[float, Floats, str]:
-    """One sigma for telling, those of the runs for counting, and where they are from."""
-    count = len(stated)
-    if given is not None:
-        return given, np.full(count, given), "given"
-    fallback, told = (usual, "assumed") if estimated is None else (estimated, "estimated")
-    values = np.array([fallback if value is None else value for value in stated])
-    if all(value is not None for value in stated):
-        told = "stated"
-    return float(np.sqrt(np.mean(values**2))), values, told
 
 
 def in_runs(prepared: Prepared, robot: Robot | Model) -> Model:
@@ -367,11 +326,13 @@ def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
         errors = errors_of(
             own,
             runs,
-            group.sigma_xy[runs.run_of_leg],
-            group.sigma_yaw[runs.run_of_leg],
+            group.own.sigma_xy[runs.run_of_leg],
+            group.own.sigma_yaw[runs.run_of_leg],
             prepared.kind,
             by_position=by_position,
-            sigma_stamp=group.noise.sigma_stamp,
+            sigma_stamp=group.own.noise.sigma_stamp,
+            wandering=group.own.wandering,
+            jumped=_jumped(group, runs, prepared.kind),
         )
         parts.append(_table(prepared, group, runs, errors, leg))
     return _in_order(parts)

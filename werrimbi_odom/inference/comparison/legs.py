@@ -10,10 +10,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.comparison.local_map import errors_on_map
 from werrimbi_odom.inference.comparison.position_filter import position_errors
 from werrimbi_odom.inference.fitting.joined_legs import predict_joined
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.likelihood import errors_between, reading_noise, stamp_noise
+from werrimbi_odom.inference.fitting.likelihood import (
+    Variances,
+    errors_between,
+    reading_noise,
+    stamp_noise,
+)
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
@@ -117,6 +123,8 @@ def errors_of(
     *,
     by_position: bool = False,
     sigma_stamp: float = 0.0,
+    wandering: Variances | None = None,
+    jumped: NDArray[np.bool_] | None = None,
 ) -> LegErrors:
     """Errors of all legs of several runs.
 
@@ -128,6 +136,8 @@ def errors_of(
         The reference gives positions alone; headings then come from those before the leg.
     sigma_stamp : float
         Of the stamps of a reference of headings alone [s].
+    wandering, jumped
+        Noise of a reference on a local map, in place of sigmas, and the legs on which it jumped.
     """
     robot = model.robot
     prediction = predict_joined(model, runs)
@@ -137,7 +147,11 @@ def errors_of(
         robot.left_wheel_noise**2 * prediction.per_left
         + robot.right_wheel_noise**2 * prediction.per_right
     )
-    if by_position:
+    heading = start[:, 2]
+    if wandering is not None and jumped is not None:
+        error, total = errors_on_map(model, runs, prediction, wandering, jumped)
+        reference = total - wheels
+    elif by_position:
         found = position_errors(
             prediction.relative,
             wheels,
@@ -151,7 +165,6 @@ def errors_of(
         error, wheels, reference = found.error, found.wheels, found.reference
         heading = found.heading
     else:
-        heading = start[:, 2]
         error = errors_between(start, finish, prediction)
         reference = _reference_part(robot, runs, prediction, sigma_xy, sigma_yaw, kind)
         reference[:, 2, 2] += 2.0 * sigma_stamp**2 * stamp_noise(prediction, runs.duration)

@@ -89,8 +89,8 @@ def diagnose(
     judge, set_up = begun.judge, begun.set_up
     laid = together(match_finely(judge.fitted_on, set_up.robot, leg, limits))
     sigma = (
-        sigma_xy or stated(laid.runs, "sigma_xy"),
-        sigma_yaw or stated(laid.runs, "sigma_yaw"),
+        sigma_xy or stated(laid.runs, "sigma_xy", kind),
+        sigma_yaw or stated(laid.runs, "sigma_yaw", kind),
     )
     show(0.1, "calibration")
     fit = first_fit(laid, set_up.robot, kind, sigma)

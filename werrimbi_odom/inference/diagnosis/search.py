@@ -68,7 +68,7 @@ def first_fit(
     point = start_point(runs, robot, *sigma)
     point = replace(point, excluded=_edges(runs))
     point, knobs = with_own_values(runs, point, kind)
-    if kind == "incremental":
+    if kind != "absolute":
         point = fit_model(runs, point, kind, (*CALIBRATION, *knobs), rounds=0).point
     return fitted(runs, point, kind, (), knobs, robot, rounds=3, sigma=sigma)
 
@@ -82,10 +82,10 @@ def jumps_anew(
 ) -> Fitted:
     """The fit with the reference's jumps found by its own, better model.
 
-    Only a reference that adds up has jumps that stay: of one whose poses are each their own, a bad
-    pose costs two legs and no more.
+    Only a reference whose errors last has jumps that stay: of one whose poses are each their own, a
+    bad pose costs two legs and no more.
     """
-    if kind != "incremental":
+    if kind == "absolute":
         return fit
     point = without_jumps(runs, fit.point, kind)
     both = (jumped | edge for jumped, edge in zip(point.excluded, _edges(runs), strict=True))
@@ -135,7 +135,8 @@ def instead_of_calibration(
     nuisances = model.nuisance_knobs
     held = {applied.name for applied in model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
-    looked_at = candidates(effects, held, channels, len(runs.runs))
+    wanders = kind == "local_map"  # on a map that somebody made, by a laser's metre
+    looked_at = candidates(effects, held, channels, len(runs.runs), own_scale=wanders)
     found = scores(runs, point, kind, (*calibrated.knobs, *nuisances), looked_at)
     results = []
     for score in worth_fitting(best_of_each(found))[:INSTEAD_FITTED]:

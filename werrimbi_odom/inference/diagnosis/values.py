@@ -49,7 +49,7 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
     if name == IN_DEGREES:
         return {}
     if name in CALIBRATED:
-        if name not in diagnosis.found and diagnosis.train.unit == "rad":
+        if name not in diagnosis.found and diagnosis.runs.headings_alone:
             return _as_twin(diagnosis, name)
         value = _calibrated(diagnosis, name)
         if math.isclose(value.value, value.null, rel_tol=1e-6):  # a rival that no model here holds
@@ -57,7 +57,7 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
         return {next(iter(find(name).parameters)): value}
     fit = _fit_with(diagnosis, name)
     if fit is None:
-        return {}
+        return _as_twin(diagnosis, name) if diagnosis.runs.headings_alone else {}
     model = fit.point.model
     applied = next(item for item in model.robot.effects if item.name == name)
     spread = _spreads(fit)
@@ -107,11 +107,11 @@ def _calibrated(diagnosis: Diagnosis, name: str) -> Value:
 
 def _as_twin(diagnosis: Diagnosis, name: str) -> dict[str, Value]:
     """A size that no fit holds, by what was found in its place; empty where that says nothing."""
-    for found in diagnosis.found:
+    for found in set(diagnosis.found) & set(CALIBRATED):
         twin = next(
             (item for item in find(found).indistinguishable_from if item.name == name), None
         )
-        if twin is None or found not in CALIBRATED or not twin.values:
+        if twin is None or not twin.values:
             continue
         values = values_of(diagnosis, found)
         same = twin.same_as({own: item.value for own, item in values.items()})

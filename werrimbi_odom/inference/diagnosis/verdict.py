@@ -140,7 +140,8 @@ def told(
     elif found:
         rivals = _rivals(found[0], rounds, final, instead)
         torn = _torn(found[0], rounds, final, laid, kind)
-        rivals = tuple(dict.fromkeys((*(rivals or (found[0],)), *torn))) if torn else rivals
+        others = (*torn, *own_scale_instead(found[0], final, given, laid))
+        rivals = tuple(dict.fromkeys((*(rivals or (found[0],)), *others))) if others else rivals
     verdict: Verdict
     another = of_another_drive(judge.train, _plain(final, set_up.robot))
     if another:
@@ -235,6 +236,28 @@ def _rivals(
         named = list(dict.fromkeys([first, *near]))
         return tuple(named) if len(named) > 1 else ()
     return ()
+
+
+def own_scale_instead(name: str, final: Fitted, given: Robot, laid: Together) -> tuple[str, ...]:
+    """What of the reference itself does the same as a size of the robot, to headings alone.
+
+    Positions are measured by tape or by satellites, whose metre is one; nobody knows a gyro's
+    radian, and no tape tells it.
+    """
+    if not laid.headings_alone or name not in CALIBRATED:
+        return ()
+    size = sizes_of(final.point.model.robot).over(sizes_of(given)).as_effects[name]
+    (own,) = find(name).parameters
+    twins = [
+        (find(twin.name), twin.same_as({own: size}))
+        for twin in find(name).indistinguishable_from
+        if twin.of_headings
+    ]
+    return tuple(
+        effect.name
+        for effect, values in twins
+        if effect.stage == "reference" and effect.allows(values)
+    )
 
 
 def _torn(

@@ -22,7 +22,6 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.directions import CALIBRATED as CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import STEP, Knob, Model, knobs_of
-from werrimbi_odom.inference.fitting.likelihood import headings_alone
 from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
@@ -31,6 +30,9 @@ from werrimbi_odom.model.pose import Floats
 
 BESIDE_POSITIONS = ("reference_heading_delay",)
 """Effects that are of headings against positions: of headings alone they are another effect."""
+
+OF_THE_MEASUREMENT = ("reference_scale",)
+"""Effects that all three multipliers together do as well: never tried beside them."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +109,7 @@ def candidates(
     runs: int,
     *,
     asked: bool = False,
+    own_scale: bool = False,
 ) -> tuple[Candidate, ...]:
     """All that may be tried: a candidate for each set of shapes of each effect.
 
@@ -121,11 +124,15 @@ def candidates(
     asked : bool
         The user asked for these effects. Else those that are the base by another name
         (`Parameter.as_base`) are left to the search of set-ups, which knows whose robots have them.
+    own_scale : bool
+        Nobody knows the reference's own metre, and the multipliers are not free.
     """
     there, measured = set(known), set(channels)
     found = []
     for effect in effects:
         if effect.is_mistake or effect.name in there or effect.name in CALIBRATED:
+            continue
+        if effect.name in OF_THE_MEASUREMENT and not (asked or own_scale):
             continue
         if not set(effect.channels) <= measured:
             continue
@@ -159,7 +166,7 @@ def signatures(
     tried: Sequence[Candidate],
 ) -> tuple[Floats, Iterator[Signature]]:
     """Innovations (n,) that `knobs` cannot explain, and what each candidate does to them."""
-    if headings_alone(runs):
+    if runs.headings_alone:
         tried = [candidate for candidate in tried if candidate.name not in BESIDE_POSITIONS]
     prediction = predict_all(point.model, runs)
     columns, owners = [], []

@@ -53,17 +53,18 @@ class Legs(NamedTuple):
 class Ways(NamedTuple):
     """How a change of a leg's relative pose comes to the innovations, for the first set.
 
-    All in the order of the filter's loop: the first legs of all stretches, the second legs ...
+    All in the order of the filter's loop: the first legs of all stretches, the second legs ... The
+    filter has s states, the first three of which are the pose.
     """
 
     leg: NDArray[np.intp]
     """Which leg it is, (m,)."""
     enter: Floats
-    """Turns its change into the filter's frame, (m, 3, 3)."""
+    """Turns its change into one of the states, (m, s, 3)."""
     carry: Floats
-    """Takes the change at the end of the leg before to the end of this one, (m, 3, 3)."""
+    """Takes the change at the end of the leg before to the end of this one, (m, s, s)."""
     leave: Floats
-    """Makes the change of the innovation of the change at the leg's end, (m, 3, 3)."""
+    """Makes the change of the innovation of the change at the leg's end, (m, 3, s)."""
     free: NDArray[np.bool_]
     """Stretches that begin with a heading that was not measured."""
     rounds: list[slice]
@@ -75,13 +76,14 @@ class Ways(NamedTuple):
         The last one is in the run's start heading.
         """
         count, _, width = slopes.shape
+        states = self.carry.shape[-1]
         found = np.empty((count, 3, width + 1))
         for begin in range(0, width + 1, _COLUMNS):
             columns = slice(begin, min(begin + _COLUMNS, width))
             change = self.enter @ slopes[self.leg, :, columns]
             if columns.stop < begin + _COLUMNS:
                 first = self.rounds[0]
-                heading = np.zeros((count, 3, 1))
+                heading = np.zeros((count, states, 1))
                 heading[first, :, 0] = self.carry[first, :, 2] * self.free[:, None]
                 change = np.concatenate([change, heading], axis=-1)
             for before, now in itertools.pairwise(self.rounds):
@@ -120,6 +122,21 @@ def stretches(legs: Legs) -> NDArray[np.intp]:
     return np.array(starts, dtype=np.intp)
 
 
+def in_rounds(legs: Legs) -> tuple[NDArray[np.intp], NDArray[np.intp], list[slice]]:
+    """First legs of the stretches, longest stretch first; legs in the loop's order; its rounds.
+
+    That is the first legs of all stretches, then the second of all that have one ...
+    """
+    first = stretches(legs)
+    length = np.diff(np.append(first, legs.relative.shape[0]))
+    order = np.argsort(-length, kind="stable")
+    first, length = first[order], length[order]
+    active = [int(np.searchsorted(-length, -step)) for step in range(int(length[0]))]
+    bounds = np.concatenate([[0], np.cumsum(active)]).tolist()
+    leg = np.concatenate([first[:still] + step for step, still in enumerate(active)])
+    return first, leg, [slice(begin, end) for begin, end in itertools.pairwise(bounds)]
+
+
 def filtered(legs: Legs) -> Unexpected:
     """Filter all stretches at once.
 
@@ -127,16 +144,7 @@ def filtered(legs: Legs) -> Unexpected:
     matrix for each leg, so these follow by a loop of one product.
     """
     sets, count = legs.noise.shape[0], legs.relative.shape[0]
-    first = stretches(legs)
-    length = np.diff(np.append(first, count))
-    order = np.argsort(-length, kind="stable")
-    first, length = first[order], length[order]
-    # Legs in the order of the loop: the first of all stretches, the second of all that have one ...
-    active = [int(np.searchsorted(-length, -step)) for step in range(int(length[0]))]
-    bounds = np.concatenate([[0], np.cumsum(active)]).tolist()
-    leg = np.concatenate([first[:still] + step for step, still in enumerate(active)])
-    rounds = [slice(begin, end) for begin, end in itertools.pairwise(bounds)]
-
+    first, leg, rounds = in_rounds(legs)
     finite = np.isfinite(legs.start[first])
     free = ~finite[:, 2]
     state = np.where(finite, legs.start[first], 0.0)
@@ -157,10 +165,11 @@ def filtered(legs: Legs) -> Unexpected:
     kept = np.empty((count, 3, 3))
     identity = np.eye(3)
     levers[:] = identity
-    for now, still, simple in zip(rounds, active, plain, strict=True):
+    for now, simple in zip(rounds, plain, strict=True):
+        still = now.stop - now.start
         state, spread = state[:, :still], spread[:, :still]
         turn, lever = turns[:, now], levers[:, now]
-        _turn_into(turn, state[..., 2])
+        turn_into(turn, state[..., 2])
         move = (turn @ relative[now, :, None])[..., 0]
         lever[..., 0, 2], lever[..., 1, 2] = -move[..., 1], move[..., 0]
         state = state + move
@@ -202,7 +211,7 @@ def filtered(legs: Legs) -> Unexpected:
     )
 
 
-def _turn_into(turn: Floats, yaw: Floats) -> None:
+def turn_into(turn: Floats, yaw: Floats) -> None:
     """Write rotations of (x, y, yaw) by angles of shape (g, s)."""
     cos, sin = np.cos(yaw), np.sin(yaw)
     turn[:] = 0.0

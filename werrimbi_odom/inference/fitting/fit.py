@@ -10,7 +10,7 @@ their likelihood. What the driving does not excite is left as it was.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,7 +27,7 @@ from werrimbi_odom.inference.fitting.knobs import (
     Model,
     shared_of,
 )
-from werrimbi_odom.inference.fitting.likelihood import Variances, headings_alone
+from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import held_variances, likeliest, prior_cost
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict, predict_all
 from werrimbi_odom.inference.fitting.together import Together, laid_out
@@ -41,6 +41,7 @@ from werrimbi_odom.inference.rules import (
     NOISE_NUMBERS,
     TYPICAL_GYRO_WALK,
     TYPICAL_STAMP_NOISE,
+    TYPICAL_WALK,
 )
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -97,9 +98,10 @@ def start_point(
         sigma_xy or MOTION_CAPTURE_XY,
         sigma_yaw or MOTION_CAPTURE_YAW,
         TYPICAL_STAMP_NOISE,
+        *TYPICAL_WALK,
     )
-    if headings_alone(laid) and sigma_yaw is None:
-        guess = (*guess[:3], TYPICAL_GYRO_WALK, guess[4])
+    if laid.headings_alone and sigma_yaw is None:
+        guess = (*guess[:3], TYPICAL_GYRO_WALK, *guess[4:])
     own = tuple(_nuisances(robot, run) for run in laid.runs)
     return Point(
         Model(robot, own),
@@ -200,7 +202,7 @@ def without_jumps(runs: Together, point: Point, kind: ReferenceKind) -> Point:
 
 def _jumps(runs: Together, point: Point, kind: ReferenceKind) -> tuple[NDArray[np.bool_], ...]:
     nothing = tuple(np.zeros(size, dtype=np.bool_) for size in np.diff(runs.legs))
-    if headings_alone(runs):
+    if runs.headings_alone:
         return nothing  # a gyro does not jump; legs that deviate are those that turn
     white = unexpected(runs, replace(point, excluded=nothing), kind).whitened()
     deviation = np.sum(white**2, axis=-1)
@@ -263,13 +265,9 @@ def moved(model: Model, design: Design, step: Floats) -> Model:
 
 
 def _scaled(variances: Variances, factor: float) -> Variances:
-    return Variances(
-        variances.left * factor,
-        variances.right * factor,
-        variances.xy * factor,
-        variances.yaw * factor,
-        variances.stamp * factor,
-    )
+    parts = {item.name: getattr(variances, item.name) for item in fields(variances)}
+    scaled = {name: part * factor for name, part in parts.items() if name != "reversion"}
+    return replace(variances, **scaled)
 
 
 def _nuisances(robot: Robot, run: MatchedRun) -> dict[str, float]:

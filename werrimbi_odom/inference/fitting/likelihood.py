@@ -20,6 +20,7 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.filtering import UNMEASURED, Legs, filtered
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.fitting.wandering import Wander, filtered_wandering
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
@@ -30,9 +31,9 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True, slots=True)
 class Variances:
-    """The five variances of the noise; arrays of shape (g,) for g sets tried at once.
+    """The variances of the noise; arrays of shape (g,) for g sets tried at once.
 
-    The reference's are of each pose (absolute) or of each interval (incremental).
+    The reference's are of each pose (absolute, local_map) or of each interval (incremental).
     """
 
     left: Floats
@@ -47,6 +48,17 @@ class Variances:
     """Of the stamps of a reference of headings alone [s²]: while it turns at ω, it errs by ω times
     that. A gyro is read in bursts and its messages wait; where positions are measured, what stamps
     err by is part of their noise."""
+    walk_xy: Floats
+    """Of the walk of a local_map's error in each coordinate, a second [m²/s]."""
+    walk_yaw: Floats
+    """The same in heading [rad²/s]."""
+    reversion: Floats
+    """Square of the rate at which that error is drawn back to nothing [1/s²]."""
+
+    def wandered(self) -> Floats:
+        """Variance of a local_map's error in x, y, yaw, however long one waits, (g, 3)."""
+        walk = np.stack([self.walk_xy, self.walk_xy, self.walk_yaw], axis=-1)
+        return np.asarray(walk / (2.0 * np.sqrt(self.reversion))[:, None])
 
 
 @dataclass(frozen=True, slots=True)
@@ -103,6 +115,7 @@ def innovations(
     *,
     excluded: NDArray[np.bool_] | None = None,
     start_yaws: Sequence[float | None] | None = None,
+    heading: float = 0.0,
 ) -> Innovations:
     """Filter all runs and keep what was unexpected.
 
@@ -113,37 +126,33 @@ def innovations(
         after them.
     start_yaws : sequence of float or None, optional
         For each run the heading at the first reference pose, where that was not measured [rad].
+    heading
+        Variance of these, where nobody fitted them, of a local_map [rad²].
     """
     count = runs.count
     skip = runs.gap if excluded is None else runs.gap | excluded
     view = view_of(robot.effects)
     start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
-    gyro = headings_alone(runs)
+    gyro = runs.headings_alone
     if kind == "incremental" and not gyro:
         return _of_increments(robot, runs, (start, finish), prediction, variances, skip)
     begins = np.zeros(count, dtype=np.bool_)
     begins[runs.legs[:-1]] = True
-    heading = np.full(count, np.nan)
+    begun = np.full(count, np.nan)
     for index, given in enumerate(start_yaws or []):
         if given is not None:
-            heading[runs.legs[index]] = given
+            begun[runs.legs[index]] = given
             start[runs.legs[index], 2] = np.nan
     noise = _wheel_part(prediction, variances)
     reading = _reading(robot, variances, runs, prediction, adds_up=kind == "incremental")
     if kind == "incremental":
         noise[..., 2, 2] += variances.yaw[:, None] * runs.intervals
-    found = filtered(
-        Legs(
-            prediction.relative,
-            noise,
-            start,
-            finish,
-            reading,
-            begins,
-            skip,
-            heading,
-        )
-    )
+    legs = Legs(prediction.relative, noise, start, finish, reading, begins, skip, begun)
+    if kind == "local_map":
+        kept = np.exp(-np.sqrt(variances.reversion)[:, None] * runs.duration)
+        found = filtered_wandering(legs, Wander(variances.wandered(), kept, runs.gap, heading))
+    else:
+        found = filtered(legs)
     known = np.isfinite(finish) & ~skip[:, None]
     return Innovations(found.value, found.covariance, found.ways.innovations, known)
 
@@ -203,11 +212,6 @@ def errors_between(start: Floats, finish: Floats, prediction: Prediction) -> Flo
     return np.asarray(error)
 
 
-def headings_alone(runs: Together) -> bool:
-    """Whether the references measure headings and nothing else: gyros, mostly."""
-    return not np.isfinite(runs.finish[:, :2]).any()
-
-
 def stamp_noise(prediction: Prediction, duration: Floats) -> Floats:
     """Variance of a heading for stamps that err by 1 s, at the turn rate of each leg; (m,)."""
     return np.asarray(np.square(prediction.turn / duration))
@@ -217,7 +221,7 @@ def _reading(
     robot: Robot, variances: Variances, runs: Together, prediction: Prediction, *, adds_up: bool
 ) -> Floats:
     """Covariance of a measured pose, and of the counters' reading with it; (g, 1 or m, 3, 3)."""
-    alone = headings_alone(runs)
+    alone = runs.headings_alone
     reading = np.zeros((variances.left.size, runs.count if alone else 1, 3, 3))
     reading[..., 0, 0] = reading[..., 1, 1] = variances.xy[:, None]
     if not adds_up:

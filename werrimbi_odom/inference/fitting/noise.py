@@ -2,30 +2,34 @@
 # SPDX-License-Identifier: Apache-2.0
 """The variances that data and prior knowledge make likeliest, and how well they are known.
 
-Of two wheels, of the reference's position and heading, and of its stamps where it has nothing but
-headings.
+Of two wheels, of the reference's position and heading, of its stamps where it has nothing but
+headings, and of how its error wanders where it tells its place on a map.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.chances import NORMAL_95
 from werrimbi_odom.inference.fitting.costs import Costs
-from werrimbi_odom.inference.fitting.likelihood import Variances, headings_alone
+from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.prediction import Prediction
 from werrimbi_odom.inference.fitting.together import laid_out
 from werrimbi_odom.inference.rules import (
     GYRO_WALK_SPREAD,
+    MATCH_SPREAD,
     NOISE_TOLD,
     STAMP_NOISE_SPREAD,
     TYPICAL_GYRO_WALK,
+    TYPICAL_MATCH,
     TYPICAL_STAMP_NOISE,
+    TYPICAL_WALK,
     TYPICAL_WHEEL_NOISE,
+    WALK_SPREAD,
     WHEEL_NOISE_SPREAD,
 )
 from werrimbi_odom.model.pose import Floats
@@ -36,7 +40,10 @@ NOISES = ("left_wheel_noise", "right_wheel_noise", "reference_sigma_xy", "refere
 STAMP_NOISE = "reference_sigma_stamp"
 """Beside them, of a reference of headings alone [s]."""
 
-_ALL = (*NOISES, STAMP_NOISE)
+WALK = ("reference_walk_xy", "reference_walk_yaw", "reference_reversion")
+"""And of a reference on a local map [m/s^0.5, rad/s^0.5, 1/s]."""
+
+_ALL = (*NOISES, STAMP_NOISE, *WALK)
 
 _LOWEST, _HIGHEST = np.log(1e-14), np.log(10.0)
 
@@ -117,8 +124,9 @@ def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Varian
 def prior_cost(costs: Costs, variances: Variances) -> Floats:
     """What is known before any drive, as minus two log-likelihood; shape (g,).
 
-    Log-normal laws (`rules`) of k_L, k_R, and of a gyro's random walk and stamps: enough that a few
-    legs cannot call a wrong base or a late clock noise, nothing beside the data of an hour.
+    Log-normal laws (`rules`) of k_L, k_R, of a gyro's random walk and stamps, and of a localiser:
+    enough that a few legs cannot call a wrong base or a late clock noise, nothing beside the data
+    of an hour.
     """
     middle, spread = _prior(costs)
     rows = np.stack(_each(variances), axis=-1)
@@ -130,7 +138,12 @@ def _prior(costs: Costs) -> tuple[Floats, Floats]:
     runs = laid_out(costs.runs)
     middle = np.array([TYPICAL_WHEEL_NOISE, TYPICAL_WHEEL_NOISE, 1.0, 1.0, TYPICAL_STAMP_NOISE])
     spread = np.array([WHEEL_NOISE_SPREAD, WHEEL_NOISE_SPREAD, np.inf, np.inf, STAMP_NOISE_SPREAD])
-    if costs.kind == "incremental" and headings_alone(runs):
+    middle = np.concatenate([middle, TYPICAL_WALK])
+    spread = np.concatenate([spread, np.full(3, np.inf)])
+    if costs.kind == "local_map":
+        middle[2:4], spread[2:4] = TYPICAL_MATCH, MATCH_SPREAD
+        spread[5:] = WALK_SPREAD
+    if costs.kind == "incremental" and runs.headings_alone:
         seconds = float(runs.duration.sum() / runs.intervals.sum())
         middle[3], spread[3] = TYPICAL_GYRO_WALK * np.sqrt(seconds), GYRO_WALK_SPREAD
     return np.log(middle), spread
@@ -190,7 +203,9 @@ def noise_estimates(
         sigmas[moving] = np.exp(0.5 * logs)
     share = np.zeros(len(_ALL))
     share[moving] = 0.5 * np.sqrt(np.maximum(np.diag(covariance), 0.0))
-    told = moving | np.array([False, False, *held, False])
+    told = moving | np.isin(
+        _ALL, [name for name, known in zip(NOISES[2:], held, strict=True) if known]
+    )
     return {
         name: NoiseEstimate(float(sigma), float(sigma * part), bool(part < NOISE_TOLD))
         for name, sigma, part, tell in zip(_ALL, sigmas, share, told, strict=True)
@@ -202,20 +217,25 @@ def _moving(costs: Costs, held: tuple[bool, bool]) -> NDArray[np.bool_]:
     """Which of the variances the data may tell: those of what is measured and not known."""
     runs = laid_out(costs.runs)
     measured = np.isfinite(runs.finish)
+    places, headings = bool(measured[:, :2].any()), bool(measured[:, 2].any())
+    wanders = costs.kind == "local_map"
     return np.array(
         [
             True,
             True,
-            not held[0] and bool(measured[:, :2].any()),
-            not held[1] and bool(measured[:, 2].any()),
-            headings_alone(runs),
+            not held[0] and places,
+            not held[1] and headings,
+            not places,
+            wanders and places,
+            wanders and headings,
+            wanders,
         ]
     )
 
 
 def _each(variances: Variances) -> tuple[Floats, ...]:
     """In the order of `_ALL`."""
-    return (variances.left, variances.right, variances.xy, variances.yaw, variances.stamp)
+    return tuple(getattr(variances, item.name) for item in fields(variances))
 
 
 def _row(variances: Variances) -> Floats:

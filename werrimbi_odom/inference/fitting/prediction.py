@@ -185,7 +185,7 @@ def places_of(
     frame = heading - path.yaw[:-1]
     moved = np.exp(1j * frame) * (path.position[:-1] - path.position[begin])
     arm = complex(view.ahead, view.left) * np.exp(1j * heading[begin])
-    placed = np.nan_to_num(start[anchor, 0] + 1j * start[anchor, 1]) - arm + moved
+    placed = np.nan_to_num(start[anchor, 0] + 1j * start[anchor, 1]) / view.scale - arm + moved
     return np.asarray(placed.real), np.asarray(placed.imag)
 
 
@@ -210,8 +210,13 @@ def _shown(path: DrivenPath, runs: Together, view: View, drifts: Floats) -> Floa
         first += _late(path, runs, begin, view.heading_delay)
         last += _late(path, runs, end, view.heading_delay)
     shown = np.exp(-1j * first) * (moved + (np.exp(1j * turn) - 1.0) * point)
+    turned = turn + last - first
+    if runs.headings_alone:
+        turned = view.scale * turned
+    else:
+        shown = view.scale * shown
     drift = drifts[runs.run_of_leg] * runs.duration
-    return np.stack([shown.real, shown.imag, turn + last - first + drift], axis=-1)
+    return np.stack([shown.real, shown.imag, turned + drift], axis=-1)
 
 
 def _late(path: DrivenPath, runs: Together, nodes: NDArray[np.intp], delay: float) -> Floats:

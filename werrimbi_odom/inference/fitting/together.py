@@ -78,6 +78,11 @@ class Together:
         return int(np.isfinite(self.finish[~self.gap]).sum())
 
     @property
+    def headings_alone(self) -> bool:
+        """Whether the references measure headings and nothing else: gyros, mostly."""
+        return not np.isfinite(self.finish[:, :2]).any()
+
+    @property
     def run_of_step(self) -> NDArray[np.intp]:
         """Index of the run of each step, shape (n,)."""
         return self.known("run_of_step", _runs_of_steps)

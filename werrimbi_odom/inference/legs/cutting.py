@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import NoDriving, Reference, Run
+from werrimbi_odom.files.run import NoDriving, Reference, ReferenceKind, Run
 from werrimbi_odom.inference.legs.counters import Counters, counters_of, nodes_at
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
 from werrimbi_odom.inference.legs.no_driving import looked_at
@@ -196,8 +196,13 @@ def delayed(run: MatchedRun, delay: float) -> MatchedRun:
     )
 
 
-def stated(runs: Sequence[MatchedRun], name: str) -> float | None:
-    """The reference's noise (`sigma_xy` or `sigma_yaw`) as the records state it, if all do."""
+def stated(runs: Sequence[MatchedRun], name: str, kind: ReferenceKind) -> float | None:
+    """The reference's noise (`sigma_xy` or `sigma_yaw`) as the records state it, if all do.
+
+    A localiser states how far it may be off in all, and not what it errs by from pose to pose.
+    """
+    if kind == "local_map":
+        return None
     values = [getattr(run, name) for run in runs]
     return None if any(value is None for value in values) else float(max(values))
 

@@ -26,7 +26,7 @@ from werrimbi_odom.inference.calibration_sizes import base_name, name_of_base
 from werrimbi_odom.inference.chances import noncentrality
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED, OF_THE_MEASUREMENT, Candidate
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import STEP
 from werrimbi_odom.inference.fitting.together import together
@@ -76,6 +76,7 @@ def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[D
         _typical(effect)
         for effect in effects
         if not effect.is_mistake
+        and effect.name not in OF_THE_MEASUREMENT
         and effect.name not in held
         and set(effect.channels) <= measured
         and base_name(effect) is None

@@ -134,6 +134,7 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | 
             raw = raw if seen.asked & PLACE else after
     view = view_of(robot.effects)
     sign = -1.0 if view.mirrored else 1.0
+    ways, turns = (view.scale, 1.0) if reference.has_position.any() else (1.0, view.scale)
     known = (np.isfinite(reference.x) & np.isfinite(reference.y)) | np.isfinite(reference.yaw)
     stamps = np.asarray(reference.time, dtype=np.float64)
     latest = np.maximum.accumulate(np.where(known, stamps, -math.inf))
@@ -143,8 +144,8 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | 
         summed(raw.left),
         summed(raw.right),
         stamps[known] - view.delay,
-        (reference.x + 1j * sign * np.asarray(reference.y))[known],
-        sign * np.asarray(reference.yaw)[known],
+        ((reference.x + 1j * sign * np.asarray(reference.y)) / np.complex128(ways))[known],
+        sign * np.asarray(reference.yaw)[known] / turns,
         tuple((part.begin, part.end) for part in run.no_driving or ()),
     )
 

@@ -97,6 +97,6 @@ def mount_of(robot: Robot) -> View:
     for applied in robot.effects:
         if applied.effect.stage == "body":
             for twin in applied.effect.indistinguishable_from:
-                if twin.name in mounts and twin.values:
+                if twin.name in mounts and twin.values and not twin.of_headings:
                     view = mounts[twin.name].apply(view, **twin.same_as(applied.values))
     return view

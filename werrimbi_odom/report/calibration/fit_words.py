@@ -17,6 +17,9 @@ _UNITS = {
     "reference_sigma_xy": "m",
     "reference_sigma_yaw": "rad",
     "reference_sigma_stamp": "s",
+    "reference_walk_xy": "m/s^0.5",
+    "reference_walk_yaw": "rad/s^0.5",
+    "reference_reversion": "1/s",
 }
 
 

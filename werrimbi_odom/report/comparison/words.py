@@ -8,6 +8,7 @@ import math
 
 from werrimbi_odom.inference.calibration_sizes import skidding
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
+from werrimbi_odom.inference.comparison.reference_noise import Measure
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
 from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
@@ -197,23 +198,28 @@ def _run_told(comparison: Comparison, index: int) -> str:
 
 def _reference(comparison: Comparison) -> list[str]:
     lines = []
-    each = "pose" if comparison.prepared.kind == "absolute" else "interval"
+    each = "interval" if comparison.prepared.kind == "incremental" else "pose"
+    wanders = comparison.prepared.kind == "local_map"
     for measure, noise in comparison.prepared.noises:
-        parts = []
-        if measure != "heading":
-            parts.append((f"{1e3 * noise.sigma_xy:.2g} mm", noise.xy_told))
-        if measure != "position":
-            parts.append((f"{math.degrees(noise.sigma_yaw):.2g}°", noise.yaw_told))
-        values = " and ".join(value for value, _ in parts)
-        told = parts[0][1] if len({how for _, how in parts}) == 1 else listed([h for _, h in parts])
+        hows = [noise.xy_told] if measure != "heading" else []
+        hows += [noise.yaw_told] if measure != "position" else []
+        values = _sizes(measure, noise.sigma_xy, noise.sigma_yaw)
+        told = hows[0] if len(set(hows)) == 1 else listed(hows)
         how = {
-            "estimated": "estimated from its own small differences",
+            "estimated": "fitted with the calibration"
+            if wanders
+            else "estimated from its own small differences",
             "assumed": "assumed, for its poses are too few to tell; --reference-sigma-xy says it",
             "stated": "as the record states it",
             "given": "as given",
         }.get(told, told)
         what = {"pose": "", "position": " (positions alone)", "heading": " (headings alone)"}
         lines.append(f"The reference's own noise{what[measure]}, {values} each {each}, is {how}.")
+        if wanders:
+            lines[-1] += (
+                f" Its error also wanders, by {_sizes(measure, noise.walk_xy, noise.walk_yaw)} in "
+                f"a second and {_sizes(measure, *noise.wander)} in the long run."
+            )
     outliers = comparison.main.all.outliers
     if outliers:
         total = outliers + comparison.main.all.figures.count
@@ -221,6 +227,13 @@ def _reference(comparison: Comparison) -> list[str]:
         lines.append(f"On {outliers} of {total} legs the reference jumped; {they} left out.")
     lines += [remark_words(remark) for remark in comparison.remarks]
     return [*lines, *left_out_words(comparison.left_out)]
+
+
+def _sizes(measure: Measure, xy: float, yaw: float) -> str:
+    """Of what is measured, in words."""
+    parts = [f"{1e3 * xy:.2g} mm"] if measure != "heading" else []
+    parts += [f"{math.degrees(yaw):.2g}°"] if measure != "position" else []
+    return " and ".join(parts)
 
 
 def _next(verdict: Verdict, next_step: str) -> str:

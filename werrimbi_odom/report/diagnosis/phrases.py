@@ -21,6 +21,7 @@ from werrimbi_odom.inference.diagnosis.values import (
     ranked_of,
     values_of,
 )
+from werrimbi_odom.inference.diagnosis.verdict import own_scale_instead
 from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.inference.rules import SIGNIFICANT
 from werrimbi_odom.model.effect import Effect
@@ -53,6 +54,9 @@ def also(told: Told, name: str) -> list[str]:
     ranked = ranked_of(told.diagnosis, name)
     sure = f"; {chance_words(ranked.p_value)}" if ranked is not None else ""
     what = f" {effect.summary}" if effect is not None else ""
+    own = own_scale_instead(name, told.diagnosis.final, told.diagnosis.given, told.diagnosis.runs)
+    if own:
+        what += f" Headings alone cannot tell it from {listed(own, 'or')}."
     return [f"- Also {name}: {size}{sure}.{what}"]
 
 

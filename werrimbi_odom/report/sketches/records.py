@@ -75,6 +75,16 @@ def _yaw_offset() -> Parts:
     ]
 
 
+def _scale() -> Parts:
+    return [
+        robot(60, 85),
+        arrow((60, 110), (230, 110), colour=GREY),
+        words(236, 114, "what was", colour=GREY, anchor="start"),
+        arrow((60, 55), (262, 55), colour=GREEN),
+        words(150, 42, "what is shown", colour=GREEN),
+    ]
+
+
 def _mirrored() -> Parts:
     return [
         arrow((60, 110), (60, 40), colour=GREY),
@@ -138,6 +148,7 @@ DRAWINGS: Mapping[str, Callable[..., Parts]] = {
     "lever_arm": _lever_arm,
     "yaw_offset": _yaw_offset,
     "mirrored": _mirrored,
+    "scale": _scale,
     "late": _late,
     "swapped": _swapped,
     "wrong_sign": _reversed,

@@ -1,0 +1,225 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A reference whose error wanders about a map: told apart from its noise, from jumps and wheels."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.effects.collection import all_effects, find
+from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.inference.calibration.any_driving import calibrate
+from werrimbi_odom.inference.comparison.compare import compare
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.fitting.filtering import Legs, Unexpected
+from werrimbi_odom.inference.fitting.wandering import Wander, filtered_wandering
+from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.model.pose import Floats
+
+TRUE = WhiteNoiseRobot(left_noise=4e-4, right_noise=5.8e-4)
+WHITE = 2e-3, 3e-3
+WALK = 8e-3, 4e-3
+MEMORY = 12.0
+WANDER = tuple(walk * math.sqrt(0.5 * MEMORY) for walk in WALK)
+
+
+def localised(
+    run: Run, random: np.random.Generator, jumps: int = 0, of: tuple[float, float] = WANDER
+) -> Run:
+    """The run as a localiser shows it: its error is drawn to nothing, and is thrown at jumps."""
+    reference = run.reference
+    assert reference is not None
+    size = np.array([of[0], of[0], of[1]])
+    kept = np.exp(-np.diff(reference.time) / MEMORY)
+    error = [size * random.standard_normal(3)]
+    thrown = random.choice(np.arange(30, kept.size), jumps, replace=False)
+    for row, share in enumerate(kept):
+        new = share * error[-1] + math.sqrt(1.0 - share**2) * size * random.standard_normal(3)
+        error.append(new + (np.array([0.15, -0.15, 0.08]) if row in thrown else 0.0))
+    x, y, yaw = np.array(error).T
+    seen = Reference(reference.time, reference.x + x, reference.y + y, reference.yaw + yaw)
+    return replace(run, reference=seen)
+
+
+def session(seeds: range, robot: WhiteNoiseRobot = TRUE, jumps: int = 1) -> list[Run]:
+    found = []
+    for seed in seeds:
+        random = np.random.default_rng([seed, 4])
+        run = drive(
+            robot, wandering(random, 100.0), random, sigma_xy=WHITE[0], sigma_yaw=WHITE[1], every=5
+        )
+        found.append(localised(replace(run, name=f"run_{seed}"), random, jumps))
+    return found
+
+
+@pytest.fixture(scope="module")
+def runs() -> list[Run]:
+    return session(range(5))
+
+
+def line(count: int, length: float = 0.25) -> Legs:
+    """Straight legs whose measured ends are off by what a filter takes for small."""
+    random = np.random.default_rng(7)
+    relative = np.tile([length, 0.0, 0.0], (count, 1))
+    root = 1e-5 * random.standard_normal((count, 3, 3))
+    poses = 1e-5 * random.standard_normal((count + 1, 3))
+    poses[:, 0] += length * np.arange(count + 1)
+    return Legs(
+        relative,
+        (root @ root.swapaxes(-1, -2))[None],
+        poses[:-1],
+        poses[1:],
+        np.diag([2e-10, 2e-10, 1e-10])[None, None],
+        np.arange(count) == 0,
+        np.zeros(count, dtype=np.bool_),
+        np.full(count, np.nan),
+    )
+
+
+def wander_of(legs: Legs) -> Wander:
+    count = legs.begins.size
+    kept = np.random.default_rng(8).uniform(0.7, 0.99, count)
+    no_gap = np.zeros(count, dtype=np.bool_)
+    return Wander(np.array([[4e-10, 4e-10, 9e-10]]), kept[None], no_gap, 0.0)
+
+
+def cost(found: Unexpected) -> float:
+    solved = np.linalg.solve(found.covariance[0], found.value[0][..., None])[..., 0]
+    return float(np.sum(found.value[0] * solved) + np.linalg.slogdet(found.covariance[0])[1].sum())
+
+
+def joint_cost(legs: Legs, wander: Wander) -> float:
+    """The same from the covariance of all poses together, with no filter."""
+    count = legs.begins.size
+    step = np.eye(3)
+    step[1, 2] = legs.relative[0, 0]
+    noise, reading = legs.noise[0], legs.reading[0, 0]
+    own = np.diag(wander.variance[0])
+    # Errors of the path since the first pose, of the wandering, of the readings: all linear.
+    size = 3 * (count + 1)
+    path, walk = np.zeros((size, size)), np.zeros((size, size))
+    for j in range(count + 1):
+        for k in range(j, count + 1):
+            share = float(np.prod(wander.kept[0, j:k]))
+            part = np.zeros((3, 3))
+            for i in range(j):  # noise of leg i ends at pose i + 1
+                early, late = (np.linalg.matrix_power(step, at - i - 1) for at in (j, k))
+                part += early @ noise[i] @ late.T
+            rows, columns = slice(3 * j, 3 * j + 3), slice(3 * k, 3 * k + 3)
+            path[rows, columns], path[columns, rows] = part, part.T
+            walk[rows, columns] = walk[columns, rows] = share * own
+    covariance = path + walk + np.kron(np.eye(count + 1), reading)
+    carried = np.concatenate([np.linalg.matrix_power(step, at) for at in range(1, count + 1)])
+    less = np.concatenate([-carried, np.eye(3 * count)], axis=1)
+    ideal = np.outer(np.arange(count + 1), legs.relative[0]).ravel()
+    poses = np.concatenate([legs.start[:1], legs.finish]).ravel() - ideal
+    left = less @ poses
+    covariance = less @ covariance @ less.T
+    return float(left @ np.linalg.solve(covariance, left) + np.linalg.slogdet(covariance)[1])
+
+
+def test_the_filter_is_the_likelihood_of_all_poses_together() -> None:
+    legs = line(25)
+    wander = wander_of(legs)
+    assert cost(filtered_wandering(legs, wander)) == pytest.approx(
+        joint_cost(legs, wander), rel=1e-6
+    )
+
+
+def test_innovations_change_as_their_derivatives_say() -> None:
+    legs = line(12)
+    wander = wander_of(legs)
+    random = np.random.default_rng(9)
+    direction = random.standard_normal((12, 3, 1))
+
+    def value(size: float) -> Floats:
+        moved = legs._replace(relative=legs.relative + size * direction[..., 0])
+        return filtered_wandering(moved, wander).value[0]
+
+    told = filtered_wandering(legs, wander).ways.innovations(direction)[..., 0]
+    np.testing.assert_allclose((value(1e-6) - value(-1e-6)) / 2e-6, told, atol=2e-4)
+
+
+def test_after_a_jump_the_pose_is_where_the_wheels_brought_it() -> None:
+    """And the jump is the reference's: what follows it is expected, half a metre off."""
+    legs = line(20)
+    jump = np.array([0.3, -0.4, 0.0])
+    start, finish, skip = legs.start.copy(), legs.finish.copy(), legs.skip.copy()
+    start[11:] += jump
+    finish[10:] += jump
+    skip[10] = True
+    kept = Wander(np.full((1, 3), 1e-4), np.full((1, 20), 1.0 - 1e-9), np.zeros(20, np.bool_), 0.0)
+    found = filtered_wandering(legs._replace(start=start, finish=finish, skip=skip), kept)
+    assert np.all(found.value[0, 10] == 0.0)
+    assert np.abs(found.value[0]).max() < 2e-4
+    blind = filtered_wandering(legs._replace(start=start, finish=finish), kept)
+    assert np.abs(blind.value[0, 10]).max() > 0.3
+
+
+def test_noise_walk_and_memory_are_told_apart(runs: list[Run]) -> None:
+    robot = TRUE.entered()
+    found = calibrate(match_finely(runs, robot, 1.0), robot, "local_map")
+    noises = found.noises
+    assert noises["reference_walk_xy"].value == pytest.approx(WALK[0], rel=0.15)
+    assert noises["reference_walk_yaw"].value == pytest.approx(WALK[1], rel=0.2)
+    assert noises["reference_sigma_xy"].value == pytest.approx(WHITE[0], rel=0.25)
+    assert noises["reference_sigma_yaw"].value == pytest.approx(WHITE[1], rel=0.2)
+    back = noises["reference_reversion"]
+    assert abs(back.value - 1.0 / MEMORY) < 3.0 * back.std
+    for name, multiplier in found.multipliers.items():
+        assert multiplier.std is not None
+        off = multiplier.value - getattr(robot, name)
+        assert abs(off) < 3.0 * multiplier.std, "what is calibrated is so within its error bar"
+        assert multiplier.std < 4e-3
+
+
+def test_legs_are_as_wrong_as_promised_at_every_length(runs: list[Run]) -> None:
+    """By poses that each err by themselves the covariance is far off at one length or another."""
+    found = compare(runs, TRUE.entered(), "local_map")
+    nees = [each.all.figures.nees for each in found.lengths if each.all.figures.count >= 30]
+    assert len(nees) >= 4
+    assert 0.75 < min(nees) <= max(nees) < 1.3
+    plain = compare(runs, TRUE.entered())
+    wrong = [each.all.figures.nees for each in plain.lengths if each.all.figures.count >= 30]
+    assert max(max(wrong), 1.0 / min(wrong)) > 2.0
+
+
+def test_a_localiser_shows_a_wrong_base(runs: list[Run]) -> None:
+    robot = replace(TRUE.entered(), wheel_separation_multiplier=1.0 / 1.03)
+    others = [find(name) for name in ("castor_kick", "floor_slope", "lateral_slip")]
+    found = diagnose(runs[:3], robot, others, "local_map")
+    assert (found.verdict, found.effect) == ("named", "track_width")
+
+
+@pytest.mark.evidence
+@pytest.mark.parametrize("seed", range(4))
+def test_a_localiser_shows_nothing_where_nothing_is(seed: int) -> None:
+    runs = session(range(10 * seed, 10 * seed + 4), jumps=2)
+    found = diagnose(runs, TRUE.entered(), all_effects().effects, "local_map")
+    assert found.verdict == "none"
+
+
+def test_a_wrong_base_shows_in_turns_and_not_in_the_lines_after_them(runs: list[Run]) -> None:
+    """The reference's heading would be doubted for it, and every line after a turn go sideways."""
+    robot = TRUE.entered()
+    wrong = replace(robot, wheel_separation_multiplier=1.0 / 1.1)
+    right, off = (
+        compare(runs[:3], one, "local_map").main.by_motion["line"].figures for one in (robot, wrong)
+    )
+    assert off.rmse_position_m < 1.4 * right.rmse_position_m
+
+
+def test_few_poses_have_the_noise_that_is_usual() -> None:
+    [run] = session(range(1), jumps=0)
+    assert run.reference is not None
+    rows = np.zeros(run.reference.time.size, dtype=np.bool_)
+    rows[[0, -1]] = True
+    short = replace(run, reference=run.reference.chosen(rows))
+    [(_, noise)] = compare([short], TRUE.entered(), "local_map").prepared.noises
+    assert (noise.xy_told, noise.yaw_told) == ("assumed", "assumed")
+    assert 0.0 < noise.sigma_xy < noise.wander[0] < 0.1

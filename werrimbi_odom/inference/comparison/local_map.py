@@ -1,0 +1,108 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Legs of a reference that tells its place on a map: how it wanders, and what is left beside that.
+
+A localiser that has lost itself by 5 degrees shows every leg 90 mm a metre to the side until it has
+found back. So a leg is not judged by its two poses alone: the error of the reference at its start
+is what all poses before it tell, as in a fit, and the error of a leg is what nobody expected of the
+pose at its end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.fitting.fit import fit_model, start_point
+from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.likelihood import Variances, errors_between, innovations
+from werrimbi_odom.inference.fitting.own_values import with_own_values
+from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
+from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.legs.cutting import Record, cut_finely
+from werrimbi_odom.inference.rules import HONEST_WITHIN, NOISE_NUMBERS, UNKNOWN_HEADING
+from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+_MEDIAN_OF_A_SHARE = 2.366 / 3.0
+_ROUNDS = 6
+
+
+@dataclass(frozen=True, slots=True)
+class Wandering:
+    """Noise of a reference on a local map."""
+
+    variances: Variances
+    """With those of the wheels as the fit has them, which nobody is to judge by."""
+    estimated: bool
+    """Else there were too few poses, and it is what such references usually have."""
+
+
+def wandering_of(
+    records: Sequence[Record],
+    robot: Robot,
+    leg: float,
+    sigma_xy: float | None,
+    sigma_yaw: float | None,
+) -> Wandering:
+    """How a reference errs: likeliest beside a robot whose calibration is free.
+
+    So a wrong base or radius does not pass for a walk of the reference.
+    """
+    laid = together([cut_finely(record, robot, leg) for record in records])
+    point = start_point(laid, robot, sigma_xy, sigma_yaw)
+    if laid.data < NOISE_NUMBERS:
+        return Wandering(point.variances, False)
+    point, knobs = with_own_values(laid, point, "local_map")
+    knobs = (*CALIBRATION, *knobs, *point.model.nuisance_knobs)
+    fit = fit_model(laid, point, "local_map", knobs, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
+    return Wandering(fit.point.variances, True)
+
+
+def errors_on_map(
+    model: Model,
+    runs: Together,
+    prediction: Prediction,
+    variances: Variances,
+    jumped: NDArray[np.bool_],
+) -> tuple[Floats, Floats]:
+    """Errors of legs, (m, 3), NaN where not measured, and their covariances, (m, 3, 3).
+
+    A model that is wrong would lay its own errors upon the reference, and show them in all legs
+    after; so errors are those of a filter that doubts the wheels as much as they warrant, and their
+    covariance is that of the noise as stated. Legs on which the reference jumped have what they
+    have by their two poses.
+    """
+    robot = model.robot
+    wheels = np.square([robot.left_wheel_noise, robot.right_wheel_noise])
+    doubt, honest = 1.0, None
+    for _ in range(_ROUNDS):
+        found = innovations(
+            robot,
+            runs,
+            prediction,
+            replace(variances, left=doubt * wheels[:1], right=doubt * wheels[1:]),
+            "local_map",
+            excluded=jumped,
+            start_yaws=model.start_yaws,
+            heading=UNKNOWN_HEADING,
+        )
+        honest = found.covariance[0] if honest is None else honest
+        counted = found.known.any(axis=1)
+        if not counted.any():
+            break
+        share = np.sum(found.whitened()[counted] ** 2, axis=1) / found.known[counted].sum(axis=1)
+        usual = float(np.median(share)) / _MEDIAN_OF_A_SHARE
+        if usual <= HONEST_WITHIN:
+            break
+        doubt *= usual
+    assert honest is not None
+    view = view_of(robot.effects)
+    start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
+    plain = errors_between(start, finish, prediction)
+    error = np.where(found.known, found.value[0], np.where(jumped[:, None], plain, np.nan))
+    return error, honest

@@ -1,0 +1,119 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What references err by themselves: as it is given, else as records state it, else estimated."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+
+import numpy as np
+
+from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.comparison.local_map import wandering_of
+from werrimbi_odom.inference.comparison.reference_noise import (
+    Measure,
+    Residual,
+    reference_noise,
+    stamp_noise,
+)
+from werrimbi_odom.inference.fitting.likelihood import Variances
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW, TYPICAL_MATCH
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+
+@dataclass(frozen=True, slots=True)
+class ReferenceNoise:
+    """Standard deviations of the reference itself, and how they are known."""
+
+    sigma_xy: float
+    """[m]"""
+    sigma_yaw: float
+    """[rad]"""
+    xy_told: str
+    """given (an option), stated (in the record), estimated, or assumed (too few poses)."""
+    yaw_told: str
+    sigma_stamp: float = 0.0
+    """Of the stamps of a reference of headings alone [s]."""
+    walk_xy: float = 0.0
+    """On a local map: what its error gains in a second [m/s^0.5]."""
+    walk_yaw: float = 0.0
+    """The same in heading [rad/s^0.5]."""
+    reversion: float = 0.0
+    """Rate at which that error is drawn back to nothing [1/s]."""
+
+    @property
+    def wander(self) -> tuple[float, float]:
+        """Of that error however long one waits [m, rad]."""
+        share = np.sqrt(2.0 * self.reversion) if self.reversion > 0.0 else 1.0
+        return self.walk_xy / share, self.walk_yaw / share
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class OwnNoise:
+    """The same for telling, and for counting."""
+
+    noise: ReferenceNoise
+    sigma_xy: Floats
+    """Of each run [m]."""
+    sigma_yaw: Floats
+    """Of each run [rad]."""
+    wandering: Variances | None
+    """Of a reference on a local map."""
+
+
+def noise_of(
+    robot: Robot,
+    every: Together,
+    residuals: Sequence[Residual],
+    measure: Measure,
+    kind: ReferenceKind,
+    leg: float,
+    given: tuple[float | None, float | None],
+) -> OwnNoise:
+    """Noise of references that measure alike.
+
+    Parameters
+    ----------
+    every, residuals
+        The runs with a leg from each reference pose to the next, and what the robot makes of them.
+    leg : float
+        Length of a leg [m].
+    given
+        What is known of the noise, if it is [m, rad].
+    """
+    estimated: tuple[float | None, float | None]
+    stated = [[getattr(run, name) for run in every.runs] for name in ("sigma_xy", "sigma_yaw")]
+    usual = TAPE_XY, TAPE_YAW
+    wandering, walk = None, (0.0, 0.0, 0.0)
+    if kind == "local_map":
+        found = wandering_of([run.record for run in every.runs], robot, leg, *given)
+        wandering, usual = found.variances, TYPICAL_MATCH
+        sigma = {name: float(np.sqrt(part[0])) for name, part in asdict(wandering).items()}
+        estimated = (sigma["xy"], sigma["yaw"]) if found.estimated else (None, None)
+        walk = sigma["walk_xy"], sigma["walk_yaw"], sigma["reversion"]
+        # What a localiser states is how far it may be off in all: most of that is its walk.
+        stated = [[None] * len(every.runs)] * 2
+    else:
+        estimated = reference_noise(robot, residuals, kind)
+    position, of_position, told = _known(given[0], stated[0], estimated[0], usual[0])
+    heading, of_heading, yaw_told = _known(given[1], stated[1], estimated[1], usual[1])
+    stamp = stamp_noise(every, residuals, measure)
+    noise = ReferenceNoise(position, heading, told, yaw_told, stamp, *walk)
+    return OwnNoise(noise, of_position, of_heading, wandering)
+
+
+def _known(
+    given: float | None, stated: list[float | None], estimated: float | None, usual: float
+) -> tuple[float, Floats, str]:
+    """One sigma for telling, those of the runs for counting, and where they are from."""
+    count = len(stated)
+    if given is not None:
+        return given, np.full(count, given), "given"
+    fallback, told = (usual, "assumed") if estimated is None else (estimated, "estimated")
+    values = np.array([fallback if value is None else value for value in stated])
+    if all(value is not None for value in stated):
+        told = "stated"
+    return float(np.sqrt(np.mean(values**2))), values, told
