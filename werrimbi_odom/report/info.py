@@ -85,9 +85,6 @@ def _references(held: Held) -> Iterator[str]:
             yield f"Reference {kind} ({each.why}).{taken}"
         else:
             yield f"No reference: {each.name}, {each.why}."
-    scans = [each.name for each in held.contents.topics if each.kind.endswith("/LaserScan")]
-    if scans and not any(each.name in scans for each in held.contents.references):
-        yield f"A laser: {listed(scans)}; a scan matcher makes poses of it."
     if held.reference is None:
         yield "Nothing in the bag measures the robot but its own wheels."
 

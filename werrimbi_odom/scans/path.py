@@ -149,7 +149,8 @@ class ScanMatcher:
         self._renew()
 
     def _renew(self) -> None:
-        self._second = Tracker(self._second.pose)
+        # Beside the last pose: one that is the same to the last digit looks held, not measured.
+        self._second = Tracker(self._second.pose + 1e-6)
         self._failed_again = 0
         self._piece += 1
 

@@ -57,6 +57,36 @@ def corridor_with_cupboards(length: float = 40.0, width: float = 2.0, seed: int 
     return Room(np.vstack(walls))
 
 
+def around(x: Floats, y: Floats, seed: int = 0, margin: float = 1.0) -> Room:
+    """A furnished room about a path, with walls and cupboards out of its way.
+
+    Parameters
+    ----------
+    x, y : ndarray
+        The path [m].
+    margin : float
+        Least distance from the path to a wall [m]; cupboards stand half of it out.
+    """
+    rng = np.random.default_rng([seed, 80])
+    wide = margin + rng.uniform(0.0, 0.6, 4)
+    left, lower = x.min() - wide[0], y.min() - wide[1]
+    right, upper = x.max() + wide[2], y.max() + wide[3]
+    walls = [box(left, lower, right, upper)]
+    for begin, end, wall, inwards, along_x in (
+        (left, right, lower, 1.0, True),
+        (left, right, upper, -1.0, True),
+        (lower, upper, left, 1.0, False),
+        (lower, upper, right, -1.0, False),
+    ):
+        at = begin + rng.uniform(0.2, 0.8)
+        while at < end - 0.8:
+            size, deep = rng.uniform(0.3, 1.0), inwards * rng.uniform(0.15, 0.5) * margin
+            one = box(at, wall, at + size, wall + deep)
+            walls.append(one if along_x else one[:, [1, 0, 3, 2]])
+            at += size + rng.uniform(0.4, 1.5)
+    return Room(np.vstack(walls))
+
+
 def box(left: float, lower: float, right: float, upper: float) -> Floats:
     """Its four sides, shape (4, 4)."""
     return np.array(
