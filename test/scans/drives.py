@@ -29,7 +29,7 @@ def ahead(duration: float, speed: float = 0.3) -> TruePath:
     """Along x, from the origin on."""
     t = np.arange(0.0, duration, PERIOD)
     lead = np.clip(t - 3.0, 0.0, 1.0)
-    return _path(t, speed * lead, 0.05 * lead * np.sin(t), middle=False)
+    return _path(t, speed * lead, 0.05 * lead * np.cos(t), middle=False)
 
 
 def _path(t: Floats, speed: Floats, turning: Floats, middle: bool = True) -> TruePath:

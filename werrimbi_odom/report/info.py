@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any
 
-from werrimbi_odom.files.contents import Measured
+from werrimbi_odom.files.contents import SCAN, Measured
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.spans import Driven
 from werrimbi_odom.inference.recorded import Held, Info, can_tell, measures_of
@@ -83,6 +83,8 @@ def _references(held: Held) -> Iterator[str]:
         kind = f"{each.name}: {_MEASURES[each.measures]}{_rate(held, each.name)}"
         if each.independent:
             yield f"Reference {kind} ({each.why}).{taken}"
+            if taken and each.kind == SCAN and held.run is not None:
+                yield from (f"{note}." for note in held.run.notes if note.startswith("reference "))
         else:
             yield f"No reference: {each.name}, {each.why}."
     if held.reference is None:

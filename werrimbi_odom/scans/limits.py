@@ -40,3 +40,8 @@ FLOOR = 2e-4
 of matches is 0.9 to 1.3 in simulated rooms with six lidars (docs/scans.md), so it only keeps a
 covariance from being none; what a real lidar errs beside its echoes' noise is read off each drive
 (`path.common_noise`)."""
+
+COMMON = 1.5
+"""By how much more than the matches state (ratio of variances) poses must scatter about their own
+course for a noise that is common to all echoes of a scan: without one it is 1.0 to 1.4 in simulated
+rooms, for no course is a parabola; with a real LD08, whose turns begin anywhere, 5 to 15."""

@@ -10,15 +10,16 @@ scans nor maps are kept: memory does not grow with the drive.
 
 from __future__ import annotations
 
+from array import array
 from collections import deque
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.scans.limits import FEWEST_POSES, LONGEST_HOLE, LOST_AFTER
+from werrimbi_odom.scans.limits import COMMON, FEWEST_POSES, LONGEST_HOLE, LOST_AFTER
 from werrimbi_odom.scans.matching import MAD
 from werrimbi_odom.scans.sweep import Course, Sweep, deskewed, own_course
 from werrimbi_odom.scans.tracker import Flag, Tracker, motion_between, moved
@@ -65,14 +66,6 @@ class _Seen(NamedTuple):
     """Even, however its stamps jitter [s]."""
 
 
-@dataclass
-class _Found:
-    time: list[float] = field(default_factory=list)
-    poses: list[Floats] = field(default_factory=list)
-    covariances: list[Floats] = field(default_factory=list)
-    piece: list[int] = field(default_factory=list)
-
-
 class ScanMatcher:
     """Takes scans in the order of time, and gives the path at the end."""
 
@@ -86,7 +79,7 @@ class ScanMatcher:
         self._done = 0  # scans at the front of `_seen` that the second pass has
         self._failed_again, self._piece, self._scans = 0, 0, 0
         self._flags: dict[Flag, int] = {}
-        self._found = _Found()
+        self._found = array("d")  # of each pose: time, pose, covariance, piece
 
     def take(self, sweep: Sweep) -> None:
         """Take a scan; one that is not later than the last is left out."""
@@ -123,13 +116,13 @@ class ScanMatcher:
     def path(self) -> ScanPath:
         """The path of all scans that were taken; the last call of all."""
         self._cut()
-        piece = np.array(self._found.piece, dtype=np.intp)
+        table = np.array(self._found).reshape(-1, 14)
+        piece = table[:, 13].astype(np.intp)
         kept = np.bincount(piece, minlength=1)[piece] >= FEWEST_POSES
-        poses = np.array(self._found.poses).reshape(-1, 3)[kept]
-        covariances = np.array(self._found.covariances).reshape(-1, 3, 3)[kept]
+        poses, covariances = table[kept, 1:4], table[kept, 4:13].reshape(-1, 3, 3)
         more = common_noise(poses, covariances, piece[kept])
         return ScanPath(
-            np.array(self._found.time)[kept],
+            table[kept, 0],
             poses,
             covariances + np.diag([more[0], more[0], more[1]]) ** 2,
             piece[kept],
@@ -180,10 +173,10 @@ class ScanMatcher:
                 self._renew()
             return
         self._failed_again = 0
-        self._found.time.append(seen.sweep.time)
-        self._found.poses.append(self._second.pose)
-        self._found.covariances.append(self._second.covariance)
-        self._found.piece.append(self._piece)
+        self._found.append(seen.sweep.time)
+        self._found.extend(self._second.pose)
+        self._found.extend(self._second.covariance.ravel())
+        self._found.append(self._piece)
 
 
 def common_noise(
@@ -204,7 +197,7 @@ def common_noise(
     beside = np.median(np.abs(poses[middle] - smooth), axis=0) * MAD
     seen = beside**2 / (1.0 - _SMOOTH[_SMOOTH.size // 2])
     stated = np.median(np.diagonal(covariances[middle], axis1=1, axis2=2), axis=0)
-    more = np.maximum(seen - stated, 0.0)
+    more = np.where(seen > COMMON * stated, seen - stated, 0.0)
     return float(np.sqrt(0.5 * (more[0] + more[1]))), float(np.sqrt(more[2]))
 
 
