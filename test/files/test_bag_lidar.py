@@ -98,7 +98,7 @@ def test_scans_give_poses_of_the_base(tmp_path: Path, ros: Any, robot: Any) -> N
     assert run.reference is not None
     assert run.reference.sigma_xy is not None
     assert 3e-4 < np.median(run.reference.sigma_xy) < 5e-3
-    assert "150 mm ahead and -50 mm left" in " ".join(run.notes)
+    assert "150 mm ahead of and 50 mm right of it" in " ".join(run.notes)
     (source,) = contents_of(bag).independent
     assert (source.name, source.measures, source.child) == ("/scan", "poses", "laser")
 
@@ -160,7 +160,9 @@ def test_a_leg_never_spans_a_cut(tmp_path: Path, ros: Any, robot: Any) -> None:
     run = read_run(ros.write(tmp_path / "run", entries(ros, seen)), robot())
     assert len(run.taken_out) == 1
     begin, end = run.taken_out[0]
-    assert "cut in 2 pieces" in " ".join(run.notes)
+    (words,) = run.damage
+    assert "the path by /scan is in pieces" in words
+    assert "no leg spans a cut" in words
     cut = match(run, Robot(BASE, WHEEL, WHEEL, COUNTS, 2.0 * COUNTS), leg=0.1)
     spans = (cut.measured.time[:-1] <= begin) & (cut.measured.time[1:] >= end)
     assert spans.sum() == 1

@@ -46,6 +46,8 @@ class LidarCollector:
         self.topics = (source.name, *(self._mounting.topics if self._mounting else ()))
         self.taken_out: tuple[tuple[float, float], ...] = ()
         """Between two pieces of the path, from and to [s]; known when the reference is."""
+        self.damage: tuple[str, ...] = ()
+        """That it is in pieces, in words for the user; known when the reference is."""
 
     def take(self, message: Message) -> None:
         """Take a message of one of the topics."""
@@ -78,6 +80,8 @@ class LidarCollector:
         mount = self._mounting.mount(self._place) if self._mounting else Mount(0.0, 0.0, 0.0, False)
         poses, sigma_xy, sigma_yaw = _of_base(found, mount)
         self.taken_out = tuple(found.cuts)
+        if found.cuts:
+            self.damage = (f"the path by {self._name} is in pieces: {_unmatched(found)}",)
         told = f"{self._mounted(mount)}; {_in_words(found, sigma_xy, sigma_yaw)}"
         x, y, yaw = (np.ascontiguousarray(each) for each in poses.T)
         reference = Reference(found.time, x, y, yaw, sigma_xy, sigma_yaw, kind="absolute")
@@ -91,10 +95,14 @@ class LidarCollector:
             )
         down = ", upside down" if mount.inverted else ""
         return (
-            f"frame {self._base}: the lidar sits {1e3 * mount.x:.0f} mm ahead and "
-            f"{1e3 * mount.y:.0f} mm left of it, turned by {np.degrees(mount.yaw):.1f}°{down}, by "
-            f"{' and '.join(self._mounting.topics)}"
+            f"frame {self._base}: by {' and '.join(self._mounting.topics)} the lidar sits "
+            f"{_beside(mount.x, 'ahead of', 'behind')} and {_beside(mount.y, 'left of', 'right of')} "
+            f"it, turned by {np.degrees(mount.yaw):.1f}°{down}"
         )
+
+
+def _beside(length: float, one: str, other: str) -> str:
+    return f"{1e3 * abs(length):.0f} mm {one if length >= 0.0 else other}"
 
 
 def _of_base(found: ScanPath, mount: Mount) -> tuple[Floats, Floats, Floats]:
@@ -119,11 +127,21 @@ def _in_words(found: ScanPath, sigma_xy: Floats, sigma_yaw: Floats) -> str:
         f"{1e3 * float(np.median(sigma_xy)):.1f} mm and "
         f"{1e3 * float(np.median(sigma_yaw)):.1f} mrad each"
     ]
-    if found.time.size < found.scans:
-        words.append(f"{found.scans - found.time.size} of them not{_because(found)}")
-    if found.cuts:
-        words.append(f"the path is cut in {len(found.cuts) + 1} pieces, where it was lost")
+    if found.time.size < found.scans and not found.cuts:
+        words.append(_unmatched(found))
     return "; ".join(words)
+
+
+def _unmatched(found: ScanPath) -> str:
+    words = f"{found.scans - found.time.size} of {found.scans} scans were not matched"
+    words += _because(found)
+    if found.cuts:
+        started = found.time[0]
+        when = ", ".join(
+            f"{begin - started:.1f} to {end - started:.1f} s" for begin, end in found.cuts
+        )
+        words += f"; it is cut from {when} after its first pose, and no leg spans a cut"
+    return words
 
 
 def _because(found: ScanPath) -> str:

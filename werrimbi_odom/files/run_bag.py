@@ -85,7 +85,7 @@ def read_run_bag(
         ticks,
         found.reference,
         (f"ticks from {source.name} ({source.kind})", *notes, *found.notes),
-        damage=bag.damage,
+        damage=(*bag.damage, *found.damage),
         no_reference=lacking,
         circle=found.circle,
         taken_out=found.taken_out,
@@ -121,7 +121,8 @@ def read_reference_bag(
         raise InputError(
             f"{path}: there is no reference in it ({kinds_in_words()}); the bag has {told}"
         )
-    return found._replace(damage=tuple(f"{path}: {words}" for words in bag.damage))
+    damage = (*bag.damage, *found.damage)
+    return found._replace(damage=tuple(f"{path}: {words}" for words in damage))
 
 
 def _chosen(held: Contents, source: Wheels, wish: Topics, force: bool) -> list[Chosen]:
@@ -162,10 +163,12 @@ def _put_together(
 ) -> FoundReference:
     references, notes, circle = [], [], ""
     cuts: tuple[tuple[float, float], ...] = ()
+    damage: tuple[str, ...] = ()
     for (named, _), collector in zip(chosen, collectors, strict=True):
         reference, frames = collector.reference()
         references.append(reference)
-        cuts += collector.taken_out if isinstance(collector, LidarCollector) else ()
+        if isinstance(collector, LidarCollector):
+            cuts, damage = collector.taken_out, collector.damage
         notes.append(f"reference from {collector.topics[0]} ({named.kind}), {frames}")
         if not named.independent:
             topics = source.name.split(",")
@@ -182,7 +185,7 @@ def _put_together(
         whole, told = merged(f"{held.path}: {names}", *references)
         return FoundReference(whole, (*notes, told), circle)
     only = references[0] if references else None
-    return FoundReference(only, tuple(notes), circle, taken_out=cuts)
+    return FoundReference(only, tuple(notes), circle, damage, cuts)
 
 
 _Collector = ChainCollector | LidarCollector | ReferenceCollector

@@ -84,7 +84,9 @@ def _references(held: Held) -> Iterator[str]:
         if each.independent:
             yield f"Reference {kind} ({each.why}).{taken}"
             if taken and each.kind == SCAN and held.run is not None:
-                yield from (f"{note}." for note in held.run.notes if note.startswith("reference "))
+                yield from (
+                    f"R{note[1:]}." for note in held.run.notes if note.startswith("reference ")
+                )
         else:
             yield f"No reference: {each.name}, {each.why}."
     if held.reference is None:
