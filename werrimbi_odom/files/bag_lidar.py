@@ -94,10 +94,10 @@ class LidarCollector:
                 "its own path is compared (reference_lever_arm, reference_yaw_offset)"
             )
         down = ", upside down" if mount.inverted else ""
+        sits = _beside(mount.x, "ahead of", "behind"), _beside(mount.y, "left of", "right of")
         return (
             f"frame {self._base}: by {' and '.join(self._mounting.topics)} the lidar sits "
-            f"{_beside(mount.x, 'ahead of', 'behind')} and {_beside(mount.y, 'left of', 'right of')} "
-            f"it, turned by {np.degrees(mount.yaw):.1f}°{down}"
+            f"{sits[0]} and {sits[1]} it, turned by {np.degrees(mount.yaw):.1f}°{down}"
         )
 
 
