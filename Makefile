@@ -90,6 +90,7 @@ docs: setup  ## the site of docs/ and of the docstrings, to build/site/index.htm
 
 pictures: setup  ## the pictures of the README, made anew (needs Chrome or Chromium)
 	$(BIN)/python docs/make_pictures.py
+	$(BIN)/python docs/make_scans_picture.py
 	$(BIN)/python docs/make_report_pictures.py
 	$(BIN)/python docs/make_workbench_pictures.py
 

@@ -128,6 +128,17 @@ class Messages:
         fields = (header, self._turn(np.nan), covariance, turning, of_rate, none, covariance)
         return kind, self.make(kind, *fields)
 
+    def scan(self, nanoseconds: int, lidar: Any, ranges: Any) -> tuple[str, Any]:
+        """A turn of a simulated lidar."""
+        kind = "sensor_msgs/msg/LaserScan"
+        angles = 0.0, lidar.increment * (lidar.beams - 1), lidar.increment
+        times = lidar.beam_interval, 1.0 / lidar.rate_hz
+        limits = lidar.nearest, lidar.farthest
+        seen = np.asarray(ranges, dtype=np.float32), np.zeros(0, dtype=np.float32)
+        return kind, self.make(
+            kind, self.header(nanoseconds, "laser"), *angles, *times, *limits, *seen
+        )
+
     def fix(self, nanoseconds: int, degrees: tuple[float, float], fixed: bool = True) -> Any:
         """A fix of satellites, with a standard deviation of 0.2 m."""
         kind, covariance = "sensor_msgs/msg/NavSatFix", np.diag([0.04, 0.04, 1.0]).ravel()

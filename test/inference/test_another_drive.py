@@ -60,7 +60,7 @@ def diagnosed(*runs: Run, holdout: tuple[Run, ...] = ()) -> Told:
 
 
 def spoken(told: Told) -> str:
-    return words_of(told, NextSteps())
+    return "\n".join(each.text for each in words_of(told, NextSteps()))
 
 
 MEASURED = pytest.mark.parametrize("keep", [poses, headings, positions])

@@ -101,7 +101,9 @@ def test_the_bag_holds_what_was_seen(tmp_path: Path) -> None:
         for connection, _, data in reader.messages():
             message = reader.deserialize(data, connection.msgtype)
             found.setdefault(connection.topic, []).append(message)
-    assert set(found) == {"/joint_states", "/imu", "/odom", "/tf", "/robot_description"}
+    own = {"/joint_states", "/imu", "/odom", "/tf", "/robot_description"}
+    assert set(found) == own | {"/scan", "/tf_static"}
+    assert len(found["/scan"]) == len(seen().scans.time)
     assert len(found["/joint_states"]) == len(seen().wheels)
     root = ElementTree.fromstring(found["/robot_description"][0].data)  # type: ignore[attr-defined]
     origins = [joint.find("origin").attrib["xyz"] for joint in root.iter("joint")]  # type: ignore[union-attr]

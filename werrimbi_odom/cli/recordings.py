@@ -91,7 +91,8 @@ def add_recording_arguments(
         "--reference-topic",
         metavar="T",
         action="append",
-        help="topic of the reference, in a bag with several; /tf:PARENT:CHILD among transforms. "
+        help="topic of the reference, in a bag with several; /tf:PARENT:CHILD among transforms; "
+        "the scans of a lidar are matched with those of the last metres. "
         "Given twice, for poses and for a gyro: the positions of the one with the headings of the "
         "other",
     )

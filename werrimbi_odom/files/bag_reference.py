@@ -14,7 +14,7 @@ import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, stamp_of
-from werrimbi_odom.files.contents import FIX, IMU, Measured
+from werrimbi_odom.files.contents import FIX, IMU, SCAN, Measured
 from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.local_plane import east_and_north
 from werrimbi_odom.files.robot_file import RobotFile
@@ -37,7 +37,7 @@ class _Row(NamedTuple):
 
 def kinds_in_words() -> str:
     """Message types that can be a reference."""
-    names = sorted({kind.rpartition("/")[2] for kind in (*_ROWS, "tf2_msgs/msg/TFMessage")})
+    names = sorted({kind.rpartition("/")[2] for kind in (*_ROWS, SCAN, "tf2_msgs/msg/TFMessage")})
     return f"{', '.join(names[:-1])} or {names[-1]}"
 
 

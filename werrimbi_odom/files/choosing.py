@@ -8,13 +8,21 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.contents import Contents, Measured, Wheels
+from werrimbi_odom.files.contents import SCAN, Contents, Measured, Wheels
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Chain, chain, frame, is_static
 from werrimbi_odom.files.made_from_wheels import is_odometry_frame
 
 NONE = "none"
 """Said instead of a topic: use no reference."""
+
+_OTHER_SCANS = {
+    "sensor_msgs/msg/PointCloud2": "clouds of points; scans of one level plane are matched "
+    "(sensor_msgs/LaserScan): pointcloud_to_laserscan makes them of it",
+    "sensor_msgs/msg/MultiEchoLaserScan": "several echoes a beam; laser_proc makes a "
+    "sensor_msgs/LaserScan of the first or the strongest, which can be matched",
+}
+"""Lidars' messages that are not matched, and what makes of them what is."""
 
 
 class Chosen(NamedTuple):
@@ -54,6 +62,8 @@ def choose_reference(
     if wish is not None:
         return _wished(held, there, wish, force)
     independent = [each for each in there if each.independent]
+    # Scans are matched where they are asked for, or where nothing else measures the robot.
+    independent = [each for each in independent if each.kind != SCAN] or independent
     if len(independent) > 1:
         raise InputError(
             f"{held.path}: choose with --reference-topic ({NONE} for no reference); "
@@ -85,6 +95,9 @@ def _wished(held: Contents, there: Sequence[Measured], wish: str, force: bool) -
     for each in there:
         if each.name == name and len(frames) <= 1:
             return Chosen(each, frames[0] if frames else "")
+    kind = next((each.kind for each in held.topics if each.name == name), "")
+    if kind in _OTHER_SCANS:
+        raise InputError(f"{held.path}: {name} holds {_OTHER_SCANS[kind]}")
     candidates = [each for each in there if each.independent]
     raise InputError(
         f"{held.path}: there is no reference in {name}; candidates are: "

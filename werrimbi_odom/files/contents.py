@@ -25,6 +25,7 @@ Gives = Literal["counts", "positions", "velocities", "odometry"]
 """Of wheels: counters, angles of joints, speeds of joints alone, or the firmware's own poses."""
 
 IMU = "sensor_msgs/msg/Imu"
+SCAN = "sensor_msgs/msg/LaserScan"
 FIX = "sensor_msgs/msg/NavSatFix"
 JOINT_STATE = "sensor_msgs/msg/JointState"
 INT32, INT64 = "std_msgs/msg/Int32", "std_msgs/msg/Int64"
@@ -44,6 +45,7 @@ POSES = {
     "geometry_msgs/msg/PointStamped": "positions",
     FIX: "positions",
     IMU: "yaw",
+    SCAN: "poses",
 }
 """Messages that measure the robot, transforms of many frames apart."""
 
@@ -124,7 +126,8 @@ def contents_of(bag: Bag, base: str = "") -> Contents:
         *(_measured(each, firsts.get(each.name)) for each in bag.topics if each.kind in POSES),
     ]
     references = [each for each in references if not is_asked_for(each.name)]
-    references.sort(key=lambda each: not each.independent)  # stable: else in the bag's order
+    # Scans last, for a localiser has made poses of them; stable: else in the bag's order.
+    references.sort(key=lambda each: (not each.independent, each.kind == SCAN))
     return Contents(bag.path, bag.topics, tuple(_wheels(bag, firsts)), tuple(references), found)
 
 
@@ -137,6 +140,9 @@ def _measured(topic: Topic, first: Any) -> Measured:
     if kind == IMU:
         parent, child, reason = "", parent, ""
         why = "a gyro of its own; its yaw rate is integrated"
+    elif kind == SCAN:
+        parent, child, reason = "", parent, ""
+        why = "walls and furniture; its scans are matched with those of the last metres"
     elif kind == FIX:
         parent, child, reason = "", parent, ""
         why = "satellites"

@@ -82,6 +82,7 @@ def read_run(
         circle=found.circle,
         damage=(*run.damage, *found.damage),
         no_reference="",
+        taken_out=found.taken_out,
     )
 
 

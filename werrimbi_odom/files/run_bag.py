@@ -11,11 +11,13 @@ from typing import NamedTuple, Protocol
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Bag, Message, opened_bag, topic_in_words
 from werrimbi_odom.files.bag_chain import ChainCollector
+from werrimbi_odom.files.bag_lidar import LidarCollector
 from werrimbi_odom.files.bag_reference import ReferenceCollector, kinds_in_words
 from werrimbi_odom.files.bag_ticks import choose_ticks, ticks_collector
 from werrimbi_odom.files.choosing import Chosen, choose_reference
-from werrimbi_odom.files.contents import Contents, Wheels, contents_of
+from werrimbi_odom.files.contents import SCAN, Contents, Wheels, contents_of
 from werrimbi_odom.files.merged_reference import merged
+from werrimbi_odom.files.mounting import mounting_chain
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.files.text import readable
@@ -70,7 +72,7 @@ def read_run_bag(
         topics = source.name.split(",")
         chosen = _chosen(held, source, reference_topic, force)
         ticks_of = ticks_collector(path, source, robot_file)
-        collectors = [_collector(path, each, robot_file) for each in chosen]
+        collectors = [_collector(path, held, each, robot_file) for each in chosen]
         _collect(bag, [(topics, ticks_of), *((each.topics, each) for each in collectors)], progress)
     ticks, notes = ticks_of.ticks()
     found = _put_together(held, source, chosen, collectors)
@@ -83,9 +85,10 @@ def read_run_bag(
         ticks,
         found.reference,
         (f"ticks from {source.name} ({source.kind})", *notes, *found.notes),
-        damage=bag.damage,
+        damage=(*bag.damage, *found.damage),
         no_reference=lacking,
         circle=found.circle,
+        taken_out=found.taken_out,
     )
 
 
@@ -98,6 +101,8 @@ class FoundReference(NamedTuple):
     """See `Run.circle`."""
     damage: tuple[str, ...] = ()
     """See `Run.damage`."""
+    taken_out: tuple[tuple[float, float], ...] = ()
+    """See `Run.taken_out`."""
 
 
 def read_reference_bag(
@@ -108,7 +113,7 @@ def read_reference_bag(
     with opened_bag(path) as bag:
         held = contents_of(bag, str(robot_file.values["base_frame_id"]))
         chosen = _chosen(held, nothing, reference_topic, force)
-        collectors = [_collector(path, each, robot_file) for each in chosen]
+        collectors = [_collector(path, held, each, robot_file) for each in chosen]
         _collect(bag, [(each.topics, each) for each in collectors], None)
     found = _put_together(held, nothing, chosen, collectors)
     if found.reference is None:
@@ -116,7 +121,8 @@ def read_reference_bag(
         raise InputError(
             f"{path}: there is no reference in it ({kinds_in_words()}); the bag has {told}"
         )
-    return found._replace(damage=tuple(f"{path}: {words}" for words in bag.damage))
+    damage = (*bag.damage, *found.damage)
+    return found._replace(damage=tuple(f"{path}: {words}" for words in damage))
 
 
 def _chosen(held: Contents, source: Wheels, wish: Topics, force: bool) -> list[Chosen]:
@@ -153,12 +159,16 @@ def _put_together(
     held: Contents,
     source: Wheels,
     chosen: Sequence[Chosen],
-    collectors: Sequence[ChainCollector | ReferenceCollector],
+    collectors: Sequence[_Collector],
 ) -> FoundReference:
     references, notes, circle = [], [], ""
+    cuts: tuple[tuple[float, float], ...] = ()
+    damage: tuple[str, ...] = ()
     for (named, _), collector in zip(chosen, collectors, strict=True):
         reference, frames = collector.reference()
         references.append(reference)
+        if isinstance(collector, LidarCollector):
+            cuts, damage = collector.taken_out, collector.damage
         notes.append(f"reference from {collector.topics[0]} ({named.kind}), {frames}")
         if not named.independent:
             topics = source.name.split(",")
@@ -167,14 +177,25 @@ def _put_together(
             circle = f"{named.name}: {named.why}; independent references in the bag: {told}"
     if len(references) == 2:
         names = " and ".join(each.source.name for each in chosen)
+        if cuts:
+            raise InputError(
+                f"{held.path}: {names}: the path by scans is in {len(cuts) + 1} pieces, whose "
+                "headings have nothing to do with each other; judge one after the other"
+            )
         whole, told = merged(f"{held.path}: {names}", *references)
         return FoundReference(whole, (*notes, told), circle)
-    return FoundReference(references[0] if references else None, tuple(notes), circle)
+    only = references[0] if references else None
+    return FoundReference(only, tuple(notes), circle, damage, cuts)
 
 
-def _collector(
-    path: Path, chosen: Chosen, robot_file: RobotFile
-) -> ChainCollector | ReferenceCollector:
+_Collector = ChainCollector | LidarCollector | ReferenceCollector
+
+
+def _collector(path: Path, held: Contents, chosen: Chosen, robot_file: RobotFile) -> _Collector:
+    if chosen.source.kind == SCAN:
+        base = str(robot_file.values["base_frame_id"])
+        mounting = mounting_chain(held.edges, base, chosen.source.child)
+        return LidarCollector(path, chosen.source, mounting)
     if chosen.source.chain is not None:
         return ChainCollector(path, chosen.source.chain)
     return ReferenceCollector(path, chosen.source, robot_file, chosen.child)

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any
 
-from werrimbi_odom.files.contents import Measured
+from werrimbi_odom.files.contents import SCAN, Measured
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.spans import Driven
 from werrimbi_odom.inference.recorded import Held, Info, can_tell, measures_of
@@ -85,11 +85,12 @@ def _references(held: Held) -> Iterator[str]:
         kind = f"{each.name}: {_MEASURES[each.measures]}{_rate(held, each.name)}"
         if each.independent:
             yield f"Reference {kind} ({each.why}).{taken}"
+            if taken and each.kind == SCAN and held.run is not None:
+                yield from (
+                    f"R{note[1:]}." for note in held.run.notes if note.startswith("reference ")
+                )
         else:
             yield f"No reference: {each.name}, {each.why}."
-    scans = [each.name for each in held.contents.topics if each.kind.endswith("/LaserScan")]
-    if scans and not any(each.name in scans for each in held.contents.references):
-        yield f"A laser: {listed(scans)}; a scan matcher makes poses of it."
     if held.reference is None:
         yield "Nothing in the bag measures the robot but its own wheels."
 

@@ -16,16 +16,21 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .bag import EPOCH
-from .engine import PERIOD, TruePath
+from .engine import PERIOD, Pose, TruePath
 from .hidden.peculiarity import Peculiarity
+from .lidar import Lidar, Sweeps, scanned
 from .recording import Recording
 from .robot import TrueRobot
+from .rooms import around
 from .sensors import count, sampling_times
 
 Floats = NDArray[np.float64]
 
 HELD, CARRIED = 4.0, 5.0
 """How long the robot is held and carried [s]."""
+
+BEHIND = Lidar(mount=Pose(-0.032, 0.0, 0.0))
+"""A lidar of 218 beams a little behind the axle, as on a TurtleBot3."""
 
 
 @dataclass(frozen=True)
@@ -48,6 +53,8 @@ class FieldSensors:
         Standard deviations of the localiser's error [m, rad], and its time constant [s].
     jumps, jump_xy, jump_yaw : float
         How often a drive it jumps, and by how much [m, rad] (standard deviations).
+    lidar : Lidar
+        In a furnished room about the drive.
     """
 
     wheels_hz: float = 20.0
@@ -64,6 +71,7 @@ class FieldSensors:
     jumps: int = 2
     jump_xy: float = 0.15
     jump_yaw: float = 0.08
+    lidar: Lidar = BEHIND
 
 
 @dataclass(frozen=True)
@@ -77,6 +85,8 @@ class FieldDrive:
         yaw [rad] of base_link in the map.
     odometry : ndarray, shape (n, 3)
         The robot's own x, y [m] and yaw [rad] by its nominal numbers, with each row of `wheels`.
+    lidar, scans : Lidar, Sweeps
+        What it is, and what it saw; `scans.time` holds the header stamps.
     truth : mapping
         For truth.json: what nobody told the robot; times in the clock of the bag.
     """
@@ -86,6 +96,8 @@ class FieldDrive:
     imu: Floats
     localiser: Floats
     odometry: Floats
+    lidar: Lidar
+    scans: Sweeps
     truth: dict[str, object] = field(default_factory=dict)
 
 
@@ -139,9 +151,10 @@ def as_in_the_field(
         "localiser_jumps": _by_the_bag(jumped),
         "gyro": {"bias_rad_per_s": bias, "scale": scale},
     }
-    return FieldDrive(
-        recording.name, wheels, imu, localiser, _dead_reckoned(left, right, robot), truth
-    )
+    odometry = _dead_reckoned(left, right, robot)
+    room = around(path.x_m, path.y_m, robot_seed)
+    scans = scanned(path, room, sensors.lidar, seed)
+    return FieldDrive(recording.name, wheels, imu, localiser, odometry, sensors.lidar, scans, truth)
 
 
 def seen_in_the_field(odd: Peculiarity) -> bool:

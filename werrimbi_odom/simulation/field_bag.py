@@ -21,8 +21,11 @@ TOPICS = {
     "/joint_states": "sensor_msgs/msg/JointState",
     "/imu": "sensor_msgs/msg/Imu",
     "/odom": "nav_msgs/msg/Odometry",
+    "/scan": "sensor_msgs/msg/LaserScan",
     "/tf": "tf2_msgs/msg/TFMessage",
+    "/tf_static": "tf2_msgs/msg/TFMessage",
 }
+LIDAR_FRAME = "base_scan"
 
 
 def urdf(robot: TrueRobot) -> str:
@@ -43,13 +46,17 @@ def urdf(robot: TrueRobot) -> str:
     return "\n".join([*parts, "</robot>"])
 
 
-def write_field_bag(drive: FieldDrive, robot: TrueRobot, folder: str | Path) -> Path:
-    """Write wheels, gyro, the robot's own odometry, both transforms of a localiser, and the URDF.
+def write_field_bag(
+    drive: FieldDrive, robot: TrueRobot, folder: str | Path, mounting: bool = True
+) -> Path:
+    """Write wheels, gyro, scans, the robot's odometry, transforms of a localiser, and the URDF.
 
     Parameters
     ----------
     folder : path
         Of the bag; must not exist.
+    mounting : bool
+        Whether a transform tells where the lidar sits.
     """
     folder = Path(folder)
     folder.parent.mkdir(parents=True, exist_ok=True)
@@ -104,10 +111,25 @@ def write_field_bag(drive: FieldDrive, robot: TrueRobot, folder: str | Path) -> 
             nothing,
         )
 
+    lidar = drive.lidar
+
+    def scan(stamp: float, ranges: np.ndarray) -> object:
+        angles = 0.0, lidar.increment * (lidar.beams - 1), lidar.increment
+        times = lidar.beam_interval, 1.0 / lidar.rate_hz
+        limits = lidar.nearest, lidar.farthest
+        seen = ranges.astype(np.float32), np.zeros(0, dtype=np.float32)
+        kind = TOPICS["/scan"]
+        return made(kind, header(stamp, LIDAR_FRAME), *angles, *times, *limits, *seen)
+
     sides = [joints(side, robot.wheels_a_side) for side in ("left", "right")]
     nothing = np.zeros(0)
     first = float(min(drive.wheels[0, 1], drive.imu[0, 1], drive.localiser[0, 1]))
     messages = [(first, "/robot_description", made("std_msgs/msg/String", urdf(robot)))]
+    if mounting:
+        sits = transform(first, "base_link", LIDAR_FRAME, np.array(lidar.mount))
+        messages.append((first, "/tf_static", sits))
+    for stamp, ranges in zip(drive.scans.time, drive.scans.ranges, strict=True):
+        messages.append((stamp + 1.0 / lidar.rate_hz, "/scan", scan(stamp, ranges)))
     for (stamp, received, left, right), pose in zip(drive.wheels, drive.odometry, strict=True):
         angles = np.repeat([left, right], [len(each) for each in sides])
         names = [name for each in sides for name in each]
@@ -125,6 +147,7 @@ def write_field_bag(drive: FieldDrive, robot: TrueRobot, folder: str | Path) -> 
         connections = {
             topic: writer.add_connection(topic, kind, typestore=store)
             for topic, kind in TOPICS.items()
+            if mounting or topic != "/tf_static"
         }
         for received, topic, message in messages:
             data = store.serialize_cdr(message, TOPICS[topic])

@@ -68,7 +68,7 @@ def _without(run: Run, reference: Reference, kept: np.ndarray) -> Run:
         for first, last in itertools.pairwise(ends)
         if not kept[first]
     )
-    return replace(run, reference=reference.chosen(kept), taken_out=gone)
+    return replace(run, reference=reference.chosen(kept), taken_out=(*run.taken_out, *gone))
 
 
 def _between(runs: Sequence[Run], begin: float, end: float) -> list[Run]:

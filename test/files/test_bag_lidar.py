@@ -1,0 +1,191 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Scans in bags: read, matched, brought to the robot's base, and cut where they were lost."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from test.scans.drives import in_circles
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.contents import contents_of
+from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.legs.cutting import match
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.simulation import rooms
+from werrimbi_odom.simulation.engine import Pose, TruePath
+from werrimbi_odom.simulation.lidar import Lidar, Room, Sweeps, scanned
+
+EPOCH = 1_700_000_000
+LIDAR = Lidar(beams=180, mount=Pose(0.15, -0.05, 0.7))
+BASE, WHEEL, COUNTS = 0.4, 0.1, 1000.0
+
+
+@cache
+def path() -> TruePath:
+    return in_circles(9.0)
+
+
+@cache
+def sweeps(upside_down: bool = False) -> Sweeps:
+    return scanned(path(), rooms.arena(3.0), replace(LIDAR, upside_down=upside_down), 1)
+
+
+def entries(
+    ros: Any, seen: Sweeps, lidar: Lidar = LIDAR, turn: tuple[float, ...] | None = (0.0, 0.0)
+) -> list[Any]:
+    """Counters at 50 Hz, scans, and how the lidar is mounted: roll and pitch, or nothing."""
+    found: list[Any] = []
+    if turn is not None:
+        found.append(("/tf_static", EPOCH * 10**9, ros.transforms(mounted(ros, lidar, *turn))))
+    drive = path()
+    speed = np.gradient(drive.x_m, drive.t_s) * np.cos(drive.yaw_rad)
+    speed += np.gradient(drive.y_m, drive.t_s) * np.sin(drive.yaw_rad)
+    rate = np.gradient(drive.yaw_rad, drive.t_s)
+    for row in range(0, drive.t_s.size, 4):
+        gone = np.trapezoid(speed[: row + 1], drive.t_s[: row + 1])
+        turned = np.trapezoid(rate[: row + 1], drive.t_s[: row + 1])
+        sides = [gone - 0.5 * BASE * turned, gone + 0.5 * BASE * turned]
+        counts = [
+            round(each / (2.0 * np.pi * WHEEL) * COUNTS * k)
+            for k, each in zip((1, 2), sides, strict=True)
+        ]
+        found.append(("/ticks", at(drive.t_s[row]), ros.counts(*counts)))
+    for time, ranges in zip(seen.time, seen.ranges, strict=True):
+        found.append(("/scan", at(time), ros.scan(at(time), lidar, ranges)))
+    return sorted(found, key=lambda each: each[1])
+
+
+def at(time: float) -> int:
+    return EPOCH * 10**9 + round(1e9 * (time + 1.0))
+
+
+def mounted(ros: Any, lidar: Lidar, roll: float, pitch: float) -> Any:
+    from scipy.spatial.transform import Rotation
+
+    kind, message = ros.transform(0, ("base_link", "laser"), lidar.mount.x, lidar.mount.y, 0.0)
+    x, y, z, w = Rotation.from_euler("ZYX", [lidar.mount.yaw, pitch, roll]).as_quat()
+    turned = ros.make("geometry_msgs/msg/Quaternion", x, y, z, w)
+    return kind, replace(message, transform=replace(message.transform, rotation=turned))
+
+
+def compared(run: Run) -> tuple[float, float]:
+    """Rms distance [m] and angle [rad] of its reference from the true path, begun at its pose."""
+    reference, drive = run.reference, path()
+    assert reference is not None
+    time = reference.time - EPOCH - 1.0
+    x, y, yaw = (np.interp(time, drive.t_s, each) for each in (drive.x_m, drive.y_m, drive.yaw_rad))
+    place = (x - x[0] + 1j * (y - y[0])) * np.exp(-1j * yaw[0])
+    found = reference.x + 1j * reference.y
+    apart = found - found[0] - place
+    turned = reference.yaw - reference.yaw[0] - (yaw - yaw[0])
+    return float(np.sqrt(np.mean(np.abs(apart) ** 2))), float(np.sqrt(np.mean(turned**2)))
+
+
+def test_scans_give_poses_of_the_base(tmp_path: Path, ros: Any, robot: Any) -> None:
+    bag = ros.write(tmp_path / "run", entries(ros, sweeps()))
+    run = read_run(bag, robot())
+    position, heading = compared(run)
+    assert position < 5e-3
+    assert heading < 3e-3
+    assert run.reference is not None
+    assert run.reference.sigma_xy is not None
+    assert 3e-4 < np.median(run.reference.sigma_xy) < 5e-3
+    assert "150 mm ahead of and 50 mm right of it" in " ".join(run.notes)
+    (source,) = contents_of(bag).independent
+    assert (source.name, source.measures, source.child) == ("/scan", "poses", "laser")
+
+
+def test_a_lidar_that_hangs_upside_down(tmp_path: Path, ros: Any, robot: Any) -> None:
+    bag = ros.write(tmp_path / "run", entries(ros, sweeps(True), turn=(np.pi, 0.0)))
+    run = read_run(bag, robot())
+    assert max(compared(run)) < 5e-3
+    assert "upside down" in " ".join(run.notes)
+
+
+def test_without_transforms_it_is_the_path_of_the_lidar(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """Read alike from every kind of bag."""
+    held = entries(ros, sweeps(), turn=None)
+    runs = [
+        read_run(bag, robot())
+        for bag in (
+            ros.write(tmp_path / "a", held),
+            ros.write(tmp_path / "b", held, "sqlite3"),
+            ros.write_ros1(tmp_path / "c.bag", held),
+        )
+    ]
+    poses = [np.column_stack([r.time, r.x, r.y, r.yaw]) for run in runs if (r := run.reference)]
+    assert len(poses) == 3
+    assert np.ptp(poses, axis=0).max() == 0.0
+    assert compared(runs[0])[0] > 0.05
+    assert compared(runs[0])[1] < 3e-3
+    assert "no transform says where the lidar sits" in " ".join(runs[0].notes)
+
+
+def test_a_lidar_that_is_tilted_is_refused(tmp_path: Path, ros: Any, robot: Any) -> None:
+    bag = ros.write(tmp_path / "run", entries(ros, sweeps(), turn=(0.0, 0.5)))
+    with pytest.raises(InputError, match="the lidar is tilted by 29°: its scans are no plan"):
+        read_run(bag, robot())
+
+
+def test_where_nothing_is_seen_it_says_so(tmp_path: Path, ros: Any, robot: Any) -> None:
+    nothing = replace(sweeps(), ranges=np.full_like(sweeps().ranges, np.inf))
+    bag = ros.write(tmp_path / "run", entries(ros, nothing))
+    with pytest.raises(
+        InputError, match=r"do not hold where the robot was.*within the lidar's reach"
+    ):
+        read_run(bag, robot())
+
+
+def test_along_a_bare_corridor_it_says_so(tmp_path: Path, ros: Any, robot: Any) -> None:
+    walls = Room(rooms.corridor().walls * np.array([5.0, 1.0, 5.0, 1.0]))
+    bag = ros.write(tmp_path / "run", entries(ros, scanned(path(), walls, LIDAR, 1)))
+    with pytest.raises(InputError, match="leaves a direction free, as a bare corridor does"):
+        read_run(bag, robot())
+
+
+def test_a_leg_never_spans_a_cut(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """The recorder lost the scans of more than a second, as the robot drove."""
+    seen, kept = sweeps(), (sweeps().time < 5.0) | (sweeps().time > 6.3)
+    seen = Sweeps(seen.time[kept], seen.ranges[kept], seen.truth[kept])
+    run = read_run(ros.write(tmp_path / "run", entries(ros, seen)), robot())
+    assert len(run.taken_out) == 1
+    begin, end = run.taken_out[0]
+    (words,) = run.damage
+    assert "the path by /scan is in pieces" in words
+    assert "no leg spans a cut" in words
+    cut = match(run, Robot(BASE, WHEEL, WHEEL, COUNTS, 2.0 * COUNTS), leg=0.1)
+    spans = (cut.measured.time[:-1] <= begin) & (cut.measured.time[1:] >= end)
+    assert spans.sum() == 1
+    assert cut.gap[spans].all()
+
+
+def test_scans_are_taken_where_they_are_asked_for(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """A bag with a gyro is read as ever; who wants the scans says so."""
+    held = entries(ros, sweeps())
+    held += [("/imu", at(t), ros.imu(at(t), 0.1)) for t in np.arange(0.0, 9.0, 0.05)]
+    bag = ros.write(tmp_path / "run", sorted(held, key=lambda each: each[1]))
+    gyro = read_run(bag, robot()).reference
+    assert gyro is not None
+    assert not gyro.has_position.any()
+    assert compared(read_run(bag, robot(), reference_topic="/scan"))[0] < 5e-3
+
+
+def test_a_cloud_of_points_is_no_scan(tmp_path: Path, ros: Any, robot: Any) -> None:
+    kind = "sensor_msgs/msg/PointCloud2"
+    none = np.zeros(0, dtype=np.uint8)
+    cloud = ros.make(kind, ros.header(1), 1, 0, [], False, 16, 0, none, True)
+    bag = ros.write(
+        tmp_path / "run", [("/ticks", 1, ros.counts(1, 2)), ("/points", 2, (kind, cloud))]
+    )
+    with pytest.raises(InputError, match=r"clouds of points; .* pointcloud_to_laserscan"):
+        read_run(bag, robot(), reference_topic="/points")

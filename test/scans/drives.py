@@ -1,0 +1,115 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Drives whose truth is known, seen by a simulated lidar, and what was made of its scans."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.scans.path import ScanMatcher, ScanPath
+from werrimbi_odom.scans.sweep import Sweep, sweep_of
+from werrimbi_odom.scans.tracker import motion_between
+from werrimbi_odom.simulation.engine import PERIOD, TruePath
+from werrimbi_odom.simulation.lidar import Lidar, Room, Sweeps, scanned
+
+
+def in_circles(duration: float, speed: float = 0.25) -> TruePath:
+    """Three seconds' rest, then bends of both senses, turning up to 1 rad/s."""
+    t = np.arange(0.0, duration, PERIOD)
+    lead = np.clip(t - 3.0, 0.0, 1.0)
+    return _path(
+        t, speed * lead * (0.75 + 0.25 * np.sin(0.5 * t)), lead * (0.25 + 0.8 * np.sin(0.556 * t))
+    )
+
+
+def ahead(duration: float, speed: float = 0.3) -> TruePath:
+    """Along x, from the origin on."""
+    t = np.arange(0.0, duration, PERIOD)
+    lead = np.clip(t - 3.0, 0.0, 1.0)
+    return _path(t, speed * lead, 0.05 * lead * np.cos(t), middle=False)
+
+
+def _path(t: Floats, speed: Floats, turning: Floats, middle: bool = True) -> TruePath:
+    yaw = PERIOD * np.cumsum(turning)
+    x, y = (PERIOD * np.cumsum(speed * f(yaw)) for f in (np.cos, np.sin))
+    if middle:
+        x, y = x - x.mean(), y - y.mean()
+    nothing = np.zeros(t.size)
+    return TruePath(t, x, y, yaw, nothing, nothing)
+
+
+@dataclass(frozen=True)
+class Matched:
+    """A path by scans, and the truth at its poses, shape (n, 3)."""
+
+    path: ScanPath
+    truth: Floats
+    sweeps: Sweeps
+
+    def steps(self) -> tuple[Floats, Floats]:
+        """Errors of steps from pose to pose (k, 3), and the NEES of each over 3."""
+        rows = np.flatnonzero(np.diff(self.path.piece) == 0)
+        errors = self._errors(rows, rows + 1)
+        both = self.path.covariances[rows] + self.path.covariances[rows + 1]
+        turned = np.array([_axes(yaw) for yaw in self.path.poses[rows + 1, 2]])
+        covariances = turned @ both @ turned.transpose(0, 2, 1)
+        nees = np.einsum(
+            "ni,ni->n", errors, np.linalg.solve(covariances, errors[..., None])[..., 0]
+        )
+        return errors, nees / 3.0
+
+    def legs(self, length: float = 1.0) -> Floats:
+        """Errors of legs of a length [m], of which none spans a cut, (k, 3)."""
+        way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(self.truth[:, :2], axis=0).T))])
+        ends = np.searchsorted(way, way + length)
+        rows = np.flatnonzero(ends < way.size)
+        rows = rows[self.path.piece[rows] == self.path.piece[ends[rows]]]
+        return self._errors(rows, ends[rows])
+
+    def _errors(self, begin: np.ndarray, end: np.ndarray) -> Floats:
+        true, found = self.truth, self.path.poses
+        return np.array(
+            [
+                motion_between(
+                    motion_between(true[one], true[other]),
+                    motion_between(found[one], found[other]),
+                )
+                for one, other in zip(begin, end, strict=True)
+            ]
+        ).reshape(-1, 3)
+
+
+def _axes(yaw: float) -> Floats:
+    cos, sin = np.cos(yaw), np.sin(yaw)
+    return np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
+
+
+def rms(errors: Floats) -> tuple[float, float]:
+    """Of positions, an axis [mm], and of headings [mrad]."""
+    square = (errors**2).mean(axis=0)
+    return 1e3 * float(np.sqrt(square[:2].mean())), 1e3 * float(np.sqrt(square[2]))
+
+
+def seen(path: TruePath, room: Room, lidar: Lidar, seed: int = 0) -> tuple[Sweeps, list[Sweep]]:
+    """What a lidar saw, as the matcher takes it."""
+    sweeps = scanned(path, room, lidar, seed)
+    angles = lidar.increment * np.arange(lidar.beams)
+    return sweeps, [
+        sweep_of(time, ranges, angles, lidar.beam_interval, lidar.nearest, lidar.farthest)
+        for time, ranges in zip(sweeps.time, sweeps.ranges, strict=True)
+    ]
+
+
+def matched(path: TruePath, room: Room, lidar: Lidar, seed: int = 0) -> Matched:
+    """The path by scans of a drive in a room."""
+    sweeps, given = seen(path, room, lidar, seed)
+    matcher = ScanMatcher()
+    for sweep in given:
+        matcher.take(sweep)
+    found = matcher.path()
+    middle = np.array([sweep.time for sweep in given])
+    rows = np.searchsorted(middle, found.time - 1e-6)
+    return Matched(found, sweeps.truth[rows], sweeps)

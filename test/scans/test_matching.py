@@ -1,0 +1,77 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""One scan on line elements: what it was guessed to be does not matter."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from test.scans.drives import in_circles, seen
+from werrimbi_odom.scans.elements import line_elements
+from werrimbi_odom.scans.matching import match
+from werrimbi_odom.scans.sweep import Course, Sweep, deskewed, own_course, sweep_of
+from werrimbi_odom.simulation import rooms
+from werrimbi_odom.simulation.engine import PERIOD, TruePath
+from werrimbi_odom.simulation.lidar import Lidar
+
+
+def test_a_guess_that_is_a_fifth_wrong_moves_nothing() -> None:
+    """The robot went 0.1 m and turned by 0.1 rad; a guess of that, or of 20 % more."""
+    _, given = seen(in_circles(8.0), rooms.living_room(), Lidar(rotates=False))
+    first, second = given[60], given[66]
+    elements = line_elements(first.points, first.spacing)
+    assert elements is not None
+    poses = [
+        match(second.points, elements, factor * np.array([0.1, 0.0, 0.1])).pose
+        for factor in (1.0, 1.2, 0.8)
+    ]
+    assert np.ptp(poses, axis=0)[:2].max() < 5e-4
+    assert np.ptp(poses, axis=0)[2] < 5e-4
+
+
+def test_deskewed_echoes_are_those_of_a_lidar_that_stands() -> None:
+    """At constant speeds, 0.4 m/s ahead and 1 rad/s, what is left is beyond the second order."""
+    t = np.arange(0.0, 1.0, PERIOD)
+    yaw = 1.0 * t
+    path = TruePath(t, 0.4 * np.sin(yaw), 0.4 * (1.0 - np.cos(yaw)), yaw, 0 * t, 0 * t)
+    clean = Lidar(noise=0.0, noise_share=0.0, lost=0.0)
+    sweeps, given = seen(path, rooms.arena(), clean)
+    sweep, (x, y, heading) = given[2], sweeps.truth[2]
+    course = own_course(np.array([0.04, 0.0, 0.1]), 0.1)
+    points = deskewed(sweep, course)
+    cos, sin = np.cos(heading), np.sin(heading)
+    placed = points @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
+    on_walls = np.abs(np.abs(placed).max(axis=1) - 1.3) < 1e-4
+    inside = np.abs(placed).max(axis=1) < 1.2  # the bar
+    assert on_walls.sum() > 150
+    assert (on_walls | inside).all()
+    raw = sweep.points @ np.array([[cos, sin], [-sin, cos]]) + (x, y)
+    assert np.abs(np.abs(raw[on_walls]).max(axis=1) - 1.3).max() > 0.02
+
+
+def test_a_line_through_echoes_has_less_noise_than_they() -> None:
+    rng = np.random.default_rng(1)
+    x = rng.uniform(0.0, 2.0, 2000)
+    points = np.column_stack([x, 0.01 * rng.standard_normal(x.size)])
+    elements = line_elements(points, np.full(x.size, 0.02))
+    assert elements is not None
+    assert np.abs(elements.centres[:, 1]).max() < 3e-3
+    assert np.abs(elements.normals[:, 1]).min() > 0.995
+
+
+def test_a_corner_and_a_cloud_are_no_lines() -> None:
+    rng = np.random.default_rng(2)
+    cloud = rng.uniform(-0.1, 0.1, (300, 2))
+    assert line_elements(cloud, np.full(300, 0.01)) is None
+    assert line_elements(cloud[:2], np.full(2, 0.01)) is None
+
+
+def test_what_is_no_echo_is_left_out() -> None:
+    ranges = np.array([0.0, np.inf, np.nan, 0.05, 1.0, 9.0, -1.0, 2.0])
+    sweep = sweep_of(10.0, ranges, 0.1 * np.arange(8), 0.01, nearest=0.12, farthest=8.0)
+    assert np.hypot(*sweep.points.T) == pytest.approx([1.0, 2.0])
+    assert sweep.after == pytest.approx([0.005, 0.035])
+    assert sweep.time == pytest.approx(10.035)
+    assert isinstance(sweep, Sweep)
+    assert deskewed(sweep, Course()) == pytest.approx(sweep.points)

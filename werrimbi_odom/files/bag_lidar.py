@@ -1,0 +1,159 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Poses from the scans of a lidar, matched as they are read: no scan is kept."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.bag import Message, stamp_of
+from werrimbi_odom.files.contents import Measured
+from werrimbi_odom.files.frames import Chain
+from werrimbi_odom.files.mounting import Mount, MountingCollector
+from werrimbi_odom.files.run import Reference
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.scans.path import ScanMatcher, ScanPath
+from werrimbi_odom.scans.sweep import sweep_of
+from werrimbi_odom.scans.tracker import Flag
+
+LONGEST_SWEEP = 1.0
+"""A turn that takes longer was stated in another unit [s]: its beams count as seen at once."""
+
+WHY: dict[Flag, str] = {
+    "few": "too little within the lidar's reach",
+    "weak": "what was seen leaves a direction free, as a bare corridor does",
+    "disagree": "what was seen did not agree with what was seen before",
+    "unsettled": "two places fitted alike",
+    "fast": "a place farther away than a robot drives",
+}
+"""Why a scan is matched with none, as the end of a sentence."""
+
+
+class LidarCollector:
+    """Takes messages of scans, and of transforms, and gives the poses of the base at the end."""
+
+    def __init__(self, path: Path, source: Measured, mounting: Chain | None) -> None:
+        """Chain `mounting` leads from the robot's base to the lidar; None where none is told."""
+        self._place = f"{path}: {source.name}"
+        self._name = source.name
+        self._frame = source.child
+        self._mounting = MountingCollector(mounting) if mounting else None
+        self._base = mounting.parent if mounting else ""
+        self._matcher = ScanMatcher()
+        self.topics = (source.name, *(self._mounting.topics if self._mounting else ()))
+        self.taken_out: tuple[tuple[float, float], ...] = ()
+        """Between two pieces of the path, from and to [s]; known when the reference is."""
+        self.damage: tuple[str, ...] = ()
+        """That it is in pieces, in words for the user; known when the reference is."""
+
+    def take(self, message: Message) -> None:
+        """Take a message of one of the topics."""
+        if message.topic != self._name:
+            assert self._mounting is not None
+            self._mounting.take(message)
+            return
+        scan = message.content
+        ranges = np.asarray(scan.ranges, dtype=np.float64)
+        angles = float(scan.angle_min) + float(scan.angle_increment) * np.arange(float(ranges.size))
+        interval = float(scan.time_increment)
+        if not 0.0 <= interval * ranges.size <= LONGEST_SWEEP:
+            interval = 0.0
+        limits = float(scan.range_min), float(scan.range_max)
+        if not limits[0] < limits[1]:
+            limits = 0.0, np.inf
+        self._matcher.take(sweep_of(stamp_of(message), ranges, angles, interval, *limits))
+
+    def reference(self) -> tuple[Reference, str]:
+        """The reference, and in words what it is.
+
+        Raises
+        ------
+        InputError
+            When the scans do not hold where the robot was.
+        """
+        found = self._matcher.path()
+        if found.time.size == 0:
+            raise InputError(f"{self._place}: {_lost(found)}")
+        mount = self._mounting.mount(self._place) if self._mounting else Mount(0.0, 0.0, 0.0, False)
+        poses, sigma_xy, sigma_yaw = _of_base(found, mount)
+        self.taken_out = tuple(found.cuts)
+        if found.cuts:
+            self.damage = (f"the path by {self._name} is in pieces: {_unmatched(found)}",)
+        told = f"{self._mounted(mount)}; {_in_words(found, sigma_xy, sigma_yaw)}"
+        x, y, yaw = (np.ascontiguousarray(each) for each in poses.T)
+        reference = Reference(found.time, x, y, yaw, sigma_xy, sigma_yaw, kind="absolute")
+        return reference, told
+
+    def _mounted(self, mount: Mount) -> str:
+        if self._mounting is None:
+            return (
+                f"frame {self._frame or 'of no name'}: no transform says where the lidar sits, so "
+                "its own path is compared (reference_lever_arm, reference_yaw_offset)"
+            )
+        down = ", upside down" if mount.inverted else ""
+        sits = _beside(mount.x, "ahead of", "behind"), _beside(mount.y, "left of", "right of")
+        return (
+            f"frame {self._base}: by {' and '.join(self._mounting.topics)} the lidar sits "
+            f"{sits[0]} and {sits[1]} it, turned by {np.degrees(mount.yaw):.1f}°{down}"
+        )
+
+
+def _beside(length: float, one: str, other: str) -> str:
+    return f"{1e3 * abs(length):.0f} mm {one if length >= 0.0 else other}"
+
+
+def _of_base(found: ScanPath, mount: Mount) -> tuple[Floats, Floats, Floats]:
+    """Poses of the base (n, 3), begun at the origin, and their sigmas (n,), from the lidar's."""
+    x, y, yaw = found.poses.T
+    if mount.inverted:
+        y, yaw = -y, -yaw
+    sits = mount.x + 1j * mount.y
+    lever = sits * np.exp(1j * yaw)  # both begin at zero: the base has turned as the lidar has
+    base = sits + (x + 1j * y) * np.exp(1j * mount.yaw) - lever
+    variance = np.diagonal(found.covariances, axis1=1, axis2=2)
+    sigma_yaw = np.sqrt(variance[:, 2])
+    sigma_xy = np.sqrt(
+        0.5 * (variance[:, 0] + variance[:, 1] + variance[:, 2] * np.abs(lever) ** 2)
+    )
+    return np.column_stack([base.real, base.imag, yaw]), sigma_xy, sigma_yaw
+
+
+def _in_words(found: ScanPath, sigma_xy: Floats, sigma_yaw: Floats) -> str:
+    words = [
+        f"{found.scans} scans, matched with the walls of the last metres to "
+        f"{1e3 * float(np.median(sigma_xy)):.1f} mm and "
+        f"{1e3 * float(np.median(sigma_yaw)):.1f} mrad each"
+    ]
+    if found.time.size < found.scans and not found.cuts:
+        words.append(_unmatched(found))
+    return "; ".join(words)
+
+
+def _unmatched(found: ScanPath) -> str:
+    words = f"{found.scans - found.time.size} of {found.scans} scans were not matched"
+    words += _because(found)
+    if found.cuts:
+        started = found.time[0]
+        when = ", ".join(
+            f"{begin - started:.1f} to {end - started:.1f} s" for begin, end in found.cuts
+        )
+        words += f"; it is cut from {when} after its first pose, and no leg spans a cut"
+    return words
+
+
+def _because(found: ScanPath) -> str:
+    if not found.flags:
+        return ""
+    flag = max(found.flags, key=lambda each: found.flags[each])
+    return f", mostly for {WHY[flag]}" if flag == "few" else f", mostly because {WHY[flag]}"
+
+
+def _lost(found: ScanPath) -> str:
+    return (
+        f"the scans do not hold where the robot was: of {found.scans} scans not enough could be "
+        f"matched one after the other{_because(found)}; drive where walls and furniture are within "
+        "4 m on several sides, or choose another reference"
+    )

@@ -1,0 +1,44 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The last metres: echoes of the last key scans, and the line elements that they make."""
+
+from __future__ import annotations
+
+from collections import deque
+
+import numpy as np
+
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.scans.elements import Elements, line_elements
+
+KEYS = 24
+"""Key scans that are kept: with 12 the poses wander a little more, with 40 no less."""
+FARTHER, TURNED = 0.10, 0.15
+"""Way [m] and turning [rad] after which a scan becomes a key scan."""
+AT_REST = 3
+"""So many scans after the last key scan, one more is taken in while the map is not full: a robot
+that stands still makes a better map of where it starts."""
+
+
+class LocalMap:
+    """Key scans about the robot; memory and work do not grow with the drive."""
+
+    def __init__(self) -> None:
+        self._keys: deque[tuple[Floats, Floats]] = deque(maxlen=KEYS)
+        self._last = np.zeros(3)
+        self._since = 0
+        self.elements: Elements | None = None
+
+    def take(self, pose: Floats, points: Floats, spacing: Floats) -> None:
+        """Take in a scan, if it shows something new: pose (3,), deskewed echoes (k, 2)."""
+        self._since += 1
+        moved = np.abs(pose - self._last)
+        new = max(moved[0], moved[1]) > FARTHER or moved[2] > TURNED
+        if self._keys and not new and (len(self._keys) == KEYS or self._since < AT_REST):
+            return
+        cos, sin = np.cos(pose[2]), np.sin(pose[2])
+        placed = points @ np.array([[cos, sin], [-sin, cos]]) + pose[:2]
+        self._keys.append((placed, spacing))
+        self._last, self._since = pose, 0
+        clouds, spacings = zip(*self._keys, strict=True)
+        self.elements = line_elements(np.concatenate(clouds), np.concatenate(spacings))

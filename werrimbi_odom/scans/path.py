@@ -1,0 +1,218 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Scans in, poses out: two passes side by side, and cuts where the lidar was lost.
+
+The first pass deskews a scan by the lidar's own last motion, and so may lean a little to it. The
+second deskews it by the smoothed path of the first, some scans before and after it, on a map of its
+own: what is left of any guess is then gone. It follows the first by some scans, so that neither
+scans nor maps are kept: memory does not grow with the drive.
+"""
+
+from __future__ import annotations
+
+from array import array
+from collections import deque
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.scans.limits import COMMON, FEWEST_POSES, LONGEST_HOLE, LOST_AFTER
+from werrimbi_odom.scans.matching import MAD
+from werrimbi_odom.scans.sweep import Course, Sweep, deskewed, own_course
+from werrimbi_odom.scans.tracker import Flag, Tracker, motion_between, moved
+
+AROUND = 3
+"""Scans before and after one, that its course in the second pass is fitted to."""
+USUAL = 0.1
+"""Time of a turn until two scans are known [s]."""
+_INTERVALS = 15
+
+
+@dataclass(frozen=True, eq=False)
+class ScanPath:
+    """Poses of a lidar; n of them, on pieces whose frames have nothing to do with each other."""
+
+    time: Floats
+    """Of the middle of each sweep, shape (n,) [s]."""
+    poses: Floats
+    """x, y [m] and yaw [rad], shape (n, 3)."""
+    covariances: Floats
+    """Of each match, given the map; axes of the piece, shape (n, 3, 3)."""
+    piece: NDArray[np.intp]
+    """Number of the unbroken piece, shape (n,)."""
+    common: tuple[float, float]
+    """What all echoes of a scan err together, standard deviations in `covariances` [m, rad]."""
+    scans: int
+    """All that were given."""
+    flags: dict[Flag, int]
+    """How many matches were none, by reason."""
+
+    @property
+    def cuts(self) -> list[tuple[float, float]]:
+        """From the last pose of a piece to the first of the next [s]."""
+        at = np.flatnonzero(np.diff(self.piece))
+        return [(float(self.time[row]), float(self.time[row + 1])) for row in at]
+
+
+class _Seen(NamedTuple):
+    """A scan as the first pass has it."""
+
+    sweep: Sweep
+    pose: Floats
+    clock: float
+    """Even, however its stamps jitter [s]."""
+
+
+class ScanMatcher:
+    """Takes scans in the order of time, and gives the path at the end."""
+
+    def __init__(self) -> None:
+        self._intervals: deque[float] = deque(maxlen=_INTERVALS)
+        self._last: Sweep | None = None
+        self._first = Tracker(np.zeros(3))
+        self._second = Tracker(np.zeros(3))
+        self._motion, self._clock, self._failed = np.zeros(3), 0.0, 0
+        self._seen: deque[_Seen] = deque(maxlen=2 * AROUND + 1)
+        self._done = 0  # scans at the front of `_seen` that the second pass has
+        self._failed_again, self._piece, self._scans = 0, 0, 0
+        self._flags: dict[Flag, int] = {}
+        self._found = array("d")  # of each pose: time, pose, covariance, piece
+
+    def take(self, sweep: Sweep) -> None:
+        """Take a scan; one that is not later than the last is left out."""
+        self._scans += 1
+        if self._last is not None:
+            interval = sweep.time - self._last.time
+            if interval <= 0.0:
+                return
+            if interval > LONGEST_HOLE:
+                self._cut()
+            else:
+                self._intervals.append(interval)
+        usual = float(np.median(self._intervals)) if self._intervals else USUAL
+        turns = 1 if self._last is None else max(round((sweep.time - self._last.time) / usual), 1)
+        self._last = sweep
+        self._clock += turns * usual
+        if self._seen or self._failed:
+            turns += self._failed
+        before = self._first.pose
+        points = deskewed(sweep, own_course(self._motion, usual))
+        motion = turns * self._motion
+        flag = self._first.take(points, sweep.spacing, motion, turns * usual)
+        if flag:
+            self._flags[flag] = self._flags.get(flag, 0) + 1
+            self._failed += 1
+            if self._failed >= LOST_AFTER:
+                self._cut()
+            return
+        if self._seen:
+            self._motion = motion_between(before, self._first.pose) / turns
+        self._failed = 0
+        self._append(_Seen(sweep, self._first.pose, self._clock))
+
+    def path(self) -> ScanPath:
+        """The path of all scans that were taken; the last call of all."""
+        self._cut()
+        table = np.array(self._found).reshape(-1, 14)
+        piece = table[:, 13].astype(np.intp)
+        kept = np.bincount(piece, minlength=1)[piece] >= FEWEST_POSES
+        poses, covariances = table[kept, 1:4], table[kept, 4:13].reshape(-1, 3, 3)
+        more = common_noise(poses, covariances, piece[kept])
+        return ScanPath(
+            table[kept, 0],
+            poses,
+            covariances + np.diag([more[0], more[0], more[1]]) ** 2,
+            piece[kept],
+            more,
+            self._scans,
+            dict(self._flags),
+        )
+
+    def _cut(self) -> None:
+        """End the piece: what comes next has a map and a frame of its own."""
+        while self._done < len(self._seen):
+            self._again()
+        self._seen.clear()
+        self._done = 0
+        self._first = Tracker(self._first.pose)
+        self._motion, self._failed = np.zeros(3), 0
+        self._renew()
+
+    def _renew(self) -> None:
+        # Beside the last pose: one that is the same to the last digit looks held, not measured.
+        self._second = Tracker(self._second.pose + 1e-6)
+        self._failed_again = 0
+        self._piece += 1
+
+    def _append(self, seen: _Seen) -> None:
+        if len(self._seen) == self._seen.maxlen:
+            self._done -= 1
+        self._seen.append(seen)
+        if len(self._seen) - self._done > AROUND:
+            self._again()
+
+    def _again(self) -> None:
+        """The second pass over the next scan."""
+        seen = self._seen[self._done]
+        points = deskewed(seen.sweep, _course(self._seen, self._done))
+        motion, duration = np.zeros(3), USUAL
+        if self._done:
+            last = self._seen[self._done - 1]
+            motion, duration = motion_between(last.pose, seen.pose), seen.clock - last.clock
+        self._done += 1
+        flag = self._second.take(points, seen.sweep.spacing, motion, duration)
+        if flag:
+            self._flags[flag] = self._flags.get(flag, 0) + 1
+            self._failed_again += 1
+            # What was missed is in the guess: the pose goes on as in the first pass.
+            self._second.pose = moved(self._second.pose, motion)
+            if self._failed_again >= LOST_AFTER:
+                self._renew()
+            return
+        self._failed_again = 0
+        self._found.append(seen.sweep.time)
+        self._found.extend(self._second.pose)
+        self._found.extend(self._second.covariance.ravel())
+        self._found.append(self._piece)
+
+
+def common_noise(
+    poses: Floats, covariances: Floats, piece: NDArray[np.intp]
+) -> tuple[float, float]:
+    """What all echoes of a scan err together [m, rad], beyond the covariance of its match.
+
+    A lidar whose turns begin at an angle that jitters, stamps that do: no match can see it. It is
+    read off how the poses scatter about a parabola through seven of them, one by one (Savitzky and
+    Golay 1964), in most of the drive.
+    """
+    if len(poses) < _SMOOTH.size + FEWEST_POSES:
+        return 0.0, 0.0
+    rows = np.arange(len(poses) - _SMOOTH.size + 1)
+    rows = rows[piece[rows] == piece[rows + _SMOOTH.size - 1]]
+    smooth = sum(share * poses[rows + after] for after, share in enumerate(_SMOOTH))
+    middle = rows + _SMOOTH.size // 2
+    beside = np.median(np.abs(poses[middle] - smooth), axis=0) * MAD
+    seen = beside**2 / (1.0 - _SMOOTH[_SMOOTH.size // 2])
+    stated = np.median(np.diagonal(covariances[middle], axis1=1, axis2=2), axis=0)
+    more = np.where(seen > COMMON * stated, seen - stated, 0.0)
+    return float(np.sqrt(0.5 * (more[0] + more[1]))), float(np.sqrt(more[2]))
+
+
+_SMOOTH = np.array([-2.0, 3.0, 6.0, 7.0, 6.0, 3.0, -2.0]) / 21.0
+
+
+def _course(seen: deque[_Seen], at: int) -> Course:
+    """How the lidar moved about a scan: a parabola through the poses about it."""
+    about = [seen[row] for row in range(max(at - AROUND, 0), min(at + AROUND + 1, len(seen)))]
+    t = np.array([each.clock for each in about]) - seen[at].clock
+    degree = min(2, t.size - 1)
+    if degree == 0:
+        return Course()
+    motions = np.array([motion_between(seen[at].pose, each.pose) for each in about])
+    powers = np.column_stack([t**power for power in range(degree + 1)])
+    fitted = np.linalg.lstsq(powers, motions, rcond=None)[0]
+    fitted = np.vstack([fitted, np.zeros((2 - degree, 3))])
+    return Course(tuple(fitted[1].tolist()), tuple(fitted[2].tolist()))

@@ -1,0 +1,93 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""One pass over scans: each matched with the map of the last metres, and judged."""
+
+from __future__ import annotations
+
+from typing import Literal
+
+import numpy as np
+
+from werrimbi_odom.model.pose import Floats, Pose, between, compose, wrap
+from werrimbi_odom.scans.limits import (
+    FASTEST,
+    FASTEST_TURN,
+    FEWEST_POINTS,
+    FLOOR,
+    LARGEST_SIGMA,
+    LEAST_SHARE,
+    WEAK,
+)
+from werrimbi_odom.scans.local_map import LocalMap
+from werrimbi_odom.scans.matching import Match, match
+
+Flag = Literal["", "few", "disagree", "weak", "unsettled", "fast"]
+"""Why a match is none: few echoes on lines; they do not agree with the map; a direction is not
+held, as along a bare corridor; the search did not end; no robot drives so fast. "" where it is
+one."""
+
+
+class Tracker:
+    """Where the lidar is, scan after scan, on one unbroken map."""
+
+    def __init__(self, start: Floats) -> None:
+        """Begin at a pose (3,), with an empty map."""
+        self.pose = start
+        self._map = LocalMap()
+        self.covariance = FLOOR**2 * np.eye(3)
+        """Of the last pose on the map, world axes, shape (3, 3)."""
+
+    def take(self, points: Floats, spacing: Floats, motion: Floats, duration: float) -> Flag:
+        """Match deskewed echoes (k, 2); `motion` (3,) since the last pose is the guess.
+
+        Where it fails, the pose stays where it was.
+        """
+        if self._map.elements is None:
+            if len(points) < FEWEST_POINTS:
+                return "few"
+            self._map.take(self.pose, points, spacing)
+            return "" if self._map.elements is not None else "few"
+        found = match(points, self._map.elements, moved(self.pose, motion))
+        covariance = _covariance(found)
+        flag = _flag(found, covariance, motion_between(self.pose, found.pose), duration)
+        if not flag:
+            self.pose, self.covariance = found.pose, covariance + FLOOR**2 * np.eye(3)
+            self._map.take(self.pose, points, spacing)
+        return flag
+
+
+def moved(pose: Floats, motion: Floats) -> Floats:
+    """A pose after a motion in its own frame; all of shape (3,)."""
+    return np.array(compose(Pose(*pose.tolist()), Pose(*motion.tolist())))
+
+
+def motion_between(one: Floats, other: Floats) -> Floats:
+    """The motion from one pose to another, in the frame of the first; all of shape (3,)."""
+    x, y, yaw = between(Pose(*one.tolist()), Pose(*other.tolist()))
+    return np.array([x, y, wrap(yaw)])
+
+
+def _covariance(found: Match) -> Floats:
+    """Infinite where one of the three is not held at all."""
+    information = found.information
+    if found.points < FEWEST_POINTS or np.linalg.det(information) < 1e-9:
+        return np.full((3, 3), np.inf)
+    return np.asarray(found.noise**2 * np.linalg.inv(information))
+
+
+def _flag(found: Match, covariance: Floats, motion: Floats, duration: float) -> Flag:
+    if found.points < FEWEST_POINTS:
+        return "few"
+    if not np.isfinite(covariance).all():
+        return "weak"
+    held = np.linalg.eigvalsh(covariance[:2, :2])
+    sigmas = np.sqrt([held[1], covariance[2, 2]])
+    if held[0] < WEAK * held[1] or sigmas.max() > LARGEST_SIGMA:
+        return "weak"
+    if found.share < LEAST_SHARE:
+        return "disagree"
+    if not found.converged:
+        return "unsettled"
+    if np.hypot(*motion[:2]) > FASTEST * duration or abs(motion[2]) > FASTEST_TURN * duration:
+        return "fast"
+    return ""

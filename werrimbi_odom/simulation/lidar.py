@@ -1,0 +1,186 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A lidar on the robot, in rooms: each beam is measured at its own time, while the robot moves."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .engine import Pose, TruePath
+from .sensors import WORLD
+
+Floats = NDArray[np.float64]
+
+_BLOCK = 1 << 14
+
+
+@dataclass(frozen=True)
+class Person:
+    """Somebody who walks to and fro between two places; a leg's width of them is seen.
+
+    Parameters
+    ----------
+    start, end : (float, float)
+        Where they turn round [m].
+    period : float
+        Time for once there and back [s].
+    radius : float
+        [m]
+    """
+
+    start: tuple[float, float]
+    end: tuple[float, float]
+    period: float = 8.0
+    radius: float = 0.12
+
+
+@dataclass(frozen=True)
+class Room:
+    """What the lidar sees; the world's axes.
+
+    Parameters
+    ----------
+    walls : ndarray, shape (k, 4)
+        Straight pieces from x, y to x, y [m].
+    people : sequence of Person
+    """
+
+    walls: Floats
+    people: Sequence[Person] = ()
+
+
+@dataclass(frozen=True)
+class Lidar:
+    """A rotating lidar.
+
+    Parameters
+    ----------
+    beams : int
+        Of a whole turn.
+    rate_hz : float
+        Turns a second.
+    nearest, farthest : float
+        Limits of what it sees [m].
+    noise, noise_share : float
+        Standard deviation of a range: a length [m], and a share of the range; variances add up.
+    bias : float
+        Added to each range [m].
+    lost, mixed : float
+        Shares of beams without an echo, and of echoes at an edge that lie between near and far.
+    mount : Pose
+        Ahead of and left of the axle's midpoint [m], and turned [rad].
+    rotates : bool
+        Each beam at its own time; else all at once, as in some simulators.
+    upside_down : bool
+        Beams go clockwise, seen from above.
+    """
+
+    beams: int = 218
+    rate_hz: float = 10.0
+    nearest: float = 0.12
+    farthest: float = 8.0
+    noise: float = 5e-3
+    noise_share: float = 5e-3
+    bias: float = 0.0
+    lost: float = 0.02
+    mixed: float = 0.0
+    mount: Pose = WORLD
+    rotates: bool = True
+    upside_down: bool = False
+
+    @property
+    def increment(self) -> float:
+        """Angle between two beams [rad]."""
+        return 2.0 * math.pi / self.beams
+
+    @property
+    def beam_interval(self) -> float:
+        """Time between two beams [s]."""
+        return 1.0 / self.rate_hz / self.beams if self.rotates else 0.0
+
+
+@dataclass(frozen=True)
+class Sweeps:
+    """Scans; n of them. Beam i of each looks to i times the increment.
+
+    Parameters
+    ----------
+    time : ndarray, shape (n,)
+        Of the first beam [s].
+    ranges : ndarray, shape (n, beams)
+        [m]; infinite without an echo.
+    truth : ndarray, shape (n, 3)
+        Where the lidar was in the middle of each sweep: x, y [m], yaw [rad].
+    """
+
+    time: Floats
+    ranges: Floats
+    truth: Floats
+
+
+def scanned(path: TruePath, room: Room, lidar: Lidar, seed: int) -> Sweeps:
+    """What a lidar sees along a path."""
+    rng = np.random.default_rng([seed, 79])
+    turn = 1.0 / lidar.rate_hz
+    start = np.arange(path.t_s[0] + rng.uniform(0.0, turn), path.t_s[-1] - turn, turn)
+    number = np.arange(lidar.beams)
+    at = (start[:, None] + lidar.beam_interval * number).ravel()
+    x, y, yaw = _lidar_at(path, lidar, at)
+    sense = -1.0 if lidar.upside_down else 1.0
+    direction = yaw + sense * lidar.increment * np.tile(number, start.size)
+    true = np.concatenate(
+        [
+            _distance(room, *(each[row : row + _BLOCK] for each in (x, y, direction, at)))
+            for row in range(0, at.size, _BLOCK)
+        ]
+    ).reshape(start.size, -1)
+    beside = np.roll(true, 1, axis=1)
+    apart = np.zeros(true.shape)
+    np.subtract(beside, true, out=apart, where=np.isfinite(true) & np.isfinite(beside))
+    mixed = (rng.random(true.shape) < lidar.mixed) & (np.abs(apart) > 0.2)
+    true = np.where(mixed, true + rng.random(true.shape) * apart, true)
+    sigma = np.hypot(lidar.noise, lidar.noise_share * np.where(np.isfinite(true), true, 0.0))
+    ranges = true + lidar.bias + sigma * rng.standard_normal(true.shape)
+    unseen = (ranges < lidar.nearest) | (ranges > lidar.farthest)
+    ranges[unseen | (rng.random(true.shape) < lidar.lost)] = np.inf
+    middle = start + 0.5 * (lidar.beams - 1) * lidar.beam_interval
+    return Sweeps(start, ranges, np.column_stack(_lidar_at(path, lidar, middle)))
+
+
+def _lidar_at(path: TruePath, lidar: Lidar, at: Floats) -> tuple[Floats, Floats, Floats]:
+    x, y, yaw = (np.interp(at, path.t_s, each) for each in (path.x_m, path.y_m, path.yaw_rad))
+    cos, sin, mount = np.cos(yaw), np.sin(yaw), lidar.mount
+    return (
+        x + cos * mount.x - sin * mount.y,
+        y + sin * mount.x + cos * mount.y,
+        yaw + mount.yaw,
+    )
+
+
+def _distance(room: Room, x: Floats, y: Floats, direction: Floats, at: Floats) -> Floats:
+    """To the nearest thing along each beam, (m,); infinite where there is none."""
+    cos, sin = np.cos(direction)[:, None], np.sin(direction)[:, None]
+    ax, ay, bx, by = room.walls.T
+    dx, dy = bx - ax, by - ay
+    from_x, from_y = ax - x[:, None], ay - y[:, None]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        across = cos * dy - sin * dx
+        along = (from_x * dy - from_y * dx) / across
+        where = (from_x * sin - from_y * cos) / across
+        hit = (along > 0.0) & (where >= 0.0) & (where <= 1.0)
+    nearest = np.where(hit, along, np.inf).min(axis=1, initial=np.inf)
+    for person in room.people:
+        share = (0.5 - 0.5 * np.cos(2.0 * math.pi * at / person.period))[:, None]
+        centre = np.array(person.start) + share * (np.array(person.end) - np.array(person.start))
+        to_x, to_y = centre[:, 0] - x, centre[:, 1] - y
+        ahead = to_x * cos[:, 0] + to_y * sin[:, 0]
+        beside = to_x * sin[:, 0] - to_y * cos[:, 0]
+        depth = person.radius**2 - beside**2
+        seen = (depth > 0.0) & (ahead > 0.0)
+        nearest = np.where(seen, np.minimum(nearest, ahead - np.sqrt(np.abs(depth))), nearest)
+    return np.asarray(nearest)
