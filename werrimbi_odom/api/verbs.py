@@ -135,7 +135,7 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
     return Result(
         found=told,
         words=lambda: f"{words_of(told, steps())}\n\n{tables_of(told.diagnosis, told.sights)}",
-        figures_of_json=lambda: json_of(told.diagnosis, told.manoeuvre, told.sights),
+        figures_of_json=lambda: json_of(told.diagnosis, told.manoeuvre, told.sights, told.changes),
         page=lambda: diagnosis_page(told, steps(), {}),
     )
 

@@ -106,6 +106,19 @@ def lasting(
         yield Lasting(cell, p_value, None if alone is None else runs.runs[alone].name)
 
 
+def lasting_columns(runs: Together, gain: float, degrees: int, free: Floats, rest: Floats) -> float:
+    """How often chance would explain as much by some columns, by the disagreement of the parts.
+
+    Parameters
+    ----------
+    free : ndarray, shape (3 m, d)
+        Columns clear of all that else is fitted.
+    rest : ndarray, shape (3 m,)
+        Innovations clear of it.
+    """
+    return 0.0 if _too_few(runs) else _chance(gain, degrees, free, rest, _parts(runs))
+
+
 def _too_few(runs: Together) -> bool:
     """Whether legs are so long, or so few, that each stands for itself."""
     return runs.count < LASTING_LEGS * LASTING_FEWEST * len(runs.runs)

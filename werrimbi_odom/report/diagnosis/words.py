@@ -14,6 +14,7 @@ from werrimbi_odom.inference.diagnosis.pairs import Sides
 from werrimbi_odom.inference.diagnosis.values import mistakes, one_wheel, reference_wanders
 from werrimbi_odom.inference.manoeuvres.told import Told, significant
 from werrimbi_odom.model.effect import always_twins
+from werrimbi_odom.report.changes import changes_words
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import (
     about,
@@ -56,13 +57,29 @@ def words_of(told: Told, steps: NextSteps) -> str:
         "ambiguous": _ambiguous,
         "unknown": _unknown,
     }[diagnosis.verdict]
-    paragraphs = [*tell(told, steps), *otherwise(diagnosis)]
+    paragraphs = [*_changes(told), *tell(told, steps), *otherwise(diagnosis)]
     suspect = [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*suspect, *left_out_words(diagnosis.left_out), *jumps_words(diagnosis.left_out)]
     last = (index for index, text in enumerate(paragraphs) if text.startswith("Next: "))
     place = next(last, len(paragraphs))
     paragraphs[place:place] = left_out
     return "\n".join(_filled(text) for text in paragraphs if text)
+
+
+def _changes(told: Told) -> list[str]:
+    """What differs between the drives, before what they have in common."""
+    changes = changes_words(told.changes, told.diagnosis.robot)
+    if not changes:
+        return []
+    drives = [run.name for run in told.diagnosis.runs.runs]
+    last = max(drives.index(change.from_run) for change in told.changes)
+    return [
+        "The robot was not the same in all of these drives.",
+        *(f"- {words}" for words in changes),
+        "What follows takes them for one robot, the mean of both. For what it is now, ask again "
+        f"with the drives from {drives[last]} on alone.",
+        "",
+    ]
 
 
 def _filled(text: str) -> str:
