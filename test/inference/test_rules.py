@@ -31,6 +31,7 @@ ELSEWHERE = {
         "_MOST": "the same, upwards",
     },
     "calibration/umbmark_equations.py": {"QUARTER": "a corner of a square"},
+    "changes/history.py": {"_MEDIAN_CHI2_1": "a quantile"},
     "chances.py": {"MEDIAN_TO_SIGMA": "of the normal law", "NORMAL_95": "a quantile"},
     "comparison/legs.py": {"CHI2_95": "quantiles"},
     "comparison/over_variable.py": {

@@ -44,7 +44,7 @@ def _when(move: Moved) -> str:
         return f"In {move.from_run} alone"
     if move.kind == "trend":
         return f"Since {move.from_run}, steadily,"
-    return f"From {move.from_run} on (until {move.last_before} it was otherwise)"
+    return f"Between {move.last_before} and {move.from_run}"
 
 
 def _what(moves: Sequence[Moved], robot: Robot) -> str:
@@ -52,15 +52,24 @@ def _what(moves: Sequence[Moved], robot: Robot) -> str:
     if group in ("left_wheel", "right_wheel", "both_wheels"):
         share = _share(moves[0], "larger", "smaller")
         sizes = _sizes(moves[0], robot.wheel_radius)
-        are = "are" if group == "both_wheels" else "is"
-        return f"{WHAT[group]} {are} {share}: radius {sizes}"
+        verb = _verb(moves[0], group)
+        return f"{WHAT[group]} {verb} {share}: radius {sizes}"
     if group == "wheel_base":
+        share = _share(moves[0], "wider", "narrower")
         sizes = _sizes(moves[0], robot.wheel_separation)
-        return f"the wheel base is {_share(moves[0], 'wider', 'narrower')}: {sizes}"
+        return f"{WHAT[group]} {_verb(moves[0], group)} {share}: {sizes}"
     numbers = listed([_from_to(move) for move in moves])
     if group == "mount":
-        return f"the reference is mounted otherwise: {numbers}"
-    return f"{group} has another size: {numbers}"
+        return f"the reference {_verb(moves[0], group)} mounted otherwise: {numbers}"
+    return f"{group} took another size: {numbers}"
+
+
+def _verb(move: Moved, group: str) -> str:
+    if move.kind == "alone":
+        return "were" if group == "both_wheels" else "was"
+    if group == "mount":
+        return "came to be"
+    return "became"
 
 
 def _share(move: Moved, more: str, less: str) -> str:

@@ -14,3 +14,16 @@ DATED = 1e8
 TREND_DRIVES = 4
 """Drives after the one at which a trend begins, at the least. Chosen: of three a step in the middle
 lies as near a line as noise lets one see."""
+
+SCATTER_DRIVES = 8
+"""Drives from which on their scatter is estimated from their differences: the median of seven is
+known to a half. Of fewer, changes are held against what the drives differ by (Fisher's F)."""
+
+CALIBRATE_AGAIN = 1e-3
+"""Share by which a radius or the base must differ from the robot file to ask for a calibration.
+Chosen: of one radius, on a base of 35 cm, it is a degree in six metres; parquet and good tyres keep
+their sizes to half of that."""
+
+COPIED_WITHIN = 3600.0
+"""Files of drives that were all written within so many seconds were copied then: that is no date.
+Chosen: drives of months that have no stamps of their own are copied in minutes."""
