@@ -37,6 +37,7 @@ from werrimbi_odom.inference.legs.cutting import match_finely, stated
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import (
     CALIBRATE_AGAIN,
+    MOST_CHANGES,
     PENALTY_FLOOR,
     SCATTER_DRIVES,
     SURE,
@@ -156,7 +157,8 @@ def course_of(told: Sequence[DriveTold], robot: Robot, time: Floats) -> Course:
     wide = drives.with_scatter(scatter)
     price = max(PENALTY_FLOOR, math.log(max(sum(each.data for each in told), 2)))
     groups = groups_of(names, given, given.size)
-    found = segmented(wide, groups, price, KINDS)
+    most = MOST_CHANGES if len(told) >= SCATTER_DRIVES else 1
+    found = segmented(wide, groups, price, KINDS, most)
     lasting = _beyond_scatter(wide, found)
     if len(lasting) < len(found.steps):
         found = segmented(wide, lasting, price, KINDS) if lasting else _constant(wide)

@@ -28,6 +28,9 @@ from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
 from werrimbi_odom.inference.rules import MOST_CHANGES, RIVAL, SURE
 from werrimbi_odom.model.pose import Floats
 
+_FEW = 5
+"""Changes up to which all are looked for anew as soon as there is one more; of more at the end."""
+
 
 @dataclass(frozen=True, slots=True)
 class Step:
@@ -61,6 +64,7 @@ def segmented(
     groups: Sequence[Group],
     price: float,
     kinds: Sequence[Kind] = ("step", "alone"),
+    most: int = MOST_CHANGES,
 ) -> Segmented:
     """Find the changes.
 
@@ -70,15 +74,20 @@ def segmented(
         In the order in which they were driven.
     price : float
         What each free number must lower the squares by; the drive at which it changes is one too.
+    most : int
+        Changes that are looked for.
     """
     rows = rows_of(drives)
     tried = sum(len(first_drives(kind, drives.count)) for kind in kinds) * len(groups)
     steps: list[Step] = []
-    while len(steps) < MOST_CHANGES:
+    while len(steps) < most:
         best = _best(rows, groups, kinds, steps, price)
         if best is None or not _earned(best, price, tried):
             break
-        steps = _refined(rows, groups, kinds, [*steps, best], price)
+        steps.append(best)
+        if len(steps) <= _FEW:
+            steps = _refined(rows, groups, kinds, steps, price)
+    steps = _refined(rows, groups, kinds, steps, price)
     while steps:
         steps = [_beside_others(rows, steps, number) for number in range(len(steps))]
         least = min(steps, key=lambda step: _worth(step, price))

@@ -17,7 +17,8 @@ lies as near a line as noise lets one see."""
 
 SCATTER_DRIVES = 8
 """Drives from which on their scatter is estimated from their differences: the median of seven is
-known to a half. Of fewer, changes are held against what the drives differ by (Fisher's F)."""
+known to a half. Of fewer, one change is looked for, and held against what the drives differ by
+beside it (Fisher's F): two would find their own among five."""
 
 CALIBRATE_AGAIN = 1e-3
 """Share by which a radius or the base must differ from the robot file to ask for a calibration.
