@@ -12,7 +12,7 @@ from typing import Any
 
 from werrimbi_odom.inference.changes.between import Moved
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.numbers import chance_words, listed, quantity, with_std
+from werrimbi_odom.report.numbers import SMALL, chance_words, in_unit, listed, with_std
 
 WHAT = {
     "left_wheel": "the left wheel",
@@ -39,12 +39,19 @@ def changes_json(moves: Sequence[Moved], robot: Robot) -> list[dict[str, Any]]:
     return [{**asdict(move), "words": changes_words([move], robot)[0]} for move in moves]
 
 
+def in_small_unit(value: float, std: float, unit: str) -> tuple[str, str]:
+    """Value with standard deviation, and the unit: small angles in mrad, which mounts differ by."""
+    if unit == "rad" and abs(value) < SMALL:
+        return with_std(1e3 * value, 1e3 * std), "mrad"
+    return in_unit(value, std, unit)
+
+
 def _when(move: Moved) -> str:
     if move.kind == "alone":
         return f"In {move.from_run} alone"
     if move.kind == "trend":
         return f"Since {move.from_run}, steadily,"
-    return f"Between {move.last_before} and {move.from_run}"
+    return f"Between {move.last_before} and {move.surely_from}"
 
 
 def _what(moves: Sequence[Moved], robot: Robot) -> str:
@@ -93,7 +100,7 @@ _NAMES = {
 def _from_to(move: Moved) -> str:
     name = _NAMES.get(move.what, move.what.rpartition(".")[2])
     before, after = (
-        quantity(value, std, move.unit)
+        " ".join(in_small_unit(value, std, move.unit)).rstrip()
         for value, std in ((move.before, move.before_std), (move.after, move.after_std))
     )
     return f"{name} {before} before, {after} after"

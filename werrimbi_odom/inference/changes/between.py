@@ -56,8 +56,11 @@ class Moved:
     """What was changed with it, see `Group.what`."""
     kind: Kind
     last_before: str
-    """The last drive before it."""
+    """The last drive that was surely before it."""
     from_run: str
+    """The likeliest drive at which it begins."""
+    surely_from: str
+    """The first drive that surely has it."""
     before: float
     after: float
     before_std: float
@@ -258,8 +261,9 @@ def moves_of(
                 name,
                 step.group.what,
                 step.shape.kind,
-                runs[before],
+                runs[max(step.span[0] - 1, 0)],
                 runs[first],
+                runs[step.span[1]],
                 float(found.levels[before, index]),
                 float(found.levels[after, index]),
                 float(spread[0]),

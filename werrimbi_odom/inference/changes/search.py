@@ -25,7 +25,7 @@ from werrimbi_odom.inference.changes.shapes import (
     rows_of,
 )
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
-from werrimbi_odom.inference.rules import MOST_CHANGES, RIVAL, SURE
+from werrimbi_odom.inference.rules import MOST_CHANGES, RIVAL, SURE, WHICH_DRIVE
 from werrimbi_odom.model.pose import Floats
 
 _FEW = 5
@@ -43,6 +43,8 @@ class Step:
     degrees: int = 1
     p_value: float = 1.0
     """How often chance would do as much, all that was tried counted."""
+    span: tuple[int, int] = (0, 0)
+    """The first and the last drive at which it may as well begin."""
 
 
 @dataclass(frozen=True)
@@ -95,7 +97,10 @@ def segmented(
             break
         steps.remove(least)
     told = sorted(
-        (replace(step, p_value=_chance(step, tried)) for step in steps),
+        (
+            replace(step, p_value=_chance(step, tried), span=_span(rows, steps, number))
+            for number, step in enumerate(steps)
+        ),
         key=lambda step: (step.shape.first, -step.gain),
     )
     return Segmented(tuple(told), *levels_of(rows, told), tried)
@@ -186,6 +191,24 @@ def _beside_others(rows: Rows, steps: Sequence[Step], number: int) -> Step:
     rest = beside.residual(rows.seen.ravel())
     test = score_test(column, beside.residual(column), rest)
     return replace(step, gain=test.gain, degrees=test.degrees) if test else replace(step, gain=0.0)
+
+
+def _span(rows: Rows, steps: Sequence[Step], number: int) -> tuple[int, int]:
+    """Where the likelihood of a change is nearly as high as at its best drive."""
+    step = steps[number]
+    beside = _beside(rows, [each for index, each in enumerate(steps) if index != number])
+    rest = beside.residual(rows.seen.ravel())
+    each = gains(rows, beside, rest, step.group.directions, step.shape.kind)
+    if step.shape.kind == "alone" or step.shape.first not in each.first:
+        return step.shape.first, step.shape.first
+    place = step.shape.first - each.first.start
+    near = each.gain >= each.gain[place] - WHICH_DRIVE
+    low = high = place
+    while low > 0 and near[low - 1]:
+        low -= 1
+    while high + 1 < near.size and near[high + 1]:
+        high += 1
+    return each.first[low], each.first[high]
 
 
 def _earned(step: Step, price: float, tried: int) -> bool:

@@ -11,6 +11,10 @@ are no changes but a scatter from drive to drive, which is estimated as such."""
 DATED = 1e8
 """Stamps [s] above this are dates: no clock that begins with a drive shows three years."""
 
+WHICH_DRIVE = 6.0
+"""Difference of costs up to which a change may as well have come with another drive: a Bayes factor
+of 20, "strong" from there on (Kass and Raftery, J. Am. Stat. Assoc. 90, 1995)."""
+
 TREND_DRIVES = 4
 """Drives after the one at which a trend begins, at the least. Chosen: of three a step in the middle
 lies as near a line as noise lets one see."""

@@ -4,19 +4,19 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict, replace
+from dataclasses import asdict
 from datetime import datetime, timezone
 from typing import Any
 
-from werrimbi_odom.inference.changes.between import Moved
 from werrimbi_odom.inference.changes.dated import Dated, History
 from werrimbi_odom.report.changes import changes_json
-from werrimbi_odom.report.history.words import against, alarms
+from werrimbi_odom.report.history.words import against, alarms, told_as
 
 
 def json_of(history: History) -> dict[str, Any]:
     """Everything that was found."""
     course = history.course
+    paths = [str(drive.run) for drive in history.drives]
     return {
         "drives": [
             {
@@ -49,22 +49,13 @@ def json_of(history: History) -> dict[str, Any]:
         "changes": [
             {**each, "date": _date(history.drives[int(move.from_run)])}
             for move, each in zip(
-                course.changes, changes_json(named(history), history.robot), strict=True
+                course.changes, changes_json(told_as(history, paths), history.robot), strict=True
             )
         ],
         "alarms": [asdict(alarm) for alarm in alarms(history)],
         "like": [asdict(each) for each in against(history)],
         "unusable": [{"run": str(each.run), "why": each.why} for each in history.unusable],
     }
-
-
-def named(history: History) -> list[Moved]:
-    """The changes, with the paths of the drives for their numbers."""
-    paths = [str(drive.run) for drive in history.drives]
-    return [
-        replace(move, last_before=paths[int(move.last_before)], from_run=paths[int(move.from_run)])
-        for move in history.course.changes
-    ]
 
 
 def _date(drive: Dated) -> str | None:

@@ -13,8 +13,8 @@ from werrimbi_odom.inference.changes.between import Moved
 from werrimbi_odom.inference.changes.dated import Dated, History
 from werrimbi_odom.inference.changes.history import Number
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, value_of
-from werrimbi_odom.report.changes import changes_words
-from werrimbi_odom.report.numbers import counted, in_unit, length, listed, with_std
+from werrimbi_odom.report.changes import changes_words, in_small_unit
+from werrimbi_odom.report.numbers import counted, length, listed, with_std
 from werrimbi_odom.report.text import filled, table
 
 TITLES = {
@@ -69,7 +69,7 @@ class Against:
 def words_of(history: History) -> str:
     """All of it, filled to 80 columns."""
     robot, course = history.robot, history.course
-    told = changes_words(dated(history), robot)
+    told = changes_words(told_as(history, dated_names(history)), robot)
     lines = [_headline(history)]
     lines += [f"- {words}" for words in told]
     for alarm in alarms(history):
@@ -98,7 +98,8 @@ def alarms(history: History) -> list[Alarm]:
     for group, move in latest.items():
         look = _LOOK.get(group, f"look at what makes {group}: its size is another one")
         since = names[int(move.from_run)]
-        found.append(Alarm(group, since, f"{look}; it is otherwise since {since}"))
+        how = "changes steadily" if move.kind == "trend" else "is otherwise"
+        found.append(Alarm(group, since, f"{look}; it {how} since {since}"))
     if history.course.off:
         sizes = listed(
             [
@@ -131,11 +132,15 @@ def against(history: History) -> list[Against]:
     return found
 
 
-def dated(history: History) -> list[Moved]:
-    """The changes, with names and dates of the drives for their numbers."""
-    names = dated_names(history)
+def told_as(history: History, names: Sequence[str]) -> list[Moved]:
+    """The changes, with names of the drives for their numbers."""
     return [
-        replace(move, last_before=names[int(move.last_before)], from_run=names[int(move.from_run)])
+        replace(
+            move,
+            last_before=names[int(move.last_before)],
+            from_run=names[int(move.from_run)],
+            surely_from=names[int(move.surely_from)],
+        )
         for move in history.course.changes
     ]
 
@@ -183,8 +188,8 @@ def _against_words(history: History, differing: Sequence[Against]) -> str:
             parts.append(f"{title} {_share(each.now / each.there - 1.0, each.std / each.there)}")
         else:
             number = next(item for item in history.course.numbers if item.name == each.what)
-            value, unit = in_unit(each.now, each.std, number.unit)
-            other, unit_there = in_unit(each.there, 0.0, number.unit)
+            value, unit = in_small_unit(each.now, each.std, number.unit)
+            other, unit_there = in_small_unit(each.there, 0.0, number.unit)
             parts.append(f"{title} {value} {unit}, there {other} {unit_there}")
     return f"New against the other robot file: {listed(parts)}."
 
@@ -226,7 +231,7 @@ def _table(history: History) -> str:
     heads += ["the other file"] if history.like is not None else []
     rows = []
     for number in history.course.numbers:
-        now, unit = in_unit(float(number.level[-1]), float(number.level_std[-1]), number.unit)
+        now, unit = in_small_unit(float(number.level[-1]), float(number.level_std[-1]), number.unit)
         factor = 1e3 if unit != number.unit else 1.0
         cells = [
             TITLES.get(number.name, number.name),
