@@ -180,10 +180,12 @@ def _chance(
     size = np.sqrt(np.sum(free**2, axis=0))
     scaled = free[:, size > 0.0] / size[size > 0.0]
     apart, freedom = 0.0, 0
+    # Of very many drives each part holds less than is asked of one of 28, however alike they are.
+    heard = LASTING_HEARD * math.sqrt(min(1.0, LASTING_PARTS / (parts.max() + 1)))
     for part in range(parts.max() + 1):
         here = parts == part
         basis, values, _ = np.linalg.svd(scaled[here], full_matrices=False)
-        own = basis[:, values > LASTING_HEARD]
+        own = basis[:, values > heard]
         apart += float(np.sum((own.T @ rest[here]) ** 2))
         freedom += own.shape[1]
     freedom = max(freedom - degrees, 1)
