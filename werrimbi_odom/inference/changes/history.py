@@ -27,7 +27,7 @@ from werrimbi_odom.inference.chances import chi2_above, fisher_above
 from werrimbi_odom.inference.changes.between import Moved, evidence_of, moves_of
 from werrimbi_odom.inference.changes.drives import Drives
 from werrimbi_odom.inference.changes.numbers import MOUNT, Group, groups_of, numbers_of, value_at
-from werrimbi_odom.inference.changes.search import Segmented, left_over, levels_of, segmented
+from werrimbi_odom.inference.changes.search import Segmented, levels_of, segmented
 from werrimbi_odom.inference.changes.shapes import Kind, rows_of
 from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob
@@ -41,6 +41,7 @@ from werrimbi_odom.inference.rules import (
     PENALTY_FLOOR,
     SCATTER_DRIVES,
     SURE,
+    SURE_OF_A_CHANGE,
 )
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
@@ -159,7 +160,7 @@ def course_of(told: Sequence[DriveTold], robot: Robot, time: Floats) -> Course:
     groups = groups_of(names, given, given.size)
     most = MOST_CHANGES if len(told) >= SCATTER_DRIVES else 1
     found = segmented(wide, groups, price, KINDS, most)
-    lasting = _beyond_scatter(wide, found)
+    lasting = _beyond_scatter(wide, found, own, scatter)
     if len(lasting) < len(found.steps):
         found = segmented(wide, lasting, price, KINDS) if lasting else _constant(wide)
     values = Values(given[None], np.zeros((1, given.size, given.size)))
@@ -248,16 +249,28 @@ def _scatter(values: Floats, std: Floats) -> float:
     return high
 
 
-def _beyond_scatter(drives: Drives, found: Segmented) -> list[Group]:
-    """Groups of the changes that stand out of what the drives differ by otherwise: Fisher's F."""
-    squares, free = left_over(rows_of(drives), found.steps)
-    usual = max(squares / free, 1.0) if free > 0 else math.inf
-    return [
-        step.group
-        for step in found.steps
-        if found.tried * fisher_above(step.gain / step.degrees / usual, step.degrees, max(free, 1))
-        < SURE
-    ]
+def _beyond_scatter(drives: Drives, found: Segmented, own: Values, scatter: Floats) -> list[Group]:
+    """Groups of the changes that stand out of what the drives differ by otherwise: Fisher's F.
+
+    The scatter is an estimate by some drives, and another one for each number; so what a number
+    differs by about its level counts, with as many degrees of freedom as there are drives to tell.
+    """
+    lasting = []
+    for step in found.steps:
+        usual, free = 1.0, math.inf
+        for name in step.group.numbers:
+            number = drives.names.index(name)
+            spread = own.spread[:, number, number] + scatter[number] ** 2
+            about = (own.value[:, number] - found.levels[:, number]) ** 2 / spread
+            moved = sum(each.degrees for each in found.steps if name in each.group.numbers)
+            left = drives.count - 1 - moved
+            if left < 1:
+                return []
+            usual, free = max(usual, float(np.sum(about)) / left), min(free, left)
+        worth = step.gain / step.degrees / usual
+        if found.tried * fisher_above(worth, step.degrees, free) < SURE_OF_A_CHANGE:
+            lasting.append(step.group)
+    return lasting
 
 
 def _constant(drives: Drives) -> Segmented:

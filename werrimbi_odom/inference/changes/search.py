@@ -125,14 +125,6 @@ def levels_of(rows: Rows, steps: Sequence[Step]) -> tuple[Floats, Floats]:
     return np.asarray(moves @ found), np.asarray(moves @ inverse @ moves.swapaxes(-1, -2))
 
 
-def left_over(rows: Rows, steps: Sequence[Step]) -> tuple[float, int]:
-    """Squares that these changes leave, and their degrees of freedom."""
-    beside = nuisance(_columns(rows, steps))
-    rest = beside.residual(rows.seen.ravel())
-    heard = int(np.count_nonzero(np.einsum("rij->ri", rows.root**2) > 0.0))
-    return float(rest @ rest), heard - int(beside.basis.shape[1])
-
-
 def _best(
     rows: Rows,
     groups: Sequence[Group],

@@ -24,6 +24,11 @@ SCATTER_DRIVES = 8
 known to a half. Of fewer, one change is looked for, and held against what the drives differ by
 beside it (Fisher's F): two would find their own among five."""
 
+SURE_OF_A_CHANGE = 0.01
+"""How often chance may do as much in a history whose drives scatter by what they themselves must
+tell (Fisher's F, all that was looked at counted). Ten drives tell their scatter with eight degrees
+of freedom: asked for `SURE`, they would miss one change of 0.3 % of a radius in eight."""
+
 CALIBRATE_AGAIN = 1e-3
 """Share by which a radius or the base must differ from the robot file to ask for a calibration.
 Chosen: of one radius, on a base of 35 cm, it is a degree in six metres; parquet and good tyres keep
