@@ -11,6 +11,7 @@ from pathlib import Path
 
 import pytest
 
+import werrimbi_odom as wo
 from test.cli.written_runs import PLAIN, ROBOT_FILE, write_run
 from test.inference.driven import run_of
 from werrimbi_odom.cli.main import main
@@ -114,6 +115,31 @@ def test_without_stamps_the_files_own_dates_count_unless_they_were_copied(
     assert found["drives"][0]["date"].startswith("2023-11-14")
     assert "when their files were written" in " ".join(capsys.readouterr().out.split())
     assert found["changes"] == []
+
+
+def test_diagnose_tells_the_same_change_before_its_verdict(
+    months: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "d.json"
+    drives = [str(each) for each in sorted(months.glob("drive_[0-9]"))]
+    robot = str(months / "robot.yaml")
+    assert main(["diagnose", "--robot", robot, *drives, "--json", str(out)]) == 0
+    (change,) = json.loads(out.read_text())["changes"]
+    assert change["what"] == "right_wheel_radius_multiplier"
+    assert change["from_run"] == f"drive_{(FIRST_NEW * 3) % DRIVES}"
+    assert change["after"] - change["before"] == pytest.approx(0.006, abs=6e-4)
+    assert change["p_value"] < 1e-3
+    assert capsys.readouterr().out.startswith("The robot was not the same in all of these drives.")
+
+
+def test_from_python_it_takes_drives_that_were_read_and_keeps_nothing(months: Path) -> None:
+    robot = wo.read_robot(months / "robot.yaml")
+    drives = [wo.read_run(months / f"drive_{number}", robot) for number in (0, 3, 6)]
+    result = wo.history(robot, drives)
+    assert result.to_dict()["changes"] == []
+    assert [drive.run.name for drive in result.found.drives] == ["drive_0", "drive_3", "drive_6"]
+    assert "Nothing changed" in repr(result)
+    assert list(result.figures()) == ["history"]
 
 
 def test_drives_none_of_which_can_be_used_are_an_error(

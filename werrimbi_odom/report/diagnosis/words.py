@@ -72,12 +72,14 @@ def _changes(told: Told) -> list[str]:
     if not changes:
         return []
     drives = [run.name for run in told.diagnosis.runs.runs]
-    last = max(drives.index(change.from_run) for change in told.changes)
+    last = max(drives.index(change.surely_from) for change in told.changes)
+    alone = " That alone may be why no effect explains them all."
     return [
         "The robot was not the same in all of these drives.",
         *(f"- {words}" for words in changes),
         "What follows takes them for one robot, the mean of both. For what it is now, ask again "
-        f"with the drives from {drives[last]} on alone.",
+        f"with the drives from {drives[last]} on alone."
+        + (alone if told.diagnosis.verdict == "unknown" else ""),
         "",
     ]
 
