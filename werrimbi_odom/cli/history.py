@@ -34,6 +34,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--like",
         metavar="OTHER",
+        dest="other",
         type=Path,
         help="robot file of a sound robot of the same kind, or of this one when it was sound: "
         "tells what is new against it",
@@ -69,7 +70,7 @@ def run(arguments: argparse.Namespace) -> int:
     collection = read_effects(arguments)
     robot, like = (
         None if path is None else read_robot_file(path, collection)
-        for path in (arguments.robot, arguments.like)
+        for path in (arguments.robot, arguments.other)
     )
     assert robot is not None
     remark(robot)

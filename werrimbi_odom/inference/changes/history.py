@@ -222,7 +222,7 @@ def _alone(drives: Drives, given: Floats, limits: Floats) -> Values:
 def _silenced(
     shown: Sequence[tuple[Floats, Floats]], limits: Sequence[float]
 ) -> list[tuple[Floats, Floats]]:
-    """NaN where a drive tells less than is known beforehand."""
+    """Not a number where a drive tells less than is known beforehand."""
     heard = [std < 0.5 * limit for (_, std), limit in zip(shown, limits, strict=True)]
     return [
         (np.where(told, value, np.nan), np.where(told, std, np.nan))
