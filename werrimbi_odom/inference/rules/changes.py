@@ -26,8 +26,9 @@ beside it (Fisher's F): two would find their own among five."""
 
 SURE_OF_A_CHANGE = 0.01
 """How often chance may do as much in a history whose drives scatter by what they themselves must
-tell (Fisher's F, all that was looked at counted). Ten drives tell their scatter with eight degrees
-of freedom: asked for `SURE`, they would miss one change of 0.3 % of a radius in eight."""
+tell (Fisher's F, all that was looked at counted). Chosen on simulated
+histories: asked for `SURE`, ten drives, which tell their scatter with eight degrees of freedom,
+found a tenth fewer of the changes of 0.3 % of a radius. On others it told 4 of 870 in vain."""
 
 CALIBRATE_AGAIN = 1e-3
 """Share by which a radius or the base must differ from the robot file to ask for a calibration.
