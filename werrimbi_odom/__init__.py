@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from werrimbi_odom.api.calibrate_umbmark import calibrate_umbmark
     from werrimbi_odom.api.draft import draft
     from werrimbi_odom.api.drives import read_robot, read_run
+    from werrimbi_odom.api.history import history
     from werrimbi_odom.api.info import info
     from werrimbi_odom.api.odom import odom
     from werrimbi_odom.api.odometry import odometry
@@ -54,6 +55,7 @@ _WHERE = {
     "add": "api.verbs",
     "draft": "api.draft",
     "calibrate_fit": "api.calibrate_fit",
+    "history": "api.history",
     "info": "api.info",
     "calibrate_noise": "api.calibrate_noise",
     "calibrate_umbmark": "api.calibrate_umbmark",
@@ -79,6 +81,7 @@ __all__ = [
     "compare",
     "diagnose",
     "draft",
+    "history",
     "info",
     "odom",
     "odometry",

@@ -15,7 +15,7 @@ from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.evidence import dependences
-from werrimbi_odom.inference.diagnosis.lasting import lasting
+from werrimbi_odom.inference.diagnosis.lasting import _chance, lasting
 from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
 from werrimbi_odom.inference.fitting.together import together
@@ -119,3 +119,20 @@ def test_what_every_drive_shows_is_told_of_the_robot() -> None:
     hot = [driven(seed, nothing, f"drive_{seed}", hotter=0.01) for seed in range(80, 84)]
     found = diagnose(hot, ROBOT, LIBRARY, holdout=[driven(85, nothing, "apart", hotter=0.01)])
     assert (found.verdict, found.depends_on[0].variable.name) == ("unknown", "warmth")
+
+
+@pytest.mark.parametrize("drives", [7, 25, 60, 200])
+def test_what_all_drives_agree_on_lasts_however_many_they_are(drives: int) -> None:
+    random = np.random.default_rng(drives)
+    parts = np.repeat(np.arange(4 * drives), 12)
+    free = random.normal(size=(parts.size, 1))
+    free /= np.sqrt(np.sum(free**2))
+    noise = random.normal(size=parts.size)
+    rest = noise + 12.0 * free[:, 0]
+    gain = float((free[:, 0] @ rest) ** 2)
+    assert _chance(gain, 1, free, rest, parts) < 1e-6
+    # A tenth of the parts has all of it: no two parts agree.
+    few = np.where(parts % 10 == 0, free[:, 0], 0.0)
+    rest = noise + 120.0 * np.where(parts % 20 == 0, few, -few)
+    gain = float((free[:, 0] @ rest) ** 2)
+    assert _chance(gain, 1, free, rest, parts) > 1e-3

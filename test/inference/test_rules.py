@@ -31,6 +31,8 @@ ELSEWHERE = {
         "_MOST": "the same, upwards",
     },
     "calibration/umbmark_equations.py": {"QUARTER": "a corner of a square"},
+    "changes/history.py": {"_MEDIAN_CHI2_1": "a quantile"},
+    "changes/search.py": {"_FEW": "time that it takes"},
     "chances.py": {"MEDIAN_TO_SIGMA": "of the normal law", "NORMAL_95": "a quantile"},
     "comparison/legs.py": {"CHI2_95": "quantiles"},
     "comparison/local_map.py": {

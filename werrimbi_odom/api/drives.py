@@ -115,12 +115,24 @@ def recordings_of(
     """Everything that a verb needs, as the command line reads it."""
     if not isinstance(robot, RobotFile):
         raise TypeError(f"the robot comes first, from read_robot, and not {type(robot).__name__}")
+    how = how_of(**options)
+    fitted, held = _several(runs), _several(holdout)
+    if not fitted:
+        raise InputError("no drives were given")
+    found = gathered(robot, collection_of(how.effects), fitted, held, how)
+    for words in refuse_circles(found):
+        warnings.warn(words, stacklevel=3)
+    return found
+
+
+def how_of(**options: Unpack[Options]) -> How:
+    """How drives are read and judged, as the command line has it."""
     unknown = sorted(set(options) - set(Options.__annotations__))
     if unknown:
         raise TypeError(
             f"unknown option {unknown[0]}; there are {', '.join(Options.__annotations__)}"
         )
-    how = How(
+    return How(
         kind=options.get("reference_kind"),
         leg=options.get("leg", 1.0),
         sigma_xy=options.get("reference_sigma_xy"),
@@ -130,13 +142,6 @@ def recordings_of(
         effects=tuple(Path(file) for file in options.get("effects", ())),
         force=options.get("force_reference", False),
     )
-    fitted, held = _several(runs), _several(holdout)
-    if not fitted:
-        raise InputError("no drives were given")
-    found = gathered(robot, collection_of(how.effects), fitted, held, how)
-    for words in refuse_circles(found):
-        warnings.warn(words, stacklevel=3)
-    return found
 
 
 def refuse_circles(given: Recordings) -> list[str]:

@@ -124,7 +124,7 @@ def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
     return Result(
         found=told,
         document=lambda: document_of(told, steps()),
-        figures_of_json=lambda: json_of(told.diagnosis, told.manoeuvre, told.sights),
+        figures_of_json=lambda: json_of(told.diagnosis, told.manoeuvre, told.sights, told.changes),
     )
 
 

@@ -14,6 +14,7 @@ EXAMPLES = {
     "odom": ("odom --robot drives/robot.yaml drives/train/square_ccw --out odom.csv",),
     "compare": (f"compare {_DRIVES}", f"compare {_DRIVES} --leg 0.5 --report compare.html"),
     "diagnose": (f"diagnose {_JUDGED}", "diagnose --fleet robots --json fleet.json"),
+    "history": (f"history {_DRIVES} --report history.html",),
     "add": (f"add castor_kick {_JUDGED} --out better.yaml",),
     "draft": (f"draft {_DRIVES} --out my_effect",),
     "workbench": (f"workbench {_JUDGED} --open",),

@@ -23,6 +23,7 @@ VERBS = (
     "odom",
     "compare",
     "diagnose",
+    "history",
     "add",
     "draft",
     "workbench",

@@ -15,7 +15,7 @@ from pathlib import Path
 from werrimbi_odom.cli.packages import refuse_without
 from werrimbi_odom.errors import InputError
 
-READ = ("robot", "run", "runs", "holdout", "results", "after", "effects", "reference")
+READ = ("robot", "run", "runs", "holdout", "results", "after", "effects", "reference", "other")
 WRITTEN = ("out", "json", "report")
 FOLDERS = {"draft": "with --force", "simulate": "never"}
 """Verbs whose --out is a folder, and when that may hold something already."""

@@ -28,6 +28,7 @@ NEEDED = {
     "info": _FITS,
     "compare": _FITS,
     "diagnose": _FITS,
+    "history": _FITS,
     "add": _FITS,
     "draft": _FITS,
     "calibrate": _FITS,

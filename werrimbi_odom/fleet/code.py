@@ -4,15 +4,13 @@
 
 from __future__ import annotations
 
-import hashlib
 import platform
 from collections.abc import Mapping
 from functools import cache
 from importlib.metadata import PackageNotFoundError, entry_points, version
-from importlib.resources import files
-from pathlib import Path
 
 from werrimbi_odom.effects.collection import GROUP
+from werrimbi_odom.files.content import code_mark
 
 PACKAGE = "werrimbi_odom"
 EFFECTS = "installed effects"
@@ -28,7 +26,7 @@ def code_here() -> Mapping[str, str]:
         for point in entry_points(group=GROUP)
     )
     return {
-        PACKAGE: f"{_version(PACKAGE)} (code {_digest()})",
+        PACKAGE: f"{_version(PACKAGE)} (code {code_mark()})",
         EFFECTS: ", ".join(sorted(offered)) or "none",
         "Python": platform.python_version(),
         "numpy": _version("numpy"),
@@ -59,13 +57,3 @@ def _version(name: str) -> str:
         return version(name)
     except PackageNotFoundError:
         return "not installed" if name != PACKAGE else "from a checkout"
-
-
-def _digest() -> str:
-    """Of all our source files, by their names."""
-    root = Path(str(files(PACKAGE)))
-    total = hashlib.sha256()
-    for path in sorted(root.rglob("*.py")):
-        total.update(f"{path.relative_to(root)}\0{path.stat().st_size}\0".encode())
-        total.update(path.read_bytes())
-    return total.hexdigest()[:12]

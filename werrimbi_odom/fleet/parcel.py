@@ -9,14 +9,13 @@ import os
 import pickle
 import tempfile
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import BAG, Asked
-from werrimbi_odom.files.bag import SUFFIXES
-from werrimbi_odom.files.run_folder import REFERENCE, TICKS
+from werrimbi_odom.files.asked import Asked
+from werrimbi_odom.files.content import files_of
 from werrimbi_odom.fleet.one import Task, row_of
 from werrimbi_odom.report.fleet.rows import Row
 
@@ -59,7 +58,7 @@ def packed(task: Task) -> bytes:
     items = []
     for path in paths:
         try:
-            size = sum(file.stat().st_size for file in _files(path))
+            size = sum(file.stat().st_size for file in files_of(path))
             room -= size
             if room < 0:
                 raise InputError(
@@ -85,22 +84,10 @@ def row_of_parcel(data: bytes) -> Row:
     return _with_paths(row, given)
 
 
-def _files(path: Path) -> Iterator[Path]:
-    """What is read of a path."""
-    if path.is_file():
-        yield path
-    elif path.is_dir():
-        wanted = {TICKS, REFERENCE} if (path / TICKS).exists() else {BAG}
-        for each in sorted(path.iterdir()):
-            bag = TICKS not in wanted and any(suffix in each.name for suffix in SUFFIXES)
-            if each.name in wanted or bag:
-                yield each
-
-
 def _item(path: Path) -> Item:
     name = path.resolve().name  # a run is called so, also where a link leads to it
     if path.is_dir():
-        return Item(str(path), name, {file.name: file.read_bytes() for file in _files(path)})
+        return Item(str(path), name, {file.name: file.read_bytes() for file in files_of(path)})
     if not name.endswith(path.suffix):  # readers go by the ending that was given
         name = path.name
     return Item(str(path), name, path.read_bytes() if path.is_file() else None)

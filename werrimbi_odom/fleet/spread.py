@@ -8,18 +8,24 @@ import multiprocessing
 import os
 import signal
 from collections import deque
-from collections.abc import Generator, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, ProcessPoolExecutor, wait
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager
 from multiprocessing.connection import wait as wait_for
 from threading import Thread
+from typing import TypeVar
 
 from werrimbi_odom.fleet.one import Task, bug, failed, row_of
 from werrimbi_odom.report.fleet.rows import Row
 
+Asked = TypeVar("Asked")
+Found = TypeVar("Found")
+Work = Callable[[Asked], Found]
+Lost = Callable[[Asked, str], Found]
+
 DIED = (
-    "the process that diagnosed it died, and again when it was tried alone: killed, out of memory, "
+    "the process that worked on it died, and again when it was tried alone: killed, out of memory, "
     "or a crash of a library"
 )
 
@@ -32,32 +38,48 @@ def processors() -> int:
 
 
 def here(tasks: Sequence[Task], jobs: int) -> Iterator[Row]:
-    """Rows as they come, from `jobs` processes at the most.
+    """Rows of robots as they come, from `jobs` processes at the most."""
+    return spread(tasks, jobs, row_of, failed)
+
+
+def spread(
+    tasks: Sequence[Asked], jobs: int, work: Work[Asked, Found], lost: Lost[Asked, Found]
+) -> Iterator[Found]:
+    """What becomes of tasks as it comes, from `jobs` processes at the most.
 
     A process that dies takes others with it, and nobody knows which robot killed it. So those that
     were under way are tried again one by one, and only who kills again is given up.
+
+    Parameters
+    ----------
+    work
+        Done in another process: a function of a module.
+    lost
+        What becomes of a task that ended its process, or whose result cannot be read.
     """
     left = deque(tasks)
     while left:
-        for task in (yield from _pooled(left, jobs)):
-            if (yield from _pooled(deque([task]), 1)):
-                yield failed(task, DIED)
+        for task in (yield from _pooled(left, jobs, work, lost)):
+            if (yield from _pooled(deque([task]), 1, work, lost)):
+                yield lost(task, DIED)
 
 
-def _pooled(left: deque[Task], jobs: int) -> Generator[Row, None, list[Task]]:
-    """Rows of tasks, which are taken from `left`; returns those under way when a process died."""
+def _pooled(
+    left: deque[Asked], jobs: int, work: Work[Asked, Found], lost: Lost[Asked, Found]
+) -> Generator[Found, None, list[Asked]]:
+    """Results of tasks, taken from `left`; returns those under way when a process died."""
     others = set(multiprocessing.active_children())
     pool = ProcessPoolExecutor(
         min(jobs, len(left)), multiprocessing.get_context("spawn"), _end_with_parent
     )
-    under_way: dict[Future[Row], Task] = {}
-    lost: list[Task] = []
+    under_way: dict[Future[Found], Asked] = {}
+    died: list[Asked] = []
     try:
-        while under_way or (left and not lost):
-            while left and not lost and len(under_way) < jobs:
+        while under_way or (left and not died):
+            while left and not died and len(under_way) < jobs:
                 with _no_interrupt():
                     try:
-                        under_way[pool.submit(row_of, left[0])] = left[0]
+                        under_way[pool.submit(work, left[0])] = left[0]
                     except BrokenProcessPool:
                         break
                 left.popleft()
@@ -69,17 +91,17 @@ def _pooled(left: deque[Task], jobs: int) -> Generator[Row, None, list[Task]]:
                 try:
                     row = future.result()
                 except BrokenProcessPool:
-                    lost.append(task)
+                    died.append(task)
                     continue
                 except Exception as error:  # what comes back cannot be read
-                    row = failed(task, bug(error))
+                    row = lost(task, bug(error))
                 yield row
     finally:
         if under_way:
             for child in set(multiprocessing.active_children()) - others:
                 child.terminate()
         pool.shutdown(cancel_futures=True)
-    return lost
+    return died
 
 
 @contextmanager

@@ -106,6 +106,19 @@ def lasting(
         yield Lasting(cell, p_value, None if alone is None else runs.runs[alone].name)
 
 
+def lasting_columns(runs: Together, gain: float, degrees: int, free: Floats, rest: Floats) -> float:
+    """How often chance would explain as much by some columns, by the disagreement of the parts.
+
+    Parameters
+    ----------
+    free : ndarray, shape (3 m, d)
+        Columns clear of all that else is fitted.
+    rest : ndarray, shape (3 m,)
+        Innovations clear of it.
+    """
+    return 0.0 if _too_few(runs) else _chance(gain, degrees, free, rest, _parts(runs))
+
+
 def _too_few(runs: Together) -> bool:
     """Whether legs are so long, or so few, that each stands for itself."""
     return runs.count < LASTING_LEGS * LASTING_FEWEST * len(runs.runs)
@@ -167,10 +180,12 @@ def _chance(
     size = np.sqrt(np.sum(free**2, axis=0))
     scaled = free[:, size > 0.0] / size[size > 0.0]
     apart, freedom = 0.0, 0
+    # Of very many drives each part holds less than is asked of one of 28, however alike they are.
+    heard = LASTING_HEARD * math.sqrt(min(1.0, LASTING_PARTS / (parts.max() + 1)))
     for part in range(parts.max() + 1):
         here = parts == part
         basis, values, _ = np.linalg.svd(scaled[here], full_matrices=False)
-        own = basis[:, values > LASTING_HEARD]
+        own = basis[:, values > heard]
         apart += float(np.sum((own.T @ rest[here]) ** 2))
         freedom += own.shape[1]
     freedom = max(freedom - degrees, 1)

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.inference.changes.between import Moved, changes_between
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit, detection_limits
@@ -25,6 +26,8 @@ class Told:
     """Length of the legs that are judged [m]."""
     held_out: bool = True
     """Whether drives to judge on were given, or put aside by the diagnosis itself."""
+    changes: Sequence[Moved] = ()
+    """What differs between the fitted drives."""
 
 
 def told_of(
@@ -49,7 +52,8 @@ def told_of(
     show(0.97, "the next step")
     manoeuvre = next_manoeuvre(diagnosis)
     sights = detection_limits(diagnosis, effects)
-    return Told(diagnosis, manoeuvre, sights, given.how.leg, bool(given.holdout))
+    changes = changes_between(diagnosis, effects)
+    return Told(diagnosis, manoeuvre, sights, given.how.leg, bool(given.holdout), changes)
 
 
 def significant(diagnosis: Diagnosis) -> list[Dependence]:

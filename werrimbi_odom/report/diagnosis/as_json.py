@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from werrimbi_odom.inference.changes.between import Moved
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.pairs import Sides
@@ -17,13 +18,17 @@ from werrimbi_odom.inference.diagnosis.values import values_of
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
 from werrimbi_odom.inference.manoeuvres.told import beyond_chance, one_each, significant
+from werrimbi_odom.report.changes import changes_json
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.numbers import picked
 from werrimbi_odom.report.phrases import left_out_json, remarks_json
 
 
 def json_of(
-    diagnosis: Diagnosis, manoeuvre: Manoeuvre | None, sights: Sequence[DetectionLimit] = ()
+    diagnosis: Diagnosis,
+    manoeuvre: Manoeuvre | None,
+    sights: Sequence[DetectionLimit] = (),
+    changes: Sequence[Moved] = (),
 ) -> dict[str, Any]:
     """Everything that was found."""
     return {
@@ -75,6 +80,7 @@ def json_of(
             "only_in": diagnosis.misfit.only_in,
             **_cell(diagnosis.misfit.cell),
         },
+        "changes": changes_json(changes, diagnosis.robot),
         "could_have_been_seen": [_limit(sight) for sight in sights],
     }
 

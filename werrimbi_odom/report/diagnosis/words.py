@@ -14,6 +14,7 @@ from werrimbi_odom.inference.diagnosis.pairs import Sides
 from werrimbi_odom.inference.diagnosis.values import mistakes, one_wheel, reference_wanders
 from werrimbi_odom.inference.manoeuvres.told import Told, significant
 from werrimbi_odom.model.effect import always_twins
+from werrimbi_odom.report.changes import changes_words
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.phrases import (
     about,
@@ -55,7 +56,7 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
         "ambiguous": _ambiguous,
         "unknown": _unknown,
     }[diagnosis.verdict]
-    said = [*tell(told, steps), *otherwise(diagnosis)]
+    said = [*_changes(told), *tell(told, steps), *otherwise(diagnosis)]
     suspect = [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*suspect, *left_out_words(diagnosis.left_out), *jumps_words(diagnosis.left_out)]
     last = (index for index, text in enumerate(said) if text.startswith("Next: "))
@@ -63,6 +64,24 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     said[place:place] = left_out
     checks = [f"Check {name}" for name in diagnosis.rivals]
     return paragraphs(said, hanging=[*_HEADS, *checks])
+
+
+def _changes(told: Told) -> list[str]:
+    """What differs between the drives, before what they have in common."""
+    changes = changes_words(told.changes, told.diagnosis.robot)
+    if not changes:
+        return []
+    drives = [run.name for run in told.diagnosis.runs.runs]
+    last = max(drives.index(change.surely_from) for change in told.changes)
+    alone = " That alone may be why no effect explains them all."
+    return [
+        "The robot was not the same in all of these drives.",
+        *(f"- {words}" for words in changes),
+        "What follows takes them for one robot, the mean of both. For what it is now, ask again "
+        f"with the drives from {drives[last]} on alone."
+        + (alone if told.diagnosis.verdict == "unknown" else ""),
+        "",
+    ]
 
 
 _HEADS = (

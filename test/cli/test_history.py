@@ -1,0 +1,152 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi history` on run folders: dates, a change, what is kept, what cannot be used."""
+
+from __future__ import annotations
+
+import json
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+import werrimbi_odom as wo
+from test.cli.written_runs import PLAIN, ROBOT_FILE, write_run
+from test.inference.driven import run_of
+from werrimbi_odom.cli.main import main
+
+BEGAN = 1_700_000_000.0
+DAY = 86400.0
+DRIVES, FIRST_NEW = 7, 4
+
+
+@pytest.fixture(scope="module")
+def months(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Drives with dates, in folders whose names are in no order; the right tyre is replaced."""
+    folder = tmp_path_factory.mktemp("months")
+    (folder / "robot.yaml").write_text(ROBOT_FILE)
+    sound = ROBOT_FILE + "    right_wheel_radius_multiplier: 1.006\n"
+    (folder / "sound.yaml").write_text(sound)
+    for number in range(DRIVES):
+        factor = 1.006 if number >= FIRST_NEW else 1.0
+        truth = replace(PLAIN, right_wheel_radius_multiplier=factor)
+        run, late = run_of(truth, 20 + number, 25), BEGAN + 9.0 * DAY * number
+        assert run.reference is not None
+        moved = replace(run.reference, time=run.reference.time + late)
+        ticks = replace(run.ticks, time=run.ticks.time + late)
+        # Seconds since 1970 need more digits than `write_run` gives: these start at whole ones.
+        write_run(folder / f"drive_{(number * 3) % DRIVES}", run)
+        for name, table in (("ticks", ticks.time), ("reference", moved.time)):
+            file = folder / f"drive_{(number * 3) % DRIVES}" / f"{name}.csv"
+            head, *rows = file.read_text().splitlines()
+            rows = [
+                f"{time:.3f},{row.partition(',')[2]}"
+                for time, row in zip(table.tolist(), rows, strict=True)
+            ]
+            file.write_text("\n".join([head, *rows]) + "\n")
+    (folder / "drive_broken").mkdir()
+    (folder / "drive_broken" / "ticks.csv").write_text("t_s,left_ticks,right_ticks\n")
+    return folder
+
+
+def told(folder: Path, *more: str, out: Path) -> dict[str, object]:
+    robot, drives = str(folder / "robot.yaml"), [str(each) for each in folder.glob("drive_*")]
+    words = ["history", "--robot", robot, *sorted(drives), "--json", str(out), *more]
+    assert main([*words, "--jobs", "1"]) == 0
+    found = json.loads(out.read_text())
+    assert isinstance(found, dict)
+    return found
+
+
+def test_drives_are_told_by_their_dates_and_kept_by_their_content(
+    months: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    cache, out, page = tmp_path / "kept", tmp_path / "h.json", tmp_path / "h.html"
+    more = ("--cache", str(cache), "--report", str(page), "--like", str(months / "sound.yaml"))
+    found = told(months, *more, out=out)
+    dates = [drive["date"] for drive in found["drives"]]
+    assert dates == sorted(dates)
+    assert {drive["date_from"] for drive in found["drives"]} == {"stamp"}
+    assert [Path(drive["run"]).name for drive in found["drives"]] == [
+        f"drive_{(number * 3) % DRIVES}" for number in range(DRIVES)
+    ]
+    (change,) = found["changes"]
+    assert change["what"] == "right_wheel_radius_multiplier"
+    assert Path(change["from_run"]).name == f"drive_{(FIRST_NEW * 3) % DRIVES}"
+    assert (change["before"], change["after"]) == pytest.approx((1.0, 1.006), abs=4e-4)
+    assert change["date"].startswith("2023-12-20")
+    assert [alarm["what"] for alarm in found["alarms"]] == ["right_wheel", "calibration"]
+    assert not any(each["differs"] for each in found["like"])
+    (unusable,) = found["unusable"]
+    assert "drive_broken" in unusable["run"]
+    words = " ".join(capsys.readouterr().out.split())
+    assert "look at the right wheel" in words
+    assert "calibrate again" in words
+    assert "nothing is new" in words
+    assert "right radius" in page.read_text()
+
+    kept = sorted(cache.iterdir())
+    assert len(kept) == DRIVES
+    before = [file.stat().st_mtime_ns for file in kept]
+    again = told(months, *more, out=out)
+    assert again == found
+    assert [file.stat().st_mtime_ns for file in sorted(cache.iterdir())] == before
+    words = " ".join(capsys.readouterr().out.split())
+    assert f"{DRIVES} of them known from before" in words
+    kept[0].write_text("{")
+    assert told(months, *more, out=out) == found
+
+
+def test_without_stamps_the_files_own_dates_count_unless_they_were_copied(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "robot.yaml").write_text(ROBOT_FILE)
+    for number in range(2):
+        write_run(tmp_path / f"drive_{number}", run_of(PLAIN, number, 25))
+    more = ("--cache", str(tmp_path / "kept"))
+    found = told(tmp_path, *more, out=tmp_path / "h.json")
+    assert [drive["date"] for drive in found["drives"]] == [None, None]
+    assert "in the order given" in " ".join(capsys.readouterr().out.split())
+    for file in (tmp_path / "drive_1").iterdir():
+        os.utime(file, (BEGAN, BEGAN))
+    found = told(tmp_path, *more, out=tmp_path / "h.json")
+    assert [Path(drive["run"]).name for drive in found["drives"]] == ["drive_1", "drive_0"]
+    assert found["drives"][0]["date"].startswith("2023-11-14")
+    assert "when their files were written" in " ".join(capsys.readouterr().out.split())
+    assert found["changes"] == []
+
+
+def test_diagnose_tells_the_same_change_before_its_verdict(
+    months: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "d.json"
+    drives = [str(each) for each in sorted(months.glob("drive_[0-9]"))]
+    robot = str(months / "robot.yaml")
+    assert main(["diagnose", "--robot", robot, *drives, "--json", str(out)]) == 0
+    (change,) = json.loads(out.read_text())["changes"]
+    assert change["what"] == "right_wheel_radius_multiplier"
+    assert change["from_run"] == f"drive_{(FIRST_NEW * 3) % DRIVES}"
+    assert change["after"] - change["before"] == pytest.approx(0.006, abs=6e-4)
+    assert change["p_value"] < 1e-3
+    assert capsys.readouterr().out.startswith("The robot was not the same in all of these drives.")
+
+
+def test_from_python_it_takes_drives_that_were_read_and_keeps_nothing(months: Path) -> None:
+    robot = wo.read_robot(months / "robot.yaml")
+    drives = [wo.read_run(months / f"drive_{number}", robot) for number in (0, 3, 6)]
+    result = wo.history(robot, drives)
+    assert result.to_dict()["changes"] == []
+    assert [drive.run.name for drive in result.found.drives] == ["drive_0", "drive_3", "drive_6"]
+    assert "Nothing changed" in repr(result)
+    assert list(result.figures()) == ["history"]
+
+
+def test_drives_none_of_which_can_be_used_are_an_error(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "robot.yaml").write_text(ROBOT_FILE)
+    (tmp_path / "empty").mkdir()
+    given = ["--robot", str(tmp_path / "robot.yaml"), str(tmp_path / "empty")]
+    assert main(["history", *given, "--cache", str(tmp_path / "kept")]) == 2
+    assert "no drive can be used" in capsys.readouterr().err

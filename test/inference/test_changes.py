@@ -1,0 +1,150 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Changes between drives: found where they are, and not told where there are none."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.changes.between import Moved, changes_between
+from werrimbi_odom.inference.changes.drives import Drives
+from werrimbi_odom.inference.changes.numbers import groups_of
+from werrimbi_odom.inference.changes.search import Segmented, segmented
+from werrimbi_odom.inference.changes.shapes import Shape, gains, rows_of
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.inference.linear import nuisance, score_test
+
+PRICE = 9.0
+BASE, LEFT, RIGHT = range(3)
+STD = 1e-3
+
+
+def drives_of(levels: np.ndarray, random: np.random.Generator, scatter: float = 0.0) -> Drives:
+    """Each drive tells three numbers, one of them hardly, with errors that hang together."""
+    count, size = levels.shape
+    mixed = random.normal(size=(count, size, size)) + 3.0 * np.eye(size)
+    information = mixed.swapaxes(-1, -2) @ mixed / (9.0 * STD**2)
+    spread = np.linalg.inv(information) + scatter**2 * np.eye(size)
+    errors = (np.linalg.cholesky(spread) @ random.normal(size=(count, size, 1)))[..., 0]
+    weighted = (information @ (levels + errors)[..., None])[..., 0]
+    return Drives(MULTIPLIERS, information, weighted, np.arange(count, dtype=np.float64))
+
+
+def found_in(drives: Drives, kinds: tuple = ("step", "alone", "trend")) -> Segmented:
+    return segmented(drives, groups_of(MULTIPLIERS, np.ones(3), 3), PRICE, kinds)
+
+
+def test_what_a_change_would_explain_is_what_least_squares_says() -> None:
+    random = np.random.default_rng(1)
+    drives = drives_of(random.normal(scale=3.0 * STD, size=(12, 3)), random)
+    rows = rows_of(drives)
+    beside = nuisance(rows.constant)
+    rest = beside.residual(rows.seen.ravel())
+    directions = np.eye(3)[:, [LEFT, RIGHT]]
+    for kind in ("step", "alone", "trend"):
+        each = gains(rows, beside, rest, directions, kind)
+        assert len(each.first) > 5
+        for first, gain, degrees in zip(*each, strict=True):
+            columns = rows.column(Shape(kind, first), directions)
+            test = score_test(columns, beside.residual(columns), rest)
+            assert test is not None
+            assert gain == pytest.approx(test.gain, rel=1e-9)
+            assert degrees == test.degrees
+
+
+def test_a_change_of_one_wheel_is_found_at_its_drive() -> None:
+    random = np.random.default_rng(2)
+    found = right = 0
+    for _ in range(60):
+        levels = np.ones((10, 3))
+        first = int(random.integers(3, 8))
+        levels[first:, RIGHT] -= 5.0 * STD
+        steps = found_in(drives_of(levels, random)).steps
+        found += [step.group.what for step in steps] == ["right_wheel"]
+        right += [step.shape for step in steps] == [Shape("step", first)]
+    assert found >= 58
+    assert right >= 56
+
+
+def test_nothing_is_told_where_nothing_changed() -> None:
+    random = np.random.default_rng(3)
+    told = [bool(found_in(drives_of(np.ones((12, 3)), random)).steps) for _ in range(300)]
+    assert sum(told) <= 2  # one in a thousand
+
+
+def test_wear_is_no_staircase_and_a_new_tyre_beside_it_is_found() -> None:
+    random = np.random.default_rng(4)
+    levels = np.ones((60, 3))
+    levels[:, LEFT] -= 0.02 * np.arange(60) / 59.0
+    levels[40:, LEFT] += 0.012
+    levels[25:, BASE] += 0.008
+    found = found_in(drives_of(levels, random))
+    trend, base, tyre = found.steps
+    assert (trend.group.what, trend.shape.kind) == ("left_wheel", "trend")
+    assert trend.shape.first < 5
+    assert (base.group.what, base.shape) == ("wheel_base", Shape("step", 25))
+    assert (tyre.group.what, tyre.shape) == ("left_wheel", Shape("step", 40))
+    assert np.abs(found.levels - levels).max() < 3.0 * STD
+    std = np.sqrt(np.einsum("rii->ri", found.spread))
+    assert np.mean(np.abs(found.levels - levels) < 2.0 * std) > 0.8
+
+
+def test_one_odd_drive_is_one_odd_drive() -> None:
+    random = np.random.default_rng(5)
+    levels = np.ones((20, 3))
+    levels[7, LEFT:] += 8.0 * STD
+    (step,) = found_in(drives_of(levels, random)).steps
+    assert (step.group.what, step.shape) == ("both_wheels", Shape("alone", 7))
+
+
+BUILT = WhiteNoiseRobot(left_noise=4e-4, right_noise=5.8e-4)
+
+
+def session(change: float, count: int = 6, seconds: float = 40.0) -> list[Run]:
+    """Drives of a robot whose right wheel is another one in the second half of them."""
+    random = np.random.default_rng(11)
+    runs = []
+    for number in range(count):
+        factor = 1.0 + change * (number >= count // 2)
+        robot = replace(BUILT, right_radius=BUILT.right_radius * factor)
+        run = drive(robot, wandering(random, seconds), random)
+        runs.append(replace(run, name=f"drive_{number}", path=Path(f"drive_{number}")))
+    return runs
+
+
+def told_of(runs: list[Run]) -> tuple[Moved, ...]:
+    return changes_between(diagnose(runs, BUILT.entered(), LIBRARY), LIBRARY)
+
+
+def test_a_diagnosis_tells_a_wheel_that_was_exchanged() -> None:
+    (moved,) = told_of(session(0.003))
+    assert (moved.what, moved.from_run) == ("right_wheel_radius_multiplier", "drive_3")
+    assert moved.last_before == "drive_2"
+    change, std = moved.after / moved.before - 1.0, np.hypot(moved.before_std, moved.after_std)
+    assert change == pytest.approx(0.003, abs=4.0 * std / moved.before)
+    assert std / moved.before < 5e-4
+    assert moved.p_value < 1e-6
+
+
+def test_a_diagnosis_of_one_robot_tells_no_change() -> None:
+    assert told_of(session(0.0)) == ()
+
+
+def test_drives_with_dates_are_taken_in_their_order() -> None:
+    dated = []
+    for number, run in enumerate(session(0.003)):
+        ticks, reference = run.ticks, run.reference
+        assert reference is not None
+        shift = 1.7e9 + 86400.0 * number
+        moved = replace(reference, time=reference.time + shift)
+        dated.append(replace(run, ticks=replace(ticks, time=ticks.time + shift), reference=moved))
+    (moved,) = told_of([dated[index] for index in (4, 1, 5, 0, 3, 2)])
+    assert (moved.last_before, moved.from_run) == ("drive_2", "drive_3")

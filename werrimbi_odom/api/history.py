@@ -1,0 +1,248 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`history`: drives of weeks or months in the order of their dates, and when a number changed.
+
+Each drive is read, fitted by itself, and forgotten but for a few numbers, which are kept by the
+content of its files: ten thousand drives need no more memory than one, and one more drive is read
+alone.
+"""
+
+from __future__ import annotations
+
+import json
+import warnings
+from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
+from dataclasses import asdict, dataclass, replace
+from functools import cache as cached
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from werrimbi_odom.api.drives import Drives, Options, collection_of, how_of, refuse_circles
+from werrimbi_odom.api.result import Result
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.asked import How, gathered, refuse_twice
+from werrimbi_odom.files.content import code_mark, mark_of, written_at
+from werrimbi_odom.files.replacing import replacing
+from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.changes.dated import Dated, History, Unusable, in_order
+from werrimbi_odom.inference.changes.history import Course, DriveTold, course_of, drive_told
+from werrimbi_odom.inference.rules import DATED
+
+if TYPE_CHECKING:
+    from typing_extensions import Unpack
+
+
+@dataclass(frozen=True)
+class DriveTask:
+    """A drive to look at; it can be sent to another process."""
+
+    run: Path
+    robot: Path
+    how: How
+    """With what holds the reference of this drive alone."""
+    keep: Path | None
+    """File in which what it tells is kept."""
+
+
+Looked = Dated | Unusable
+"""A drive that was looked at, with or without success."""
+
+Spread = Callable[[Sequence[DriveTask]], Iterable[Looked]]
+"""Does tasks, in any order."""
+
+
+def history(
+    robot: RobotFile,
+    runs: Drives,
+    *,
+    like: RobotFile | None = None,
+    cache: str | Path | None = None,
+    spread: Spread | None = None,
+    show: Callable[[float, str], None] = lambda share, words: None,
+    **options: Unpack[Options],
+) -> Result[History]:
+    """How the numbers of a robot went over its drives, and when one changed.
+
+    Parameters
+    ----------
+    like
+        A sound robot of the same kind, or this one when it was sound: what is new against it.
+    cache
+        Folder to keep what each drive tells, by the content of its files. None: nothing is kept.
+    spread
+        Looks at drives, for many of them in several processes. None: one after the other.
+    show
+        Told the share done, and what is being done.
+
+    Raises
+    ------
+    InputError
+        When no drive can be used; the message says why the first cannot.
+    """
+    return history_of(
+        robot, runs, how_of(**options), like=like, cache=cache, spread=spread, show=show
+    )
+
+
+def history_of(
+    robot: RobotFile,
+    runs: Drives,
+    how: How,
+    *,
+    like: RobotFile | None = None,
+    cache: str | Path | None = None,
+    spread: Spread | None = None,
+    show: Callable[[float, str], None] = lambda share, words: None,
+) -> Result[History]:
+    """`history` as the command line asks for it."""
+    given = [runs] if isinstance(runs, Run | str | Path) else list(runs)
+    if not given:
+        raise InputError("no drives were given")
+    paths = [Path(each) for each in given if not isinstance(each, Run)]
+    refuse_twice(paths)
+    found: list[Looked] = [_looked_at(each, robot, how) for each in given if isinstance(each, Run)]
+    found += _known_or_done(_tasks(paths, robot, how, cache), spread or _each, show)
+    unusable = [each for each in found if isinstance(each, Unusable)]
+    drives = in_order(_as_given([each for each in found if isinstance(each, Dated)], given))
+    if not drives:
+        raise InputError(f"no drive can be used; {unusable[0].run}: {unusable[0].why}")
+    show(1.0, "putting the drives together")
+    against = None if like is None else like.robot
+    return _result(History(robot.robot, drives, _course(drives, robot), tuple(unusable), against))
+
+
+def told_of_task(task: DriveTask) -> Looked:
+    """What a drive tells, kept for the next time."""
+    try:
+        found = _looked_at(task.run, _source(task.robot, task.how.effects), task.how)
+    except (InputError, OSError) as error:
+        return unusable_task(task, str(error))
+    if task.keep is not None:
+        with suppress(InputError), replacing(task.keep) as file:  # else it is looked at again
+            json.dump(_plain(found.told), file)
+    return found
+
+
+def unusable_task(task: DriveTask, why: str) -> Unusable:
+    """A drive that could not be looked at."""
+    return Unusable(task.run, " ".join(why.split()))
+
+
+def _looked_at(run: Run | Path, robot: RobotFile, how: How) -> Dated:
+    given = gathered(robot, _collection(how.effects), [run], (), how)
+    for words in refuse_circles(given):
+        warnings.warn(words, stacklevel=2)
+    told = drive_told(given.runs[0], given.robot, **given.judging)
+    return _dated(given.runs[0].path, told)
+
+
+def _tasks(
+    paths: Sequence[Path], robot: RobotFile, how: How, cache: str | Path | None
+) -> list[DriveTask]:
+    references: Sequence[Path | None] = how.references or [None] * len(paths)
+    if len(references) != len(paths):
+        raise InputError(
+            f"{len(references)} times --reference for {len(paths)} runs: give it once for each RUN"
+        )
+    folder = None if cache is None else Path(cache)
+    with suppress(OSError):
+        if folder is not None:
+            folder.mkdir(parents=True, exist_ok=True)
+    common = replace(how, references=(), effects=())
+    words = (repr(common), repr(robot.robot), repr(robot.limits), code_mark())
+    found = []
+    for path, reference in zip(paths, references, strict=True):
+        own = (path,) if reference is None else (path, reference)
+        keep = None
+        if folder is not None:
+            with suppress(OSError):  # what cannot be read is told when it is looked at
+                keep = folder / f"{mark_of((*own, *how.effects), *words)}.json"
+        found.append(DriveTask(path, robot.path, replace(how, references=own[1:]), keep))
+    return found
+
+
+def _known_or_done(
+    tasks: Sequence[DriveTask], spread: Spread, show: Callable[[float, str], None]
+) -> list[Looked]:
+    found: list[Looked] = []
+    left = []
+    for task in tasks:
+        told = _kept(task.keep)
+        if told is None:
+            left.append(task)
+        else:
+            found.append(replace(_dated(task.run, told), kept=True))
+    for number, each in enumerate(spread(left) if left else ()):
+        found.append(each)
+        show((number + 1) / len(left), f"{number + 1} of {len(left)} drives")
+    return found
+
+
+def _each(tasks: Sequence[DriveTask]) -> Iterable[Looked]:
+    return map(told_of_task, tasks)
+
+
+def _dated(run: Path, told: DriveTold) -> Dated:
+    if told.begin > DATED:
+        return Dated(run, told, told.begin, "stamp")
+    try:
+        return Dated(run, told, written_at(run), "file")
+    except OSError:
+        return Dated(run, told, 0.0, "order")
+
+
+def _as_given(drives: Sequence[Dated], given: Sequence[Run | str | Path]) -> list[Dated]:
+    places = {str(each.path if isinstance(each, Run) else each): n for n, each in enumerate(given)}
+    return sorted(drives, key=lambda drive: places.get(str(drive.run), 0))
+
+
+def _course(drives: Sequence[Dated], robot: RobotFile) -> Course:
+    time = np.array([drive.date for drive in drives])
+    return course_of([drive.told for drive in drives], robot.robot, time)
+
+
+def _result(found: History) -> Result[History]:
+    from werrimbi_odom.report.history.as_json import json_of
+    from werrimbi_odom.report.history.document import document_of
+
+    return Result(
+        found=found,
+        document=lambda: document_of(found),
+        figures_of_json=lambda: json_of(found),
+    )
+
+
+@cached
+def _collection(effects: tuple[Path, ...]) -> Any:
+    return collection_of(effects)
+
+
+@cached
+def _source(robot: Path, effects: tuple[Path, ...]) -> RobotFile:
+    return read_robot_file(robot, _collection(effects))
+
+
+def _plain(told: DriveTold) -> dict[str, Any]:
+    return {
+        name: value.tolist() if isinstance(value, np.ndarray) else value
+        for name, value in asdict(told).items()
+    }
+
+
+def _kept(place: Path | None) -> DriveTold | None:
+    if place is None:
+        return None
+    try:
+        values = json.loads(place.read_text(encoding="utf-8"))
+        return DriveTold(
+            tuple(values["names"]),
+            np.array(values["information"]),
+            np.array(values["weighted"]),
+            *(values[name] for name in ("begin", "data", "way")),
+        )
+    except (OSError, ValueError, KeyError, TypeError):
+        return None  # not there, or spoilt: looked at anew

@@ -1,0 +1,109 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""`werrimbi history`: how a robot's numbers went over weeks or months, and when one changed."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from werrimbi_odom.cli.recordings import add_recording_arguments, how_of, read_effects, remark
+from werrimbi_odom.cli.result_files import tell_written, write_asked
+
+if TYPE_CHECKING:
+    from werrimbi_odom.api.history import DriveTask, Looked
+
+HELP = "how base, radii, mount and effects went over months of drives, and when one changed"
+
+_FEW = 6  # drives that are done sooner here than another process begins
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    """Declare the options of `werrimbi history`."""
+    parser.description = (
+        "Fits each drive by itself, puts the drives in the order of their dates, and tells which "
+        "number of the robot changed when: base, radii, how the reference is mounted, the sizes of "
+        "the effects in the robot file. What each drive tells is kept by the content of its files, "
+        "so one drive more costs seconds."
+    )
+    add_recording_arguments(parser)
+    parser.add_argument(
+        "--like",
+        metavar="OTHER",
+        dest="other",
+        type=Path,
+        help="robot file of a sound robot of the same kind, or of this one when it was sound: "
+        "tells what is new against it",
+    )
+    parser.add_argument(
+        "--jobs",
+        metavar="N",
+        type=int,
+        default=0,
+        help="processes; if not given, one for each processor",
+    )
+    parser.add_argument(
+        "--cache",
+        metavar="DIR",
+        type=Path,
+        default=_cache(),
+        help="folder to keep what each drive tells (default: %(default)s)",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Look at the drives, put them together, tell; 0 on success.
+
+    Raises
+    ------
+    InputError
+        When the robot file or all drives cannot be used, or a file cannot be written.
+    """
+    from werrimbi_odom.api.history import history_of
+    from werrimbi_odom.cli.progress import share_done
+    from werrimbi_odom.files.robot_file import read_robot_file
+
+    collection = read_effects(arguments)
+    robot, like = (
+        None if path is None else read_robot_file(path, collection)
+        for path in (arguments.robot, arguments.other)
+    )
+    assert robot is not None
+    remark(robot)
+
+    def spread(tasks: Sequence[DriveTask]) -> Iterator[Looked]:
+        return _spread(tasks, arguments.jobs)
+
+    with share_done("looking at the drives") as show:
+        result = history_of(
+            robot,
+            arguments.runs,
+            how_of(arguments),
+            like=like,
+            cache=arguments.cache,
+            spread=spread,
+            show=show,
+        )
+    print(result.summary())
+    tell_written(write_asked(arguments, result))
+    return 0
+
+
+def _spread(tasks: Sequence[DriveTask], jobs: int) -> Iterator[Looked]:
+    from werrimbi_odom.api.history import told_of_task, unusable_task
+    from werrimbi_odom.fleet.spread import processors, spread
+
+    jobs = jobs or processors()
+    if jobs == 1 or len(tasks) < _FEW:
+        return map(told_of_task, tasks)
+    return spread(tasks, jobs, told_of_task, unusable_task)
+
+
+def _cache() -> Path:
+    """Where programs of this user keep what can be made again."""
+    default = Path.home() / ".cache" if sys.platform != "win32" else Path.home()
+    return Path(os.environ.get("XDG_CACHE_HOME") or default) / "werrimbi_odom" / "history"

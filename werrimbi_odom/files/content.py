@@ -1,0 +1,63 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a drive's path holds, as a mark of its content: the same bytes, the same mark."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+
+from werrimbi_odom.files.asked import BAG
+from werrimbi_odom.files.bag import SUFFIXES
+from werrimbi_odom.files.run_folder import REFERENCE, TICKS
+
+
+def files_of(path: Path) -> Iterator[Path]:
+    """What is read of a path."""
+    if path.is_file():
+        yield path
+    elif path.is_dir():
+        wanted = {TICKS, REFERENCE} if (path / TICKS).exists() else {BAG}
+        for each in sorted(path.iterdir()):
+            bag = TICKS not in wanted and any(suffix in each.name for suffix in SUFFIXES)
+            if each.name in wanted or bag:
+                yield each
+
+
+def mark_of(paths: Iterable[Path], *words: str) -> str:
+    """A mark of the files of some paths, and of some words.
+
+    Raises
+    ------
+    OSError
+        When a file cannot be read.
+    """
+    digest = hashlib.sha256("\0".join(words).encode())
+    for path in paths:
+        for file in files_of(path):
+            own = hashlib.sha256(file.read_bytes()).hexdigest()
+            digest.update(f"\0{file.name}\0{own}".encode())
+        digest.update(b"\0\0")
+    return digest.hexdigest()
+
+
+def written_at(path: Path) -> float:
+    """When a drive's files were last written, by the file system [s since 1970]; 0: no such file.
+
+    The first of them counts: what is added later does not make the drive younger.
+    """
+    return min((file.stat().st_mtime for file in files_of(path)), default=0.0)
+
+
+@cache
+def code_mark() -> str:
+    """A mark of all our source files, by their names."""
+    root = Path(str(files("werrimbi_odom")))
+    total = hashlib.sha256()
+    for path in sorted(root.rglob("*.py")):
+        total.update(f"{path.relative_to(root)}\0{path.stat().st_size}\0".encode())
+        total.update(path.read_bytes())
+    return total.hexdigest()[:12]

@@ -1,0 +1,275 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Changes between the drives of one diagnosis: beside everything that it found, and no effect.
+
+A change is told if the drives need it (`search`), if the parts of the drives before it agree with
+each other and those after it do (`lasting`), and if neither another effect nor a dependence on a
+measured variable explains as much. Held-out drives have no part in it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.effects.collection import find
+from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.changes.drives import Drives, drives_told
+from werrimbi_odom.inference.changes.numbers import (
+    MOUNT,
+    groups_of,
+    numbers_of,
+    value_at,
+)
+from werrimbi_odom.inference.changes.search import Segmented, Step, segmented
+from werrimbi_odom.inference.changes.shapes import Kind
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.lasting import lasting_columns
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.candidates import (
+    Candidate,
+    Score,
+    candidates,
+    scores,
+    signatures,
+)
+from werrimbi_odom.inference.fitting.design import Design, Point
+from werrimbi_odom.inference.fitting.knobs import CALIBRATION, STEP, Knob
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.linear import nuisance, score_test
+from werrimbi_odom.inference.rules import DATED, RIVAL, SURE
+from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.pose import Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Moved:
+    """A number that is another one from a drive on, or in one drive alone."""
+
+    what: str
+    """Name of the number: a multiplier, or effect.parameter."""
+    group: str
+    """What was changed with it, see `Group.what`."""
+    kind: Kind
+    last_before: str
+    """The last drive that was surely before it."""
+    from_run: str
+    """The likeliest drive at which it begins."""
+    surely_from: str
+    """The first drive that surely has it."""
+    before: float
+    after: float
+    before_std: float
+    after_std: float
+    unit: str
+    p_value: float
+
+
+@dataclass(frozen=True, slots=True)
+class Evidence:
+    """What the legs of all runs say of the numbers, each row an innovation."""
+
+    numbers: tuple[Knob, ...]
+    """Those that may change, the first of the columns."""
+    names: tuple[str, ...]
+    """Of all s columns."""
+    values: Floats
+    """(s,)"""
+    white: Floats
+    """(n,)"""
+    shared: Floats
+    """(n, s)"""
+    own: Floats
+    """(n, k)"""
+    run: NDArray[np.intp]
+    """Drive of each row."""
+
+    def drives(self, time: Floats) -> Drives:
+        """The same by drive."""
+        return drives_told(
+            self.names, self.values, self.white, self.shared, self.own, self.run, time
+        )
+
+    def columns(self, step: Step, place: NDArray[np.intp]) -> Floats:
+        """What a change does to the innovations, (n, d); `place`: of each drive in their order."""
+        size = step.shape.over(np.arange(place.size, dtype=np.float64))[place]
+        return np.asarray(size[self.run, None] * (self.shared @ step.group.directions))
+
+
+def changes_between(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[Moved, ...]:
+    """What differs between the fitted drives, in the order in which they were driven.
+
+    Beside everything found; where that leaves no change, beside calibration alone: a change that
+    explains more than any effect does is none of its.
+    """
+    runs, final = diagnosis.runs, diagnosis.final
+    if len(runs.runs) < 2:
+        return ()
+    found = _beside(diagnosis, final, diagnosis.remaining, effects)
+    first = diagnosis.rounds[0].before
+    if not found and first is not final:
+        found = _beside(diagnosis, first, diagnosis.rounds[0].dependences, effects)
+    return found
+
+
+def _beside(
+    diagnosis: Diagnosis,
+    fit: Fitted,
+    dependences: Sequence[Dependence],
+    effects: Sequence[Effect],
+) -> tuple[Moved, ...]:
+    """Changes beside a model, unless one more effect or a dependence explains as much.
+
+    Parameters
+    ----------
+    dependences
+        What the errors of the model go with.
+    """
+    runs = diagnosis.runs
+    evidence = evidence_of(runs, fit.point, diagnosis.kind, fit.design, fit.scatter)
+    order = driven_in_order([float(run.counters.time[0]) for run in runs.runs])
+    drives = evidence.drives(np.arange(order.size, dtype=np.float64)).chosen(order)
+    groups = groups_of([knob.name for knob in evidence.numbers], evidence.values, len(drives.names))
+    found = segmented(drives, groups, fit.price_of_one)
+    place = np.argsort(order)
+    steps = [step for step in found.steps if _lasts(runs, evidence, found.steps, step, place)]
+    if not steps:
+        return ()
+    worth = sum(step.gain - fit.price_of_one * (step.degrees + 1) for step in steps)
+    if worth < max(
+        _worth_of_effects(diagnosis, fit, effects) + RIVAL, _worth_of(dependences, fit), RIVAL
+    ):
+        return ()
+    if len(steps) < len(found.steps):
+        found = segmented(drives, [step.group for step in steps], fit.price_of_one)
+    names = [runs.runs[index].name for index in order.tolist()]
+    return moves_of(found, evidence.numbers, drives.names, names)
+
+
+def driven_in_order(starts: Sequence[float]) -> NDArray[np.intp]:
+    """Drives by their stamps where these are dates; else as they were given."""
+    if all(start > DATED for start in starts):
+        return np.argsort(np.array(starts), kind="stable")
+    return np.arange(len(starts))
+
+
+def evidence_of(
+    runs: Together, point: Point, kind: ReferenceKind, design: Design, scatter: float = 1.0
+) -> Evidence:
+    """The innovations at a point and their derivatives in all numbers.
+
+    Parameters
+    ----------
+    design
+        Of all that was fitted there.
+    scatter : float
+        Factor by which squares are too large.
+    """
+    robot = point.model.robot
+    held = {applied.name for applied in robot.effects}
+    white, flat = design.flat()
+    columns = {knob.name: flat[:, n] for n, (knob, run) in enumerate(design.columns) if run < 0}
+    own = flat[:, [n for n, (_, run) in enumerate(design.columns) if run >= 0]]
+    mounts = [find(name) for name in MOUNT if name not in held]
+    nulls = {}
+    seen = []
+    if mounts:
+        _, each = signatures(runs, point, kind, (), [Candidate(effect, {}) for effect in mounts])
+        for signature in each:
+            effect = signature.candidate.effect
+            if not signature.flat.any():
+                continue
+            seen.append(effect)
+            sizes = zip(effect.parameters.items(), signature.flat.T, strict=True)
+            for (key, item), column in sizes:
+                columns[f"{effect.name}.{key}"] = column / (STEP * item.scale)
+                nulls[f"{effect.name}.{key}"] = item.null
+    numbers = tuple(knob for knob in numbers_of(robot, seen) if knob.name in columns)
+    named = [knob.name for knob in numbers]
+    names = (*named, *(name for name in columns if name not in named))
+    size = np.sqrt(scatter)
+    return Evidence(
+        numbers,
+        names,
+        np.array([value_at(robot, name, nulls) for name in names]),
+        white / size,
+        np.stack([columns[name] for name in names], axis=-1) / size,
+        own / size,
+        np.repeat(runs.run_of_leg, 3),
+    )
+
+
+def _lasts(
+    runs: Together,
+    evidence: Evidence,
+    steps: Sequence[Step],
+    step: Step,
+    place: NDArray[np.intp],
+) -> bool:
+    """Whether the parts of the drives agree on a change, beside the others."""
+    others = [evidence.columns(other, place) for other in steps if other is not step]
+    beside = nuisance(np.concatenate([evidence.shared, evidence.own, *others], axis=-1))
+    column = evidence.columns(step, place)
+    free, rest = beside.residual(column), beside.residual(evidence.white)
+    test = score_test(column, free, rest)
+    return test is not None and lasting_columns(runs, test.gain, test.degrees, free, rest) < SURE
+
+
+def _worth_of_effects(diagnosis: Diagnosis, fit: Fitted, effects: Sequence[Effect]) -> float:
+    """What the best of the effects that a model does not hold is worth beside it."""
+    this = next((each for each in diagnosis.rounds if each.before is fit), None)
+    if this is not None:
+        return _worth_of(this.scores, fit)
+    knobs = (*CALIBRATION, *fit.knobs, *fit.point.model.nuisance_knobs)
+    known = {applied.name for applied in fit.point.model.robot.effects}
+    channels = set.intersection(*(set(run.counters.channels) for run in diagnosis.runs.runs))
+    tried = candidates(effects, known, channels, len(diagnosis.runs.runs))
+    return _worth_of(scores(diagnosis.runs, fit.point, diagnosis.kind, knobs, tried), fit)
+
+
+def _worth_of(found: Sequence[Score] | Sequence[Dependence], fit: Fitted) -> float:
+    worth = (each.gain / fit.scatter - fit.price_of_one * each.degrees for each in found)
+    return max(worth, default=0.0)
+
+
+def moves_of(
+    found: Segmented, numbers: Sequence[Knob], names: Sequence[str], runs: Sequence[str]
+) -> tuple[Moved, ...]:
+    """Each number of each change, once for a drive.
+
+    Parameters
+    ----------
+    runs
+        Names of the drives, in their order.
+    """
+    units = {knob.name: knob.unit for knob in numbers}
+    told: dict[tuple[str, int], Moved] = {}
+    for step in found.steps:
+        first = step.shape.first
+        before = max(first - 1, 0)
+        after = len(runs) - 1 if step.shape.kind == "trend" else first
+        if step.shape.kind == "trend":
+            before = first
+        for name in step.group.numbers:
+            index = names.index(name)
+            spread = np.sqrt(np.maximum(found.spread[[before, after], index, index], 0.0))
+            moved = Moved(
+                name,
+                step.group.what,
+                step.shape.kind,
+                runs[max(step.span[0] - 1, 0)],
+                runs[first],
+                runs[step.span[1]],
+                float(found.levels[before, index]),
+                float(found.levels[after, index]),
+                float(spread[0]),
+                float(spread[1]),
+                units.get(name, ""),
+                step.p_value,
+            )
+            told.setdefault((name, first), moved)
+    return tuple(told.values())

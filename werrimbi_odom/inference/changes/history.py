@@ -1,0 +1,342 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Drives of months: what each tells of the robot's numbers, and how these went over the time.
+
+Each drive is fitted by itself, once, at its own point; what it tells is kept as an information
+matrix, and a year is put together from those. Numbers scatter from drive to drive more than the
+drives' own noise lets them (warmth, load, another floor); how much, the differences of drives that
+follow each other say, whose median no change and no trend moves. What a single drive is told to be
+is pooled with those around it by that scatter (empirical Bayes).
+
+Sources: Efron and Morris, J. Am. Stat. Assoc. 68, 1973 (pooling).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.effects.collection import find
+from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference.chances import chi2_above, fisher_above
+from werrimbi_odom.inference.changes.between import Moved, evidence_of, moves_of
+from werrimbi_odom.inference.changes.drives import Drives
+from werrimbi_odom.inference.changes.numbers import MOUNT, Group, groups_of, numbers_of, value_at
+from werrimbi_odom.inference.changes.search import Segmented, levels_of, segmented
+from werrimbi_odom.inference.changes.shapes import Kind, rows_of
+from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob
+from werrimbi_odom.inference.fitting.prediction import predict_all
+from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.legs.cutting import match_finely, stated
+from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.rules import (
+    CALIBRATE_AGAIN,
+    MOST_CHANGES,
+    PENALTY_FLOOR,
+    SCATTER_DRIVES,
+    SURE,
+    SURE_OF_A_CHANGE,
+)
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+KINDS: tuple[Kind, ...] = ("step", "alone", "trend")
+_MEDIAN_CHI2_1 = 0.4549
+
+
+@dataclass(frozen=True, slots=True)
+class DriveTold:
+    """What one drive tells."""
+
+    names: tuple[str, ...]
+    """Of s numbers."""
+    information: Floats
+    """(s, s)"""
+    weighted: Floats
+    """Information times estimate, (s,)."""
+    begin: float
+    """First stamp of the ticks [s]."""
+    data: int
+    """Measured coordinates that count."""
+    way: float
+    """Driven [m]."""
+
+
+@dataclass(frozen=True)
+class Number:
+    """How one number went over R drives."""
+
+    name: str
+    unit: str
+    given: float
+    """In the robot file."""
+    own: Floats
+    """By each drive alone, (R,); NaN where it does not tell it."""
+    own_std: Floats
+    pooled: Floats
+    """By each drive with those around it."""
+    pooled_std: Floats
+    level: Floats
+    """Between the changes."""
+    level_std: Floats
+    scatter: float
+    """Standard deviation from drive to drive, beyond the drives' own noise."""
+
+
+@dataclass(frozen=True)
+class OffNow:
+    """A number of the calibration that is another one now than in the robot file."""
+
+    name: str
+    value: float
+    std: float
+    given: float
+
+
+@dataclass(frozen=True)
+class Course:
+    """How the numbers of a robot went."""
+
+    numbers: tuple[Number, ...]
+    changes: tuple[Moved, ...]
+    off: tuple[OffNow, ...]
+    """What the robot file has otherwise than the last drives."""
+
+
+def drive_told(
+    run: Run,
+    robot: Robot,
+    kind: ReferenceKind,
+    leg: float,
+    limits: EncoderLimits | None,
+    sigma_xy: float | None,
+    sigma_yaw: float | None,
+) -> DriveTold:
+    """Fit one drive by itself.
+
+    Raises
+    ------
+    InputError
+        When it has no usable reference or no ticks.
+    """
+    laid = together(match_finely([looked_at(run, robot, limits)], robot, leg, limits))
+    sigma = (
+        sigma_xy or stated(laid.runs, "sigma_xy", kind),
+        sigma_yaw or stated(laid.runs, "sigma_yaw", kind),
+    )
+    fit = first_fit(laid, robot, kind, sigma)
+    evidence = evidence_of(laid, fit.point, kind, fit.design, fit.scatter)
+    told = evidence.drives(np.zeros(1))
+    way = float(np.sum(predict_all(fit.point.model, laid).length[~laid.gap]))
+    begin = float(laid.runs[0].counters.time[0])
+    return DriveTold(told.names, told.information[0], told.weighted[0], begin, laid.data, way)
+
+
+def course_of(told: Sequence[DriveTold], robot: Robot, time: Floats) -> Course:
+    """Put the drives together.
+
+    Parameters
+    ----------
+    told
+        In the order of the drives.
+    time : ndarray, shape (R,)
+        When they were, rising [s].
+    """
+    knobs = _numbers(told, robot)
+    names = tuple(knob.name for knob in knobs)
+    given = np.array([value_at(robot, name, _NULLS) for name in names])
+    drives = _laid(told, names, time)
+    limits = np.array([knob.undetermined for knob in knobs])
+    own = _alone(drives, given, limits)
+    std = np.sqrt(np.einsum("rii->ri", own.spread))
+    heard = std < 0.5 * limits
+    scatter = np.array([_scatter(own.value[on, n], std[on, n]) for n, on in enumerate(heard.T)])
+    wide = drives.with_scatter(scatter)
+    price = max(PENALTY_FLOOR, math.log(max(sum(each.data for each in told), 2)))
+    groups = groups_of(names, given, given.size)
+    most = MOST_CHANGES if len(told) >= SCATTER_DRIVES else 1
+    found = segmented(wide, groups, price, KINDS, most)
+    lasting = _beyond_scatter(wide, found, own, scatter)
+    if len(lasting) < len(found.steps):
+        found = segmented(wide, lasting, price, KINDS) if lasting else _constant(wide)
+    values = Values(given[None], np.zeros((1, given.size, given.size)))
+    return Course(
+        tuple(
+            Number(name, unit, float(there[0][0]), *alone, *pooled, *level, size)
+            for (name, unit, size), there, alone, pooled, level in zip(
+                _titles(knobs, scatter, given),
+                _shown(names, values),
+                _silenced(_shown(names, own), [*limits, *limits[1:3]]),
+                _shown(names, _pooled(drives, found, scatter)),
+                _shown(names, Values(found.levels, found.spread)),
+                strict=True,
+            )
+            if np.isfinite(alone[0]).any()
+        ),
+        moves_of(found, knobs, names, [str(number) for number in range(len(told))]),
+        _off(names, given, found, heard),
+    )
+
+
+class Values(NamedTuple):
+    """Of s numbers in each of R drives."""
+
+    value: Floats
+    """(R, s)"""
+    spread: Floats
+    """Their covariance, (R, s, s)."""
+
+
+def _numbers(told: Sequence[DriveTold], robot: Robot) -> tuple[Knob, ...]:
+    """Those that any drive knows of."""
+    known = {name for each in told for name in each.names}
+    held = {applied.name for applied in robot.effects}
+    mounts = [find(name) for name in MOUNT if name not in held]
+    return tuple(knob for knob in numbers_of(robot, mounts) if knob.name in known)
+
+
+def _laid(told: Sequence[DriveTold], names: Sequence[str], time: Floats) -> Drives:
+    """All drives on the same numbers; what a drive does not know of, it tells nothing of."""
+    information = np.zeros((len(told), len(names), len(names)))
+    weighted = np.zeros((len(told), len(names)))
+    for index, each in enumerate(told):
+        there = [number for number, name in enumerate(names) if name in each.names]
+        own = [each.names.index(names[number]) for number in there]
+        information[np.ix_([index], there, there)] = each.information[np.ix_(own, own)]
+        weighted[index, there] = each.weighted[own]
+    return Drives(tuple(names), information, weighted, time)
+
+
+def _alone(drives: Drives, given: Floats, limits: Floats) -> Values:
+    """Each drive's own estimate; what it does not tell stays near the given, widely."""
+    before = np.diag(limits**-2.0)
+    spread = np.asarray(np.linalg.inv(drives.information + before))
+    values = np.asarray((spread @ (drives.weighted + before @ given)[..., None])[..., 0])
+    return Values(values, spread)
+
+
+def _silenced(
+    shown: Sequence[tuple[Floats, Floats]], limits: Sequence[float]
+) -> list[tuple[Floats, Floats]]:
+    """Not a number where a drive tells less than is known beforehand."""
+    heard = [std < 0.5 * limit for (_, std), limit in zip(shown, limits, strict=True)]
+    return [
+        (np.where(told, value, np.nan), np.where(told, std, np.nan))
+        for (value, std), told in zip(shown, heard, strict=True)
+    ]
+
+
+def _scatter(values: Floats, std: Floats) -> float:
+    """Standard deviation from drive to drive, by the median of successive differences."""
+    if values.size < SCATTER_DRIVES:
+        return 0.0
+    squares = np.diff(values) ** 2
+    noise = std[1:] ** 2 + std[:-1] ** 2
+
+    def lacking(size: float) -> float:
+        return float(np.median(squares / (noise + 2.0 * size**2))) - _MEDIAN_CHI2_1
+
+    low, high = 0.0, math.sqrt(float(np.max(squares)))
+    if lacking(low) <= 0.0:
+        return 0.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if lacking(middle) > 0.0 else (low, middle)
+    return high
+
+
+def _beyond_scatter(drives: Drives, found: Segmented, own: Values, scatter: Floats) -> list[Group]:
+    """Groups of the changes that stand out of what the drives differ by otherwise: Fisher's F.
+
+    The scatter is an estimate by some drives, and another one for each number; so what a number
+    differs by about its level counts, with as many degrees of freedom as there are drives to tell.
+    """
+    lasting = []
+    for step in found.steps:
+        usual, free = 1.0, math.inf
+        for name in step.group.numbers:
+            number = drives.names.index(name)
+            spread = own.spread[:, number, number] + scatter[number] ** 2
+            about = (own.value[:, number] - found.levels[:, number]) ** 2 / spread
+            moved = sum(each.degrees for each in found.steps if name in each.group.numbers)
+            left = drives.count - 1 - moved
+            if left < 1:
+                return []
+            usual, free = max(usual, float(np.sum(about)) / left), min(free, left)
+        worth = step.gain / step.degrees / usual
+        if found.tried * fisher_above(worth, step.degrees, free) < SURE_OF_A_CHANGE:
+            lasting.append(step.group)
+    return lasting
+
+
+def _constant(drives: Drives) -> Segmented:
+    return Segmented((), *levels_of(rows_of(drives), ()), 0)
+
+
+def _pooled(drives: Drives, found: Segmented, scatter: Floats) -> Values:
+    """Each drive's numbers, drawn towards the level by as much as it tells less than that does."""
+    wide = np.diag(scatter**2)
+    shrunk = np.linalg.inv(np.eye(scatter.size) + wide @ drives.information)
+    level = found.levels[..., None]
+    news = drives.weighted[..., None] - drives.information @ level
+    own = shrunk @ wide
+    return Values((level + own @ news)[..., 0], own + found.spread)
+
+
+def _titles(knobs: Sequence[Knob], scatter: Floats, given: Floats) -> list[tuple[str, str, float]]:
+    """Names, units and scatter of all that is shown."""
+    found = [(knob.name, knob.unit, float(size)) for knob, size in zip(knobs, scatter, strict=True)]
+    left, right = (scatter[number] / given[number] for number in (1, 2))
+    both, mean = math.hypot(float(left), float(right)), 0.5 * float(given[1] + given[2])
+    return [
+        *found,
+        ("unequal_wheel_radii", "", both),
+        ("wheel_radius_scale", "", 0.5 * both * mean),
+    ]
+
+
+def _shown(names: Sequence[str], values: Values) -> list[tuple[Floats, Floats]]:
+    """Values and standard deviations of the numbers, and of the radii's ratio and mean."""
+    std = np.sqrt(np.maximum(np.einsum("rii->ri", values.spread), 0.0))
+    found = [(values.value[:, number], std[:, number]) for number in range(len(names))]
+    where = [names.index(name) for name in MULTIPLIERS[1:]]
+    left, right = (values.value[:, number] for number in where)
+    spread = values.spread[:, where][:, :, where]
+    ratio = right / left
+    for value, slopes in (
+        (ratio, np.stack([-ratio / left, 1.0 / left], axis=-1)),
+        (0.5 * (left + right), np.full((left.size, 2), 0.5)),
+    ):
+        variance = np.einsum("ri,rij,rj->r", slopes, spread, slopes)
+        found.append((value, np.sqrt(np.maximum(variance, 0.0))))
+    return found
+
+
+def _off(
+    names: Sequence[str], given: Floats, found: Segmented, heard: NDArray[np.bool_]
+) -> tuple[OffNow, ...]:
+    """Sizes of the robot file that the last drives do not have, by more than is worth a word."""
+    values, spread = found.levels[-1], found.spread[-1]
+    off = []
+    for number, name in enumerate(names):
+        if name not in MULTIPLIERS or not heard[:, number].any():
+            continue
+        away, variance = values[number] - given[number], float(spread[number, number])
+        chance = len(MULTIPLIERS) * chi2_above(float(away**2) / max(variance, 1e-30), 1)
+        if chance < SURE and abs(away / given[number]) > CALIBRATE_AGAIN:
+            off.append(
+                OffNow(name, float(values[number]), math.sqrt(variance), float(given[number]))
+            )
+    return tuple(off)
+
+
+_NULLS: Mapping[str, float] = {
+    f"{name}.{key}": null for name in MOUNT for key, null in find(name).nulls.items()
+}

@@ -1,0 +1,104 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What may change on a robot, and what changes together because one thing was done to it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from werrimbi_odom.inference.fitting.directions import CALIBRATED
+from werrimbi_odom.inference.fitting.knobs import (
+    CALIBRATION,
+    MULTIPLIERS,
+    Knob,
+    knobs_of,
+    value_of,
+)
+from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+YAW, ARM = "reference_yaw_offset", "reference_lever_arm"
+MOUNT = (YAW, ARM)
+"""Effects that say how the reference is mounted: it may be mounted anew whatever the file holds."""
+
+
+@dataclass(frozen=True, slots=True)
+class Group:
+    """Numbers that change together: one cause on the robot."""
+
+    what: str
+    """left_wheel, right_wheel, both_wheels, wheel_base, mount; or an effect."""
+    numbers: tuple[str, ...]
+    """Names of those that move."""
+    directions: Floats
+    """Moves of all numbers for a unit of each free one, (s, d)."""
+
+    @property
+    def degrees(self) -> int:
+        """How many numbers it takes."""
+        return int(self.directions.shape[1])
+
+
+def numbers_of(robot: Robot, mounts: Sequence[Effect]) -> tuple[Knob, ...]:
+    """All numbers of a robot that may change: calibration, mount, sizes of the effects it holds.
+
+    Parameters
+    ----------
+    mounts
+        The effects of `MOUNT` that the reference can show and the robot does not hold.
+    """
+    held = [applied.effect for applied in robot.effects if not applied.effect.is_mistake]
+    return (*CALIBRATION, *(knob for effect in (*held, *mounts) for knob in sizes_of(effect)))
+
+
+def sizes_of(effect: Effect) -> tuple[Knob, ...]:
+    """Parameters of an effect that are sizes: no shape, and no phase of each run's own."""
+    if effect.name in CALIBRATED:
+        return ()  # the calibration by another name
+    return tuple(
+        knob
+        for knob in knobs_of(effect)
+        if not knob.per_run and not effect.parameters[knob.name.rpartition(".")[2]].tries
+    )
+
+
+def value_at(robot: Robot, name: str, nulls: Mapping[str, float]) -> float:
+    """A number of a robot; of an effect that it does not hold, the null value."""
+    try:
+        return value_of(robot, name)
+    except KeyError:
+        return nulls.get(name, 0.0)
+
+
+def groups_of(names: Sequence[str], values: Floats, size: int) -> tuple[Group, ...]:
+    """What may change for one reason, the simplest first.
+
+    Parameters
+    ----------
+    names
+        Of the numbers that may change, the first of all.
+    values : ndarray, shape (s,)
+        Where they stand: both wheels change by the same share.
+    size : int
+        How many numbers there are in all, s.
+    """
+    found = []
+    columns = np.eye(size)
+    base, left, right = (names.index(name) for name in MULTIPLIERS)
+    for what, index in (("left_wheel", left), ("right_wheel", right), ("wheel_base", base)):
+        found.append(Group(what, (names[index],), columns[:, [index]]))
+    alike = columns[:, [left]] * values[left] + columns[:, [right]] * values[right]
+    found.append(Group("both_wheels", (names[left], names[right]), alike))
+    effects = dict.fromkeys(name.rpartition(".")[0] for name in names if "." in name)
+    for effect in effects:
+        own = [index for index, name in enumerate(names) if name.rpartition(".")[0] == effect]
+        what = "mount" if effect in MOUNT else effect
+        found.append(Group(what, tuple(names[index] for index in own), columns[:, own]))
+    mount = [index for index, name in enumerate(names) if name.rpartition(".")[0] in MOUNT]
+    if len({names[index].rpartition(".")[0] for index in mount}) > 1:
+        found.append(Group("mount", tuple(names[index] for index in mount), columns[:, mount]))
+    return tuple(found)

@@ -1,0 +1,220 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Which changes the drives need: one after the other, their drives found anew, the needless left.
+
+Every group of numbers may take every shape at every drive. The one that earns most beyond its price
+is taken, then the next beside it; at the end each is asked again beside all others.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from werrimbi_odom.inference.chances import chi2_above
+from werrimbi_odom.inference.changes.drives import Drives
+from werrimbi_odom.inference.changes.numbers import Group
+from werrimbi_odom.inference.changes.shapes import (
+    Kind,
+    Rows,
+    Shape,
+    first_drives,
+    gains,
+    rows_of,
+)
+from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
+from werrimbi_odom.inference.rules import MOST_CHANGES, RIVAL, SURE, WHICH_DRIVE
+from werrimbi_odom.model.pose import Floats
+
+_FEW = 5
+"""Changes up to which all are looked for anew as soon as there is one more; of more at the end."""
+
+
+@dataclass(frozen=True, slots=True)
+class Step:
+    """A group that changes over the drives."""
+
+    group: Group
+    shape: Shape
+    gain: float = 0.0
+    """Fall of the squares that it alone brings, beside all others."""
+    degrees: int = 1
+    p_value: float = 1.0
+    """How often chance would do as much, all that was tried counted."""
+    span: tuple[int, int] = (0, 0)
+    """The first and the last drive at which it may as well begin."""
+
+
+@dataclass(frozen=True)
+class Segmented:
+    """How the numbers went over the drives."""
+
+    steps: tuple[Step, ...]
+    """In the order of the drives."""
+    levels: Floats
+    """Each number in each drive, but for what scatters from drive to drive; (R, s)."""
+    spread: Floats
+    """Covariance of them, (R, s, s)."""
+    tried: int
+    """Changes that were looked at."""
+
+
+def segmented(
+    drives: Drives,
+    groups: Sequence[Group],
+    price: float,
+    kinds: Sequence[Kind] = ("step", "alone"),
+    most: int = MOST_CHANGES,
+) -> Segmented:
+    """Find the changes.
+
+    Parameters
+    ----------
+    drives
+        In the order in which they were driven.
+    price : float
+        What each free number must lower the squares by; the drive at which it changes is one too.
+    most : int
+        Changes that are looked for.
+    """
+    rows = rows_of(drives)
+    tried = sum(len(first_drives(kind, drives.count)) for kind in kinds) * len(groups)
+    steps: list[Step] = []
+    while len(steps) < most:
+        best = _best(rows, groups, kinds, steps, price)
+        if best is None or not _earned(best, price, tried):
+            break
+        steps.append(best)
+        if len(steps) <= _FEW:
+            steps = _refined(rows, groups, kinds, steps, price)
+    steps = _refined(rows, groups, kinds, steps, price)
+    while steps:
+        steps = [_beside_others(rows, steps, number) for number in range(len(steps))]
+        least = min(steps, key=lambda step: _worth(step, price))
+        if _earned(least, price, tried):
+            break
+        steps.remove(least)
+    told = sorted(
+        (
+            replace(step, p_value=_chance(step, tried), span=_span(rows, steps, number))
+            for number, step in enumerate(steps)
+        ),
+        key=lambda step: (step.shape.first, -step.gain),
+    )
+    return Segmented(tuple(told), *levels_of(rows, told), tried)
+
+
+def levels_of(rows: Rows, steps: Sequence[Step]) -> tuple[Floats, Floats]:
+    """Numbers in each drive (R, s) and their covariance (R, s, s), with these changes."""
+    columns = _columns(rows, steps)
+    size = np.sqrt(np.sum(columns**2, axis=0))
+    unit = np.where(size > 0.0, size, 1.0)
+    inverse = np.linalg.pinv((columns / unit).T @ (columns / unit), rcond=1e-12, hermitian=True)
+    inverse = inverse / np.outer(unit, unit)
+    found = inverse @ (columns.T @ rows.seen.ravel())
+    count, width = rows.seen.shape
+    moves = np.concatenate(
+        [
+            np.repeat(np.eye(width)[None], count, axis=0),
+            *(step.shape.over(rows.time)[:, None, None] * step.group.directions for step in steps),
+        ],
+        axis=-1,
+    )
+    return np.asarray(moves @ found), np.asarray(moves @ inverse @ moves.swapaxes(-1, -2))
+
+
+def _best(
+    rows: Rows,
+    groups: Sequence[Group],
+    kinds: Sequence[Kind],
+    steps: Sequence[Step],
+    price: float,
+) -> Step | None:
+    beside = _beside(rows, steps)
+    rest = beside.residual(rows.seen.ravel())
+    found: list[Step] = []
+    for group in groups:
+        for kind in kinds:
+            each = gains(rows, beside, rest, group.directions, kind)
+            if not each.gain.size:
+                continue
+            worth = each.gain - price * each.degrees - _doubt(kind)
+            index = int(np.argmax(worth))
+            if each.degrees[index] > 0:
+                shape = Shape(kind, each.first[index])
+                found.append(Step(group, shape, float(each.gain[index]), int(each.degrees[index])))
+    return max(found, key=lambda step: _worth(step, price), default=None)
+
+
+def _worth(step: Step, price: float) -> float:
+    return step.gain - price * step.degrees - _doubt(step.shape.kind)
+
+
+def _doubt(kind: Kind) -> float:
+    """What a trend must gain more than a step: of few drives the one looks like the other."""
+    return RIVAL if kind == "trend" else 0.0
+
+
+def _refined(
+    rows: Rows,
+    groups: Sequence[Group],
+    kinds: Sequence[Kind],
+    steps: list[Step],
+    price: float,
+) -> list[Step]:
+    """The earlier changes looked for anew beside the others: the first was found without them."""
+    if len(steps) < 2:
+        return steps
+    for number in range(len(steps)):
+        others = [step for index, step in enumerate(steps) if index != number]
+        best = _best(rows, groups, kinds, others, price)
+        own = _beside_others(rows, steps, number)
+        if best is not None and _worth(best, price) > _worth(own, price):
+            steps[number] = best
+    return steps
+
+
+def _beside_others(rows: Rows, steps: Sequence[Step], number: int) -> Step:
+    step = steps[number]
+    beside = _beside(rows, [each for index, each in enumerate(steps) if index != number])
+    column = rows.column(step.shape, step.group.directions)
+    rest = beside.residual(rows.seen.ravel())
+    test = score_test(column, beside.residual(column), rest)
+    return replace(step, gain=test.gain, degrees=test.degrees) if test else replace(step, gain=0.0)
+
+
+def _span(rows: Rows, steps: Sequence[Step], number: int) -> tuple[int, int]:
+    """Where the likelihood of a change is nearly as high as at its best drive."""
+    step = steps[number]
+    beside = _beside(rows, [each for index, each in enumerate(steps) if index != number])
+    rest = beside.residual(rows.seen.ravel())
+    each = gains(rows, beside, rest, step.group.directions, step.shape.kind)
+    if step.shape.kind == "alone" or step.shape.first not in each.first:
+        return step.shape.first, step.shape.first
+    place = step.shape.first - each.first.start
+    near = each.gain >= each.gain[place] - WHICH_DRIVE
+    low = high = place
+    while low > 0 and near[low - 1]:
+        low -= 1
+    while high + 1 < near.size and near[high + 1]:
+        high += 1
+    return each.first[low], each.first[high]
+
+
+def _earned(step: Step, price: float, tried: int) -> bool:
+    return _worth(step, price) > price and _chance(step, tried) < SURE
+
+
+def _chance(step: Step, tried: int) -> float:
+    return min(1.0, tried * chi2_above(step.gain, step.degrees))
+
+
+def _beside(rows: Rows, steps: Sequence[Step]) -> Nuisance:
+    return nuisance(_columns(rows, steps))
+
+
+def _columns(rows: Rows, steps: Sequence[Step]) -> Floats:
+    taken = [rows.column(step.shape, step.group.directions) for step in steps]
+    return np.concatenate([rows.constant, *taken], axis=-1)

@@ -1,0 +1,178 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The page of a history: words, and a panel for each number over the dates."""
+
+from __future__ import annotations
+
+from datetime import datetime, timezone
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from werrimbi_odom.inference.changes.dated import History
+from werrimbi_odom.inference.changes.history import Number
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.document import Document, Shown
+from werrimbi_odom.report.history.words import TITLES, dated_names, table_of, there, words_of
+from werrimbi_odom.report.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    ORANGE,
+    escaped,
+    paled,
+    plain,
+    spread_and_extremes,
+)
+
+if TYPE_CHECKING:
+    import plotly.graph_objects as go
+
+_HEIGHT = 190
+"""Of a panel."""
+_UNSURE = 5.0
+"""Times the usual standard deviation of a number beyond which a drive's own is not drawn."""
+
+
+def document_of(history: History) -> Document:
+    """Everything that is told."""
+    some = bool(history.course.numbers)
+    return Document(
+        title="What changed" if history.course.changes else "Nothing changed",
+        words=words_of(history),
+        tables=[table_of(history)] if some else (),
+        draw=lambda: _figures(history) if some else (),
+    )
+
+
+def _figures(history: History) -> list[Shown]:
+    return [
+        Shown(
+            "history",
+            "Each number over the drives",
+            "Dots are what each drive alone says, with two standard deviations; the line is "
+            "what the robot was between the changes; dashed, the robot file. A number is "
+            "changed where the line steps, at a dotted line.",
+            {"": history_figure(history)},
+        )
+    ]
+
+
+def history_figure(history: History) -> go.Figure:
+    """Panels above each other, with one axis of dates."""
+    from plotly.subplots import make_subplots
+
+    numbers = history.course.numbers
+    titles = [f"{TITLES.get(each.name, escaped(each.name))}{_unit(each)}" for each in numbers]
+    figure = make_subplots(
+        rows=len(numbers),
+        cols=1,
+        shared_xaxes=True,
+        vertical_spacing=0.25 / len(numbers),
+        subplot_titles=titles,
+    )
+    dates = _dates(history)
+    names = [escaped(name) for name in dated_names(history)]
+    for row, number in enumerate(numbers, start=1):
+        _panel(figure, row, number, history, dates, names)
+    figure = plain(figure, height=120 + _HEIGHT * len(numbers))
+    figure.update_xaxes(showticklabels=True)
+    return figure.update_layout(legend={"y": 1.0 + 40.0 / figure.layout.height})
+
+
+def _panel(
+    figure: go.Figure,
+    row: int,
+    number: Number,
+    history: History,
+    dates: list[Any],
+    names: list[str],
+) -> None:
+    factor, offset = _scale(number)
+    first = row == 1
+    std = number.own_std
+    usual = float(np.nanmedian(std))
+    told = np.flatnonzero(np.isfinite(number.own) & ~(std > _UNSURE * usual))
+    told = told[spread_and_extremes(number.own[told] - number.level[told])]
+
+    def drawn(values: Floats) -> list[float]:
+        return [float(factor * (value - offset)) for value in values]
+
+    at = {"row": row, "col": 1}
+    figure.add_scatter(
+        x=[dates[index] for index in told],
+        y=drawn(number.own[told]),
+        error_y={
+            "array": [2.0 * factor * float(each) for each in std[told]],
+            "color": paled(BLUE, 0.4),
+            "thickness": 1,
+            "width": 0,
+        },
+        mode="markers",
+        marker={"color": BLUE, "size": 5},
+        name="a drive by itself",
+        legendgroup="own",
+        showlegend=first,
+        text=[names[index] for index in told],
+        hovertemplate="%{text}<br>%{y:.4g}<extra></extra>",
+        **at,
+    )
+    figure.add_scatter(
+        x=dates,
+        y=drawn(number.level),
+        mode="lines",
+        line={"color": ORANGE, "width": 2, "shape": "hv"},
+        name="between the changes",
+        legendgroup="level",
+        showlegend=first,
+        hoverinfo="skip",
+        **at,
+    )
+    for value, colour, name in (
+        (number.given, GREY, "robot file"),
+        *(((there(history, number), GREEN, "the other file"),) if history.like else ()),
+    ):
+        figure.add_scatter(
+            x=[dates[0], dates[-1]],
+            y=drawn(np.array([value, value])),
+            mode="lines",
+            line={"color": colour, "width": 1, "dash": "dash"},
+            name=name,
+            legendgroup=name,
+            showlegend=first,
+            hoverinfo="skip",
+            **at,
+        )
+    changes = (move for move in history.course.changes if _moves(move.what, number.name))
+    changed = {int(move.from_run) for move in changes}
+    for index in sorted(changed):
+        figure.add_vline(x=dates[index], line={"color": GREY, "width": 1, "dash": "dot"}, **at)
+
+
+def _moves(what: str, name: str) -> bool:
+    """Whether a change of one number is one of another, too."""
+    of_radii = name in ("unequal_wheel_radii", "wheel_radius_scale")
+    return what == name or ("radius_multiplier" in what and of_radii)
+
+
+def _scale(number: Number) -> tuple[float, float]:
+    """Factor and origin in which a number is drawn: multipliers in % off the robot file."""
+    if "." not in number.name:
+        return 100.0 / number.given, number.given
+    return (1e3, 0.0) if number.unit in ("m", "rad", "s") else (1.0, 0.0)
+
+
+def _unit(number: Number) -> str:
+    if "." not in number.name:
+        return " [% off the robot file]"
+    unit = {"m": "mm", "rad": "mrad", "s": "ms"}.get(number.unit, number.unit)
+    return f" [{unit}]" if unit else ""
+
+
+def _dates(history: History) -> list[Any]:
+    if any(drive.date_from == "order" for drive in history.drives):
+        return list(range(1, len(history.drives) + 1))
+    return [
+        datetime.fromtimestamp(drive.date, timezone.utc).strftime("%Y-%m-%d %H:%M:%S")
+        for drive in history.drives
+    ]
