@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from werrimbi_odom.effects.collection import all_effects
+from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.workbench.work import packed, unpacked
 
@@ -49,3 +50,19 @@ def test_what_both_have_is_not_sent() -> None:
     data = packed(("result", mine), {"drives": mine})
     assert len(data) < 1000
     assert unpacked(data, collection, {"drives": theirs})[1] is theirs
+
+
+def test_what_is_remembered_of_laws_stays_behind() -> None:
+    """A diagnosis with a candidate's prediction in memory could not be sent: no verdict came."""
+    collection = all_effects([])
+    whole, few = np.zeros(2, dtype=np.intp), np.zeros((1, 3))
+    runs = Together(
+        runs=(), steps=whole, legs=whole, begin=whole[:1], end=whole[:1], run_of_leg=whole[:1],
+        start=few, finish=few, intervals=few[0, :1], duration=few[0, :1],
+        gap=np.zeros(1, dtype=np.bool_),
+    )  # fmt: skip
+    law = collection.find("castor_kick").apply
+    assert runs.of_model(runs, (law, 0.1), lambda: 1.0) == 1.0
+    arrived = unpacked(packed(runs, {}), collection, {})
+    np.testing.assert_array_equal(arrived.finish, runs.finish)
+    assert arrived.of_model(arrived, (law, 0.1), lambda: 2.0) == 2.0

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Sequence
 from dataclasses import dataclass, field, fields
+from functools import partial
 from typing import Any, TypeVar
 
 import numpy as np
@@ -66,6 +67,15 @@ class Together:
     _of_models: list[tuple[object, dict[Hashable, Any]]] = field(default_factory=list)
     _of_steps: list[tuple[object, dict[Hashable, Any]]] = field(default_factory=list)
     _latest: list[tuple[tuple[object, ...], Any]] = field(default_factory=list)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For another process: without what is remembered, some of it by laws (functions)."""
+        own = {
+            item.name: getattr(self, item.name)
+            for item in fields(self)
+            if not item.name.startswith("_")
+        }
+        return partial(Together, **own), ()
 
     @property
     def count(self) -> int:
