@@ -15,7 +15,8 @@ Reading order
 5. `inference.fitting`, `inference.comparison`: legs, predictions, fits; then `inference.diagnosis`:
    `diagnosis.diagnose` is the search for what is missing, told in one function.
 6. `api`: the verbs, for `import werrimbi_odom as wo`; `cli`, `workbench` and `fleet` are shells
-   over them, of one robot or of many; `files`, `ros` and `report` read, write and show.
+   over them, of one robot or of many; `files`, `ros` and `report` read, write and show. `scans`
+   makes poses of a lidar's scans, which are a reference like any other.
 7. `simulation`: a robot in a physics engine; imports nothing of ours, so that tests are honest.
 """
 

@@ -14,6 +14,7 @@ import pytest
 
 from test.scans.drives import in_circles
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.contents import contents_of
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.run import Run
@@ -99,7 +100,8 @@ def test_scans_give_poses_of_the_base(tmp_path: Path, ros: Any, robot: Any) -> N
     assert run.reference.sigma_xy is not None
     assert 3e-4 < np.median(run.reference.sigma_xy) < 5e-3
     assert "150 mm ahead of and 50 mm right of it" in " ".join(run.notes)
-    (source,) = contents_of(bag).independent
+    with opened_bag(bag) as opened:
+        (source,) = contents_of(opened).independent
     assert (source.name, source.measures, source.child) == ("/scan", "poses", "laser")
 
 

@@ -84,6 +84,8 @@ class LidarCollector:
             self.damage = (f"the path by {self._name} is in pieces: {_unmatched(found)}",)
         told = f"{self._mounted(mount)}; {_in_words(found, sigma_xy, sigma_yaw)}"
         x, y, yaw = (np.ascontiguousarray(each) for each in poses.T)
+        # Not local_map: in a room the map walks by less than a match errs (docs/scans.md), and a
+        # wander that is fitted takes what a lidar mounted askew does for its own.
         reference = Reference(found.time, x, y, yaw, sigma_xy, sigma_yaw, kind="absolute")
         return reference, told
 
