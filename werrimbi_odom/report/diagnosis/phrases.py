@@ -57,6 +57,8 @@ def also(told: Told, name: str) -> list[str]:
     own = own_scale_instead(name, told.diagnosis.final, told.diagnosis.given, told.diagnosis.runs)
     if own:
         what += f" Headings alone cannot tell it from {listed(own, 'or')}."
+    if effect is not None and effect.twins:
+        what += f" To the reference it is one with {listed(effect.twins, 'or')}, on any drive."
     return [f"- Also {name}: {size}{sure}.{what}"]
 
 
