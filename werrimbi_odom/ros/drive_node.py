@@ -171,6 +171,7 @@ class DriveNode(Node):  # type: ignore[misc]
         response.success, response.message = True, f"it drives. {self._words()}"
         self.get_logger().info(response.message)
         self._told = "driving"
+        self._report()
         return response
 
     def _on_stop(self, _: Any, response: Any) -> Any:

@@ -40,7 +40,7 @@ if TYPE_CHECKING:
 
 TICK = 0.005
 """Seconds of the wall between two looks at the time."""
-BEHIND = 0.1
+BEHIND = 0.5
 """Seconds of the wall that may be made up for; beyond that the simulation is late for good."""
 BEGINS = 1.0
 """Simulated time on /clock at the start [s]; a stamp of zero means none."""
