@@ -15,7 +15,7 @@ from werrimbi_odom.driving.limits import Area, Limits
 from werrimbi_odom.driving.manoeuvres import NAMES, plan_of, proposed
 from werrimbi_odom.driving.plan import Move, Profile, room_of
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES
+from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES
 from werrimbi_odom.model.pose import Pose
 
 LIMITS = Limits(0.4, 1.2, 0.8, 2.5)

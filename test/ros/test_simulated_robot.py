@@ -5,9 +5,11 @@
 from __future__ import annotations
 
 import math
+import time
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 pytest.importorskip("rclpy")
@@ -18,11 +20,11 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu
 from std_srvs.srv import Trigger
 
+import werrimbi_odom as wo
 from test.ros.beside import beside
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.ros.simulated_parameters import PARAMETERS
-from werrimbi_odom.ros.simulated_robot import _robot_of
+from werrimbi_odom.ros.simulated_robot import robot_of
 
 ROBOT = {
     "wheel_separation": 0.35,
@@ -57,10 +59,10 @@ def test_a_square_ends_where_it_began_and_its_recording_can_be_read(
 ) -> None:
     client = launch(ROBOT)
     about = {"manoeuvre": "umbmark_ccw", "length": 0.3, "area_radius": 1.2, "record": tmp_path}
-    quick = {"max_vel_x": 0.8, "max_vel_theta": 3.0, "acc_lim_x": 2.5, "acc_lim_theta": 8.0}
+    quick = {"max_vel_x": 0.8, "max_vel_theta": 1.6, "acc_lim_x": 2.5, "acc_lim_theta": 8.0}
     file = tmp_path / "robot.yaml"
     with (
-        beside(tmp_path, client.environment, "simulated_robot", robot_file=file),
+        beside(tmp_path, client.environment, "simulated_robot", robot_file=file, imu_rate=20.0),
         beside(tmp_path, client.environment, "drive_node", **about, **quick, **PATIENT) as drive,
     ):
         measured = client.keep(PoseStamped, "reference")
@@ -72,5 +74,81 @@ def test_a_square_ends_where_it_began_and_its_recording_can_be_read(
     assert math.hypot(place.x, place.y) < 0.02
     assert math.hypot(true.x, true.y) < 0.03
     assert max(abs(each.pose.position.y) for each in measured) > 0.25  # it was there
-    robot_file = read_robot_file(file)
-    assert robot_file.robot.wheel_separation == 0.35
+    robot = wo.read_robot(file)
+    (bag,) = (path for path in tmp_path.iterdir() if path.name.startswith("umbmark_ccw_"))
+    run = wo.read_run(bag, robot, ticks_topic="/joint_states", reference_topic="/reference")
+    path = wo.odometry(robot, run.ticks.time, run.ticks.left, run.ticks.right)
+    assert math.hypot(path.x[-1] - path.x[0], path.y[-1] - path.y[0]) < 0.02
+    assert np.ptp(path.y) == pytest.approx(0.3, abs=0.03)
+    assert run.reference is not None
+    assert np.ptp(run.reference.y) == pytest.approx(0.3, abs=0.03)
+
+
+@pytest.mark.evidence
+def test_the_round_is_closed_without_a_hand(launch: Any, tmp_path: Path) -> None:
+    """What is hidden in the robot that drives is found in what drive_node recorded."""
+    client = launch(ROBOT)
+    about = {"manoeuvre": "umbmark", "length": 1.0, "area_radius": 2.5, "record": tmp_path}
+    file = tmp_path / "robot.yaml"
+    hidden = {"hide": "track_width=1.03", "robot_file": file}
+    with (
+        beside(tmp_path, client.environment, "simulated_robot", **hidden),
+        beside(tmp_path, client.environment, "drive_node", **about, **PATIENT),
+    ):
+        driven_round(client)
+        client.rest(0.8)
+    (bag,) = (path for path in tmp_path.iterdir() if path.name.startswith("umbmark_"))
+    topics = {"ticks_topic": "/joint_states", "reference_topic": "/reference"}
+    found = wo.diagnose(wo.read_robot(file), [bag], **topics).to_dict()
+    assert (found["verdict"], found["effect"]) == ("named", "track_width")
+    multiplier = found["found"][0]["parameters"]["multiplier"]
+    assert abs(multiplier["value"] - 1.03) < 3.0 * multiplier["std"] + 0.002
+
+
+@pytest.mark.evidence
+def test_time_goes_as_fast_as_asked_and_silence_stops_the_robot(
+    launch: Any, tmp_path: Path
+) -> None:
+    client = launch(ROBOT | {"use_sim_time": True})
+    fast = {"real_time_factor": 4.0, "publish_clock": True, "cmd_vel_timeout": 0.5}
+    with beside(tmp_path, client.environment, "simulated_robot", **fast):
+        clock, gyro = client.keep(Clock, "/clock"), client.keep(Imu, "imu")
+        client.begin(lambda: None)
+        begun, wall = seconds(clock[-1].clock), time.monotonic()
+        client.rest(3.0)
+        pace = (seconds(clock[-1].clock) - begun) / (time.monotonic() - wall)
+        assert pace == pytest.approx(4.0, rel=0.1)
+        command = Twist()
+        command.linear.x = 0.4
+        client.send(Twist, "cmd_vel", command)
+        client.rest(1.0)
+        assert client.odometry[-1].twist.twist.linear.x == pytest.approx(0.0, abs=0.01)
+        way = client.odometry[-1].pose.pose.position.x
+        assert 0.1 < way < 0.3  # half a second of it, and what it takes to start and to brake
+        assert len(gyro) > 4.0 * 3.0 * 80.0
+
+
+def seconds(stamp: Any) -> float:
+    return float(stamp.sec) + 1e-9 * float(stamp.nanosec)
+
+
+@pytest.mark.parametrize(
+    ("given", "says"),
+    [
+        ({"hide": "castor_kik"}, "hide: .*castor_kick"),
+        ({"hide": "castor_kick=much"}, "hide: the strength 'much' is not a number"),
+        ({"hide": "wheel_radius_scale=-1"}, "hide: the strength of wheel_radius_scale cannot be"),
+    ],
+)
+def test_what_cannot_be_hidden_is_told(given: dict[str, Any], says: str) -> None:
+    values = {each.name: each.default for each in PARAMETERS} | given
+    with pytest.raises(InputError, match=says):
+        robot_of(values)
+
+
+def test_several_effects_can_be_hidden() -> None:
+    values = {each.name: each.default for each in PARAMETERS}
+    hide = "castor_kick=0.02, wheel_radius_scale=0.5"
+    _, hidden, believed = robot_of(values | {"hide": hide})
+    assert [each.entry.name for each in hidden] == ["castor_kick", "wheel_radius_scale"]
+    assert believed.nominal.wheel_radius == pytest.approx(0.1)  # its maker took the diameter

@@ -13,7 +13,7 @@ from typing import Any
 from werrimbi_odom.driving.limits import Limits
 from werrimbi_odom.driving.plan import Move, Plan
 from werrimbi_odom.errors import InputError, nearest
-from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal
+from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
 
 SIDE = 4.0
 """Of UMBmark's square [m], as its authors drove it."""

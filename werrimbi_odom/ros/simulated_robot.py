@@ -38,7 +38,7 @@ from werrimbi_odom.ros.transforms import transform_sender
 if TYPE_CHECKING:
     from werrimbi_odom.simulation import Hidden, LiveRobot, Pose, TrueRobot
 
-TICK = 0.005
+TICK = 0.01
 """Seconds of the wall between two looks at the time."""
 BEHIND = 0.5
 """Seconds of the wall that may be made up for; beyond that the simulation is late for good."""
@@ -66,7 +66,7 @@ class SimulatedRobot(Node):  # type: ignore[misc]
                 "true for all other nodes): without it they would take time to go as on the wall"
             )
         self._timeout = float(values["cmd_vel_timeout"])  # type: ignore[arg-type]
-        self._robot, self._hidden, self._believed = _robot_of(values)
+        self._robot, self._hidden, self._believed = robot_of(values)
         if values["robot_file"]:
             _write_believed(self._believed, Path(str(values["robot_file"])))
         self._tick = 2.0 * math.pi / self._believed.left_ticks_per_revolution
@@ -250,7 +250,7 @@ class _Due:
             self._count += 1
 
 
-def _robot_of(values: dict[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRobot]:
+def robot_of(values: dict[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRobot]:
     """The robot, what is hidden in it, and what its maker believes."""
     try:
         from werrimbi_odom import simulation
