@@ -62,6 +62,13 @@ def _unknown(name: str, known: list[str]) -> str:
     return f"unknown parameter {name}: {hint}"
 
 
+def _told(default: Value | None) -> str:
+    """A default as YAML has it."""
+    if isinstance(default, tuple):
+        return f"[{', '.join(default)}]"
+    return str(default).lower() if isinstance(default, bool) else str(default)
+
+
 def table(parameters: Sequence[Parameter]) -> str:
     """The parameters as Markdown, for the docs."""
     lines = ["| parameter | type | default | unit | what it is |", "|---|---|---|---|---|"]
@@ -69,7 +76,7 @@ def table(parameters: Sequence[Parameter]) -> str:
         says = item.says
         if item.choices:
             says += f" One of {', '.join(f'`{each}`' for each in item.choices)}."
-        default = "empty" if item.default == "" else f"`{item.default}`"
+        default = f"`{_told(item.default)}`" if item.default != "" else "empty"
         start = f"| `{item.name}` | {item.kind} | {default}"
         lines.append(f"{start} | {item.unit} | {says} |")
     return "\n".join(lines) + "\n"

@@ -14,7 +14,7 @@ PARAMETERS: tuple[Parameter, ...] = (
         "",
         "",
         "Effect to hide in the robot, `EFFECT` or `EFFECT=STRENGTH` as for `werrimbi simulate "
-        "--hide` (`werrimbi simulate --list`); several with commas; `random` takes any.",
+        "--hide` (`werrimbi simulate --list`); several with commas; `random` takes any; `none`.",
         may_be_empty=True,
     ),
     Parameter(

@@ -262,7 +262,9 @@ def robot_of(values: dict[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRobot
             "pip install mujoco rosbags, or pip install 'werrimbi_odom[simulation]'"
         ) from missing
     seed = int(values["seed"])
-    wishes = [wish.strip() for wish in str(values["hide"]).split(",") if wish.strip()]
+    wishes = [
+        wish.strip() for wish in str(values["hide"]).split(",") if wish.strip() not in ("", "none")
+    ]
     try:
         hidden = [
             simulation.wished(wish, seed=seed, number=number) for number, wish in enumerate(wishes)
