@@ -23,8 +23,7 @@ from std_srvs.srv import Trigger
 import werrimbi_odom as wo
 from test.ros.beside import beside
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.ros.simulated_parameters import PARAMETERS
-from werrimbi_odom.ros.simulated_robot import robot_of
+from werrimbi_odom.ros.simulated_parameters import PARAMETERS, robot_of
 
 ROBOT = {
     "wheel_separation": 0.35,

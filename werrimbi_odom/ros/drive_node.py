@@ -14,7 +14,6 @@ import math
 import sys
 import time
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 from builtin_interfaces.msg import Time as Stamp
@@ -36,8 +35,8 @@ from werrimbi_odom.driving.watch import Reading
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.ros import drive_parameters, inputs, planar
-from werrimbi_odom.ros.bagging import Bagging, known_types
 from werrimbi_odom.ros.declaring import declared
+from werrimbi_odom.ros.drive_records import Records
 from werrimbi_odom.ros.graph import full_name
 from werrimbi_odom.ros.running import run
 
@@ -45,8 +44,6 @@ TICK = 0.02
 """Seconds between two looks at the time."""
 HOLD = 1.0
 """Seconds for which zeros are repeated after a drive; then `cmd_vel` is left to others."""
-LINGER = 0.5
-"""Seconds for which what comes after a drive is still recorded."""
 LEVELS = {
     "waiting": DiagnosticStatus.OK,
     "driving": DiagnosticStatus.OK,
@@ -73,14 +70,11 @@ class DriveNode(Node):  # type: ignore[misc]
             drive_parameters.area_of(values),
             drive_parameters.watch_of(values),
         )
-        if values["record"]:
-            known_types()  # now: a robot that is to start does not wait for it
+        self._records = Records(self, values)
         self._stamped = bool(values["use_stamped_vel"])
         self._frame = "odom"
         self._held_until = -math.inf
         self._told = self._driver.state
-        self._bag: Bagging | None = None
-        self._bag_ends = math.inf
         self._shown_from: Pose | None = None
         self._commands = self._publisher(TwistStamped if self._stamped else Twist, "cmd_vel")
         latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -144,8 +138,7 @@ class DriveNode(Node):  # type: ignore[misc]
             self._after()
         if driver.state != "driving" and now < self._held_until:
             self._send(STILL)
-        if now > self._bag_ends:
-            self._close_bag()
+        self._records.look()
         self._show(again=False)
 
     # ------------------------------------------------------------------------- asked for
@@ -162,10 +155,10 @@ class DriveNode(Node):  # type: ignore[misc]
             response.message = f"it could start; nothing moves (dry_run). {self._words()}"
             return response
         try:
-            self._open_bag()
+            self._records.begin(self._driver.plan.name)
             self._driver.start(time.monotonic())
         except InputError as error:
-            self._close_bag()
+            self._records.close()
             response.success, response.message = False, f"it does not start: {error}"
             return response
         response.success, response.message = True, f"it drives. {self._words()}"
@@ -204,7 +197,7 @@ class DriveNode(Node):  # type: ignore[misc]
             while time.monotonic() < until:
                 self._send(STILL)
                 time.sleep(TICK)
-        self._close_bag()
+        self._records.close()
 
     # ------------------------------------------------------------------------- out
 
@@ -230,55 +223,19 @@ class DriveNode(Node):  # type: ignore[misc]
         if driver.state not in ("done", "stopped"):
             return
         self._held_until = time.monotonic() + HOLD
-        self._bag_ends = time.monotonic() + LINGER
+        self._records.ending()
         log = self.get_logger()
         # Two lines, because rclpy knows a logging call by its line and its severity.
         if driver.state == "done":
-            log.info(f"{driver.words}. {self._next()}")
+            log.info(f"{driver.words}. Next: {self._records.next_command()}")
         else:
-            log.warning(f"stopped: {driver.words}. {self._next()}")
+            log.warning(f"stopped: {driver.words}. Next: {self._records.next_command()}")
         self._report()
-
-    def _next(self) -> str:
-        """The command that looks at what was recorded."""
-        topics = self._topics()
-        reference = next((each for each in topics if each.endswith("/reference")), "/reference")
-        bag = str(self._bag.folder) if self._bag else "BAG"
-        ticks = next((each for each in topics if each.endswith("/joint_states")), "/joint_states")
-        robot = self._values["robot_file"] or "ROBOT.yaml"
-        return (
-            f"Next: werrimbi diagnose --robot {robot} --ticks-topic {ticks} "
-            f"--reference-topic {reference} {bag}"
-        )
 
     def _words(self) -> str:
         driver = self._driver
         least = driver.plan.duration(driver.limits)
-        words = f"{driver.plan.name} takes {least:.0f} s"
-        if self._bag:
-            return f"{words}; recorded in {self._bag.folder}: {' '.join(self._bag.topics)}"
-        if self._values["record"]:
-            return words
-        there = {name for name, _ in self.get_topic_names_and_types()}
-        topics = " ".join(each for each in self._topics() if each in there)
-        return f"{words}; to record it: ros2 bag record -s mcap -o BAG {topics}"
-
-    def _topics(self) -> list[str]:
-        names = self._values["record_topics"]
-        assert isinstance(names, tuple)
-        return [self.resolve_topic_name(name) for name in names]
-
-    def _open_bag(self) -> None:
-        if self._values["record"]:
-            self._close_bag()
-            name = f"{self._driver.plan.name}_{time.strftime('%Y%m%d_%H%M%S')}"
-            self._bag = Bagging(self, Path(str(self._values["record"])) / name, self._topics())
-            self._bag_ends = math.inf
-
-    def _close_bag(self) -> None:
-        if self._bag is not None:
-            self._bag.close()
-        self._bag, self._bag_ends = None, math.inf
+        return f"{driver.plan.name} takes {least:.0f} s; {self._records.words()}"
 
     def _show(self, *, again: bool) -> None:
         """Publish the path, where the robot stands elsewhere than when it was last shown."""

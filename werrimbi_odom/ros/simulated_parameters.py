@@ -4,8 +4,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.parameters import Parameter
 from werrimbi_odom.ros.declaring import table
+
+if TYPE_CHECKING:
+    from werrimbi_odom.simulation import Hidden, LiveRobot, TrueRobot
 
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
@@ -113,6 +121,68 @@ PARAMETERS: tuple[Parameter, ...] = (
         may_be_empty=True,
     ),
 )
+
+
+def robot_of(values: Mapping[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRobot]:
+    """The robot, what is hidden in it, and what its maker believes.
+
+    Raises
+    ------
+    InputError
+        When there is no such thing to hide, or mujoco is not installed.
+    """
+    try:
+        from werrimbi_odom import simulation
+    except ModuleNotFoundError as missing:
+        if (missing.name or "").startswith("werrimbi_odom"):
+            raise
+        raise InputError(
+            f"the physics engine is not installed ({missing.name} is missing): "
+            "pip install mujoco rosbags, or pip install 'werrimbi_odom[simulation]'"
+        ) from missing
+    seed = int(values["seed"])
+    wishes = [
+        wish.strip() for wish in str(values["hide"]).split(",") if wish.strip() not in ("", "none")
+    ]
+    try:
+        hidden = [
+            simulation.wished(wish, seed=seed, number=number) for number, wish in enumerate(wishes)
+        ]
+    except (simulation.UnknownEffectError, simulation.StrengthError) as error:
+        raise InputError(f"hide: {error} (all: werrimbi simulate --list)") from error
+    robot = simulation.TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
+    believed = robot
+    for each in hidden:
+        believed = each.peculiarity.written(believed)
+    reference = simulation.ReferenceSensor(
+        sigma_xy=float(values["reference_sigma_xy"]), sigma_yaw=float(values["reference_sigma_yaw"])
+    )
+    try:
+        live = simulation.LiveRobot(
+            robot, seed=seed, reference=reference, hidden=[each.peculiarity for each in hidden]
+        )
+    except (simulation.UnstableError, ValueError) as error:
+        raise InputError(f"no such robot can be built: {str(error).splitlines()[0]}") from error
+    return live, hidden, believed
+
+
+def write_believed(robot: TrueRobot, path: Path) -> None:
+    """Write the robot file that a robot's maker would write.
+
+    Raises
+    ------
+    InputError
+        When there is one, or it cannot be written.
+    """
+    from werrimbi_odom.simulation import write_robot_file
+
+    if path.exists():
+        raise InputError(f"robot_file: {path} is there already; name a new one")
+    try:
+        write_robot_file(robot, path)
+    except OSError as error:
+        raise InputError(f"robot_file: {path} cannot be written: {error.strerror}") from error
+
 
 if __name__ == "__main__":
     print(table(PARAMETERS), end="")

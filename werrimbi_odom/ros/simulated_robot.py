@@ -36,7 +36,7 @@ from werrimbi_odom.ros.running import run
 from werrimbi_odom.ros.transforms import transform_sender
 
 if TYPE_CHECKING:
-    from werrimbi_odom.simulation import Hidden, LiveRobot, Pose, TrueRobot
+    from werrimbi_odom.simulation import Pose
 
 TICK = 0.01
 """Seconds of the wall between two looks at the time."""
@@ -66,9 +66,9 @@ class SimulatedRobot(Node):  # type: ignore[misc]
                 "true for all other nodes): without it they would take time to go as on the wall"
             )
         self._timeout = float(values["cmd_vel_timeout"])  # type: ignore[arg-type]
-        self._robot, self._hidden, self._believed = robot_of(values)
+        self._robot, self._hidden, self._believed = simulated_parameters.robot_of(values)
         if values["robot_file"]:
-            _write_believed(self._believed, Path(str(values["robot_file"])))
+            simulated_parameters.write_believed(self._believed, Path(str(values["robot_file"])))
         self._tick = 2.0 * math.pi / self._believed.left_ticks_per_revolution
         self._dues = [
             _Due(float(values[f"{name}_rate"]), lag, publish)  # type: ignore[arg-type]
@@ -248,54 +248,6 @@ class _Due:
         if time + self._lag <= now + 1e-9:
             self._publish(time, self._count / self._rate)
             self._count += 1
-
-
-def robot_of(values: dict[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRobot]:
-    """The robot, what is hidden in it, and what its maker believes."""
-    try:
-        from werrimbi_odom import simulation
-    except ModuleNotFoundError as missing:
-        if (missing.name or "").startswith("werrimbi_odom"):
-            raise
-        raise InputError(
-            f"the physics engine is not installed ({missing.name} is missing): "
-            "pip install mujoco rosbags, or pip install 'werrimbi_odom[simulation]'"
-        ) from missing
-    seed = int(values["seed"])
-    wishes = [
-        wish.strip() for wish in str(values["hide"]).split(",") if wish.strip() not in ("", "none")
-    ]
-    try:
-        hidden = [
-            simulation.wished(wish, seed=seed, number=number) for number, wish in enumerate(wishes)
-        ]
-    except (simulation.UnknownEffectError, simulation.StrengthError) as error:
-        raise InputError(f"hide: {error} (all: werrimbi simulate --list)") from error
-    robot = simulation.TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
-    believed = robot
-    for each in hidden:
-        believed = each.peculiarity.written(believed)
-    reference = simulation.ReferenceSensor(
-        sigma_xy=float(values["reference_sigma_xy"]), sigma_yaw=float(values["reference_sigma_yaw"])
-    )
-    try:
-        live = simulation.LiveRobot(
-            robot, seed=seed, reference=reference, hidden=[each.peculiarity for each in hidden]
-        )
-    except (simulation.UnstableError, ValueError) as error:
-        raise InputError(f"no such robot can be built: {str(error).splitlines()[0]}") from error
-    return live, hidden, believed
-
-
-def _write_believed(robot: TrueRobot, path: Path) -> None:
-    from werrimbi_odom.simulation import write_robot_file
-
-    if path.exists():
-        raise InputError(f"robot_file: {path} is there already; name a new one")
-    try:
-        write_robot_file(robot, path)
-    except OSError as error:
-        raise InputError(f"robot_file: {path} cannot be written: {error.strerror}") from error
 
 
 def main(args: list[str] | None = None) -> int:
