@@ -42,6 +42,8 @@ TICK = 0.01
 """Seconds of the wall between two looks at the time."""
 BEHIND = 0.5
 """Seconds of the wall that may be made up for; beyond that the simulation is late for good."""
+CLOCK_RATE = 100.0
+"""Messages on /clock in a simulated second."""
 BEGINS = 1.0
 """Simulated time on /clock at the start [s]; a stamp of zero means none."""
 
@@ -78,10 +80,13 @@ class SimulatedRobot(Node):  # type: ignore[misc]
                 ("reference", self._robot.reference_lag, self._publish_reference),
             )
         ]
+        if self._publishes_clock:
+            self._dues.insert(0, _Due(CLOCK_RATE, 0.0, self._publish_clock))
         self._joints = self._publisher(JointState, "joint_states")
         self._imu = self._publisher(Imu, "imu")
         self._reference = self._publisher(PoseStamped, "reference")
-        self._clock_out = self._publisher(ClockMessage, "/clock") if self._publishes_clock else None
+        if self._publishes_clock:
+            self._clock_out = self._publisher(ClockMessage, "/clock")
         self._diagnostics = self._publisher(DiagnosticArray, "/diagnostics")
         self._send = transform_sender(self, "enable_tf") if values["enable_tf"] else None
         stamped = bool(values["use_stamped_vel"])
@@ -131,8 +136,6 @@ class SimulatedRobot(Node):  # type: ignore[misc]
                 robot.advance()
             except UnstableError as error:
                 raise InputError(str(error)) from error
-            if self._clock_out is not None:
-                self._clock_out.publish(ClockMessage(clock=self._stamp(robot.time)))
             for due in self._dues:
                 due.look(robot.time)
 
@@ -145,6 +148,9 @@ class SimulatedRobot(Node):  # type: ignore[misc]
         self._commanded = self._robot.time
 
     # ------------------------------------------------------------------------- out
+
+    def _publish_clock(self, time: float, _: float) -> None:
+        self._clock_out.publish(ClockMessage(clock=self._stamp(time)))
 
     def _publish_joints(self, time: float, _: float) -> None:
         counts = self._robot.counters(time)

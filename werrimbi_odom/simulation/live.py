@@ -24,6 +24,9 @@ ACCELERATION, YAW_ACCELERATION = 3.0, 12.0
 """Most that the robot's own controller asks of its motors [m/s^2, rad/s^2]; brisker than any drive
 of `sessions`, and within what the tyres hold."""
 
+CHECKED_EVERY = 20
+"""Periods between two looks at the engine's warnings, each of which costs more than a period."""
+
 KEPT = 400
 """Rows of the true path that are kept, 2 s: more than any sensor looks back."""
 
@@ -67,7 +70,7 @@ class LiveRobot:
         self._gyro = gyro_of(sensors or FieldSensors(), robot_seed=seed)
         self._gyro_noise = np.random.default_rng([seed, 80])
         self._rows = np.empty((2 * KEPT, 8))
-        self._count = 0
+        self._count = self._unchecked = 0
         self._wanted = self._speeds = (0.0, 0.0)
         self.counters_lag = max((odd.ahead for odd in hidden), default=0.0)
         """How long after its stamp a reading of the counters can be had [s]."""
@@ -105,7 +108,10 @@ class LiveRobot:
         )
         self._driven.advance(*motor_speeds(self._robot, *self._speeds))
         self._keep()
-        self._driven.check()
+        self._unchecked += 1
+        if self._unchecked == CHECKED_EVERY:
+            self._unchecked = 0
+            self._driven.check()
 
     def counters(self, time: float) -> tuple[int, int]:
         """What the counters, left and right, show at a time of the last second."""
