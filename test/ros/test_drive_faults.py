@@ -270,6 +270,23 @@ def test_told_to_end_it_stops_the_robot_first_and_moves_nothing_when_it_is_back(
 
 
 @pytest.mark.evidence
+def test_killed_in_mid_drive_the_base_stops_and_a_successor_waits(played: PlayedRobot) -> None:
+    """Nothing here can stop a robot whose driver was killed: the base's own timeout does."""
+    played.under_way()
+    played.drive.process.kill()
+    played.client.until(lambda: played.drive.process.poll() is not None, "end")
+    played.client.diagnostics.clear()
+    played.wanted = math.nan
+    played.stuck = 0.0
+    played.drive = played.driven()
+    played.client.until(lambda: played.state().startswith("waiting"), "node that is back")
+    answer = played.ask("start")
+    assert not answer.success
+    assert "a node that was killed is listed for 20 s" in answer.message
+    assert math.isnan(played.wanted)
+
+
+@pytest.mark.evidence
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.__name__)
 def test_each_fault_stops_it_in_time(
     played: PlayedRobot, fault: Callable[[PlayedRobot], None]
