@@ -91,7 +91,7 @@ def test_the_round_is_closed_without_a_hand(launch: Any, tmp_path: Path) -> None
     client = launch(ROBOT)
     about = {"manoeuvre": "umbmark", "length": 1.0, "area_radius": 2.5, "record": tmp_path}
     file = tmp_path / "robot.yaml"
-    hidden = {"hide": "track_width=1.03", "robot_file": file}
+    hidden = {"hide": "track_width=1.03", "robot_file": file, "cmd_vel_timeout": 0.2}
     with (
         beside(tmp_path, client.environment, "simulated_robot", **hidden),
         beside(tmp_path, client.environment, "drive_node", **about, **PATIENT),

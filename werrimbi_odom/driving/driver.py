@@ -24,6 +24,9 @@ State = Literal["waiting", "driving", "done", "stopped"]
 
 MIN_PERIOD = 0.012
 """Shortest time between two commands [s]: faster odometry is watched, but commands need no more."""
+PAUSE, SHORT_PAUSE = 0.2, 0.1
+"""After a longer pause of the odometry [s] the plan has waited for it, as a base does whose commands
+stopped; and the command changes by no more than in so long."""
 OLDEST = 0.5
 """By which the odometry's stamps may differ from the node's clock when a drive begins [s]."""
 AT_REST, AT_REST_TURN = 0.02, 0.05
@@ -144,7 +147,7 @@ class Driver:
             return None
         self._commanded = reading.stamp
         pose = seen_from(self._origin, reading.pose)
-        wanted = self._tracker.follow(pose, duration)
+        wanted = self._tracker.follow(pose, min(duration, PAUSE))
         if self._tracker.done:
             self.state, self.words = "done", f"{self.plan.name} is driven"
             self.command = STILL
@@ -152,8 +155,7 @@ class Driver:
         wrong = self._of_following()
         if wrong:
             return self._stopped(wrong)
-        # After a pause of the odometry no more is made up for than of two usual periods.
-        self.command = self.limits.kept(wanted, self.command, min(duration, 0.1))
+        self.command = self.limits.kept(wanted, self.command, min(duration, SHORT_PAUSE))
         return self.command
 
     def scan(self, nearest: float, now: float) -> Command | None:
