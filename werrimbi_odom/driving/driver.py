@@ -25,8 +25,8 @@ State = Literal["waiting", "driving", "done", "stopped"]
 MIN_PERIOD = 0.012
 """Shortest time between two commands [s]: faster odometry is watched, but commands need no more."""
 PAUSE, SHORT_PAUSE = 0.2, 0.1
-"""After a longer pause of the odometry [s] the plan has waited for it, as a base does whose commands
-stopped; and the command changes by no more than in so long."""
+"""After a longer pause of the odometry [s] the plan has waited for it, as a base does whose
+commands stopped; and the command changes by no more than in so long."""
 OLDEST = 0.5
 """By which the odometry's stamps may differ from the node's clock when a drive begins [s]."""
 AT_REST, AT_REST_TURN = 0.02, 0.05
