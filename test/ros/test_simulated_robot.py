@@ -5,6 +5,8 @@
 from __future__ import annotations
 
 import math
+import subprocess
+import sys
 import time
 from pathlib import Path
 from typing import Any
@@ -15,7 +17,7 @@ import pytest
 pytest.importorskip("rclpy")
 pytest.importorskip("mujoco", reason="needs mujoco (pip install werrimbi_odom[all])")
 
-from geometry_msgs.msg import PoseStamped, Twist
+from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
 from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import Imu
 from std_srvs.srv import Trigger
@@ -91,10 +93,11 @@ def test_the_round_is_closed_without_a_hand(launch: Any, tmp_path: Path) -> None
     client = launch(ROBOT)
     about = {"manoeuvre": "umbmark", "length": 1.0, "area_radius": 2.5, "record": tmp_path}
     file = tmp_path / "robot.yaml"
+    stamped = {"use_stamped_vel": True}
     hidden = {"hide": "track_width=1.03", "robot_file": file, "cmd_vel_timeout": 0.2}
     with (
-        beside(tmp_path, client.environment, "simulated_robot", **hidden),
-        beside(tmp_path, client.environment, "drive_node", **about, **PATIENT),
+        beside(tmp_path, client.environment, "simulated_robot", **hidden, **stamped),
+        beside(tmp_path, client.environment, "drive_node", **about, **PATIENT, **stamped),
     ):
         driven_round(client)
         client.rest(0.8)
@@ -111,7 +114,7 @@ def test_time_goes_as_fast_as_asked_and_silence_stops_the_robot(
     launch: Any, tmp_path: Path
 ) -> None:
     client = launch(ROBOT | {"use_sim_time": True})
-    fast = {"real_time_factor": 4.0, "publish_clock": True, "cmd_vel_timeout": 0.5}
+    fast = {"real_time_factor": 4.0, "publish_clock": True, "use_stamped_vel": True}
     with beside(tmp_path, client.environment, "simulated_robot", **fast):
         clock, gyro = client.keep(Clock, "/clock"), client.keep(Imu, "imu")
         client.begin(lambda: None)
@@ -119,14 +122,37 @@ def test_time_goes_as_fast_as_asked_and_silence_stops_the_robot(
         client.rest(3.0)
         pace = (seconds(clock[-1].clock) - begun) / (time.monotonic() - wall)
         assert pace == pytest.approx(4.0, rel=0.1)
-        command = Twist()
-        command.linear.x = 0.4
-        client.send(Twist, "cmd_vel", command)
+        command = TwistStamped()
+        command.twist.linear.x = 0.4
+        client.send(TwistStamped, "cmd_vel", command)
         client.rest(1.0)
         assert client.odometry[-1].twist.twist.linear.x == pytest.approx(0.0, abs=0.01)
         way = client.odometry[-1].pose.pose.position.x
         assert 0.1 < way < 0.3  # half a second of it, and what it takes to start and to brake
         assert len(gyro) > 4.0 * 3.0 * 80.0
+
+
+@pytest.mark.evidence
+def test_the_truth_goes_out_on_tf(
+    launch: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """With a stand-in for tf2_ros, which has no wheel."""
+    (tmp_path / "tf2_ros.py").write_text(
+        "from geometry_msgs.msg import TransformStamped\n"
+        "class TransformBroadcaster:\n"
+        "    def __init__(self, node):\n"
+        "        self.publisher = node.create_publisher(TransformStamped, 'sent', 10)\n"
+        "    def sendTransform(self, transform):\n"
+        "        self.publisher.publish(transform)\n",
+        encoding="utf-8",
+    )
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    client = launch(ROBOT)
+    with beside(tmp_path, client.environment, "simulated_robot", enable_tf=True):
+        sent = client.keep(TransformStamped, "sent")
+        client.until(lambda: len(sent) > 10, "transforms")
+    assert {each.header.frame_id for each in sent} == {"world"}
+    assert {each.child_frame_id for each in sent} == {"odom", "base_link_true"}
 
 
 def seconds(stamp: Any) -> float:
@@ -153,3 +179,27 @@ def test_several_effects_can_be_hidden() -> None:
     _, hidden, believed = robot_of(values | {"hide": hide})
     assert [each.entry.name for each in hidden] == ["castor_kick", "wheel_radius_scale"]
     assert believed.nominal.wheel_radius == pytest.approx(0.1)  # its maker took the diameter
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["-p", "real_time_factor:=2.0"], "real_time_factor 2 needs publish_clock: true"),
+        (["-p", "seeds:=2"], "unknown parameter seeds: did you mean seed?"),
+        ([], "the physics engine is not installed (mujoco is missing): pip install mujoco"),
+    ],
+    ids=["faster", "misspelt", "no mujoco"],
+)
+def test_what_it_cannot_start_with_is_told_in_a_line(words: list[str], says: str) -> None:
+    without = "" if words else "sys.modules['mujoco'] = None;"
+    code = f"import sys; {without} from werrimbi_odom.ros.simulated_robot import main; "
+    run = subprocess.run(
+        [sys.executable, "-c", f"{code} sys.exit(main({['--ros-args', *words]}))"],
+        capture_output=True,
+        text=True,
+        check=False,
+        cwd=Path(__file__).parents[2],
+    )
+    assert run.returncode == 2
+    assert says in run.stderr
+    assert "Traceback" not in run.stderr
