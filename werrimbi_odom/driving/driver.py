@@ -16,9 +16,10 @@ from typing import Literal
 from werrimbi_odom.driving.limits import STILL, Area, Command, Limits
 from werrimbi_odom.driving.plan import SLACK, Plan, room_of, seen_from
 from werrimbi_odom.driving.tracker import Tracker
-from werrimbi_odom.driving.watch import Reading, SlipWatch, Watch, fault_between
+from werrimbi_odom.driving.watch import SLIP_WINDOW, Reading, Watch, fault_between
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose, compose
+from werrimbi_odom.model.turns import Turns
 
 State = Literal["waiting", "driving", "done", "stopped"]
 
@@ -60,7 +61,7 @@ class Driver:
         self._anchor: Pose | None = None
         self._origin = Pose(0.0, 0.0, 0.0)
         self._tracker = Tracker(plan, limits)
-        self._slip = SlipWatch()
+        self._slip = Turns(SLIP_WINDOW)
         self._since: deque[Reading] = deque()  # twice AT_REST_FOR
         self._commanded = 0.0
         self._least_age = math.inf

@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import math
-from collections import deque
 from dataclasses import dataclass
 from typing import NamedTuple
 
@@ -67,54 +66,3 @@ def fault_between(before: Reading, now: Reading, limits: Limits) -> str:
     if turned > JUMP_FACTOR * limits.yaw_rate * step + JUMP_TURN:
         return f"the odometry jumped by {math.degrees(turned):.0f} deg in {step:.3f} s"
     return ""
-
-
-class SlipWatch:
-    """Compares the turn by the wheels with the turn by a gyro, over the last part of a second."""
-
-    def __init__(self) -> None:
-        self._wheels: deque[tuple[float, float]] = deque(maxlen=400)
-        self._gyro: deque[tuple[float, float]] = deque(maxlen=400)
-
-    def wheels(self, stamp: float, yaw: float) -> None:
-        """Take a heading [rad] of the odometry."""
-        before = self._wheels[-1] if self._wheels else (stamp, yaw)
-        unwrapped = before[1] + math.remainder(yaw - before[1], 2.0 * math.pi)
-        _add(self._wheels, stamp, unwrapped)
-
-    def gyro(self, stamp: float, rate: float) -> None:
-        """Take a yaw rate [rad/s] of the gyro."""
-        before = self._gyro[-1] if self._gyro else (stamp, 0.0)
-        _add(self._gyro, stamp, before[1] + rate * (stamp - before[0]))
-
-    def difference(self) -> float:
-        """Turn by the wheels less turn by the gyro over the last SLIP_WINDOW [rad]; 0 before."""
-        if len(self._wheels) < 2 or len(self._gyro) < 2:
-            return 0.0
-        end = min(self._wheels[-1][0], self._gyro[-1][0])
-        begin = end - SLIP_WINDOW
-        if begin < max(self._wheels[0][0], self._gyro[0][0]):
-            return 0.0
-        turns = [_at(series, end) - _at(series, begin) for series in (self._wheels, self._gyro)]
-        return turns[0] - turns[1]
-
-
-def _add(series: deque[tuple[float, float]], stamp: float, value: float) -> None:
-    """Keep the last second; a stamp that goes back begins anew."""
-    if series and stamp <= series[-1][0]:
-        series.clear()
-    series.append((stamp, value))
-    while stamp - series[0][0] > 1.0:
-        series.popleft()
-
-
-def _at(series: deque[tuple[float, float]], time: float) -> float:
-    """The value at a time within the series, on the line between its neighbours."""
-    after = series[-1]
-    for before in reversed(series):
-        if before[0] <= time:
-            span = after[0] - before[0]
-            share = (time - before[0]) / span if span > 0.0 else 0.0
-            return before[1] + share * (after[1] - before[1])
-        after = before
-    return series[0][1]

@@ -35,6 +35,7 @@ from werrimbi_odom.ros.learning import learning_of, told
 from werrimbi_odom.ros.markers import PieceTrail
 from werrimbi_odom.ros.messages import OdometryMessage, pose_from, transform_of
 from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.slip import slip_of
 from werrimbi_odom.ros.status import status_of
 from werrimbi_odom.ros.tracker import Finished, Tracker
 from werrimbi_odom.ros.transforms import transform_sender
@@ -78,6 +79,7 @@ class OdomNode(Node):  # type: ignore[misc]
             transform_sender(self, "enable_odom_tf") if values["enable_odom_tf"] else None
         )
         self._learning = learning_of(inputs.Wiring(self, values, self._take, self._health), robot)
+        self._slip = slip_of(inputs.Wiring(self, values, self._take, self._health), robot)
         self._input = inputs.subscribed(inputs.Wiring(self, values, self._take, self._health))
         self.create_subscription(
             PoseWithCovarianceStamped,
@@ -115,6 +117,9 @@ class OdomNode(Node):  # type: ignore[misc]
             self._send_transform(transform_of(odometry))
         self._keep(self._tracker.finished_by(estimate))
         self._learning.after(self._tracker)
+        missed = self._slip.missed(self._tracker, estimate)
+        if missed.heading:
+            self._keep(self._tracker.grow(missed))
 
     def _keep(self, finished: Finished | None) -> None:
         """Add a piece to those that RViz shows; without a viewer nothing is drawn."""
@@ -151,6 +156,7 @@ class OdomNode(Node):  # type: ignore[misc]
         self._health.silent_after = limits.gap_duration
         self._keep(self._tracker.retune(robot, settings.tolerance, limits))
         self._learning.retune(robot, tuple(changes))
+        self._slip.retune(robot)
         self.get_logger().info(
             "from here on: " + ", ".join(f"{name} {value}" for name, value in changes.items())
         )
@@ -203,7 +209,7 @@ class OdomNode(Node):  # type: ignore[misc]
 
     def _publish_diagnostics(self) -> None:
         name = f"{full_name(self)}: wheel encoders"
-        effects = told(self._settings.effects, self._learning)
+        effects = told(self._settings.effects, self._learning) | self._slip.told()
         # Another driver on the topic may be that of an arm, whose joints come too.
         wrong = self._company.look(others_welcome=self._health.foreign > self._foreign)
         self._foreign = self._health.foreign

@@ -17,6 +17,7 @@ from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.slip import Missed
 from werrimbi_odom.model.stretch import PieceTolerance
 from werrimbi_odom.ros.rehearsal import is_finite
 
@@ -126,6 +127,18 @@ class Tracker:
         piece = self._odometer.set_pose(pose, covariance)
         self.pose, self._known = pose, covariance
         return Finished(piece, end) if any(piece.travel) else None
+
+    def grow(self, missed: Missed) -> Finished | None:
+        """Be less sure from here on; returns the piece that this ends, if it had any length."""
+        known, yaw = self.covariance, self.pose.yaw
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        more = known._replace(
+            xx=known.xx + missed.along * cos * cos,
+            xy=known.xy + missed.along * cos * sin,
+            yy=known.yy + missed.along * sin * sin,
+            yawyaw=known.yawyaw + missed.heading,
+        )
+        return self.set_pose(self.pose, more)
 
     def reset(self) -> None:
         """Go on from the origin, with no distance driven."""
