@@ -76,7 +76,7 @@ def nees(seed: int, loss: float, *, watched: bool, seconds: float = 20.0) -> tup
     guard = SlipGuard(file.robot.track, file.robot.left_tick)
     speeds = wheel_speeds(truth, free(seconds, seed=seed, yaw_rate=1.2))
     radius, base = truth.nominal.wheel_radius, truth.nominal.wheel_separation
-    heading, found = 0.0, []
+    found = []
     for period, (left, right) in enumerate(speeds.tolist(), start=1):
         live.command(0.5 * radius * (left + right), radius * (right - left) / base)
         live.advance()
@@ -90,8 +90,7 @@ def nees(seed: int, loss: float, *, watched: bool, seconds: float = 20.0) -> tup
         estimate = tracker.take(Time(sec=seconds_, nanosec=nano), *live.counters(time))
         if estimate is None:
             continue
-        heading += estimate.motion.turn
-        missed = guard.wheels(time, heading)
+        missed = guard.wheels(time, tracker.heading)
         if watched and missed.heading:
             tracker.grow(missed)
         if period % 400 == 0:

@@ -117,7 +117,7 @@ class OdomNode(Node):  # type: ignore[misc]
             self._send_transform(transform_of(odometry))
         self._keep(self._tracker.finished_by(estimate))
         self._learning.after(self._tracker)
-        missed = self._slip.missed(self._tracker, estimate)
+        missed = self._slip.missed(self._tracker)
         if missed.heading:
             self._keep(self._tracker.grow(missed))
 

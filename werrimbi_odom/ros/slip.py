@@ -13,7 +13,6 @@ from typing import Any
 from rclpy.event_handler import SubscriptionEventCallbacks
 from sensor_msgs.msg import Imu
 
-from werrimbi_odom.model.odometer import Estimate
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.slip import NOTHING, Missed, SlipGuard
 from werrimbi_odom.ros import inputs
@@ -24,7 +23,7 @@ from werrimbi_odom.ros.tracker import Tracker
 class NoSlip:
     """Where no gyro is given."""
 
-    def missed(self, tracker: Tracker, estimate: Estimate) -> Missed:
+    def missed(self, tracker: Tracker) -> Missed:
         """What the reading that the tracker has just taken adds to the covariance."""
         return NOTHING
 
@@ -50,7 +49,6 @@ class Slip(NoSlip):
     def __init__(self, wiring: inputs.Wiring, robot: Robot, topic: str) -> None:
         self._topic = topic
         self._guard = SlipGuard(robot.track, max(robot.left_tick, robot.right_tick))
-        self._heading = 0.0
         self._heard = 0
         self._tracker: Tracker | None = None
         wiring.node.create_subscription(
@@ -61,11 +59,10 @@ class Slip(NoSlip):
             event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
         )
 
-    def missed(self, tracker: Tracker, estimate: Estimate) -> Missed:
+    def missed(self, tracker: Tracker) -> Missed:
         """What the reading that the tracker has just taken adds to the covariance."""
         self._tracker = tracker
-        self._heading += estimate.motion.turn
-        return self._guard.wheels(tracker.seconds(tracker.stamp), self._heading)
+        return self._guard.wheels(tracker.seconds(tracker.stamp), tracker.heading)
 
     def retune(self, robot: Robot) -> None:
         """Go on with another base."""

@@ -40,6 +40,8 @@ class Tracker:
 
     def __init__(self, robot: Robot, tolerance: PieceTolerance, limits: EncoderLimits) -> None:
         self.pose = Pose()
+        self.heading = 0.0
+        """All that was turned [rad], wherever the pose was set in between."""
         self._known = CERTAIN
         self.stamp = Stamp()
         """Of the last reading that was taken."""
@@ -98,6 +100,7 @@ class Tracker:
         if self.tally.accepted > accepted:
             self.started, self.stamp = True, stamp
         if estimate is not None:
+            self.heading += estimate.pose.yaw - self.pose.yaw
             self.pose, self._known = estimate.pose, estimate.covariance
         return estimate
 
