@@ -19,7 +19,7 @@ pytest.importorskip("mujoco", reason="needs mujoco (pip install werrimbi_odom[al
 
 from geometry_msgs.msg import PoseStamped, TransformStamped, TwistStamped
 from rosgraph_msgs.msg import Clock
-from sensor_msgs.msg import Imu
+from sensor_msgs.msg import Imu, LaserScan
 from std_srvs.srv import Trigger
 
 import werrimbi_odom as wo
@@ -148,11 +148,13 @@ def test_the_truth_goes_out_on_tf(
     )
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     client = launch(ROBOT)
-    with beside(tmp_path, client.environment, "simulated_robot", enable_tf=True):
+    with beside(tmp_path, client.environment, "simulated_robot", enable_tf=True, room="arena"):
         sent = client.keep(TransformStamped, "sent")
-        client.until(lambda: len(sent) > 10, "transforms")
-    assert {each.header.frame_id for each in sent} == {"world"}
-    assert {each.child_frame_id for each in sent} == {"odom", "base_link_true"}
+        scans = client.keep(LaserScan, "scan")
+        client.until(lambda: len(sent) > 10 and len(scans) > 2, "transforms and scans")
+    assert max(each for each in scans[-1].ranges if each < 8.0) < 2.0
+    assert {each.header.frame_id for each in sent} == {"world", "base_link"}
+    assert {each.child_frame_id for each in sent} == {"odom", "base_link_true", "base_scan"}
 
 
 def seconds(stamp: Any) -> float:

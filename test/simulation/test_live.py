@@ -23,6 +23,7 @@ from werrimbi_odom.simulation import (
 from werrimbi_odom.simulation.live import KEPT
 from werrimbi_odom.simulation.manoeuvre import Pace
 from werrimbi_odom.simulation.recorder import wheel_speeds
+from werrimbi_odom.simulation.rooms import arena
 
 ROBOT = TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
 EXACT = ReferenceSensor(sigma_xy=0.0, sigma_yaw=0.0)
@@ -73,6 +74,21 @@ def test_the_gyro_integrates_to_the_turn_and_memory_stays_bounded() -> None:
     assert live.pose.yaw == pytest.approx(turned, rel=0.03)  # its bias and scale
     assert live.pose.yaw > 4.0
     assert len(live._rows) == 2 * KEPT
+
+
+def test_the_lidar_sees_the_room_from_where_the_robot_is() -> None:
+    live = LiveRobot(ROBOT, seed=2, room=arena(2.6))
+    live.command(0.4, 0.0)
+    turn = 1.0 / live.lidar.rate_hz
+    beams = live.lidar.beams
+    ahead = []
+    for step in range(300):
+        live.advance()
+        if step in (40, 280):
+            ranges = live.sweep(live.time - turn)
+            ahead.append(np.median(ranges[[beams // 2 - 1, beams // 2, beams // 2 + 1]]))
+    assert ahead[0] == pytest.approx(1.3, abs=0.1)  # behind the robot, where nothing stands
+    assert ahead[1] - ahead[0] == pytest.approx(0.4 * 240 * 0.005, abs=0.03)
 
 
 def test_a_wish_that_cannot_be_is_told() -> None:

@@ -105,6 +105,15 @@ PARAMETERS: tuple[Parameter, ...] = (
         maximum=1.0,
     ),
     Parameter(
+        "room",
+        "string",
+        "none",
+        "",
+        "What a lidar sees and publishes on `scan`, with walls that the robot drives through; the "
+        "robot begins in the middle.",
+        choices=("none", "living_room", "arena"),
+    ),
+    Parameter(
         "enable_tf",
         "boolean",
         False,
@@ -133,6 +142,7 @@ def robot_of(values: Mapping[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRo
     """
     try:
         from werrimbi_odom import simulation
+        from werrimbi_odom.simulation import rooms
     except ModuleNotFoundError as missing:
         if (missing.name or "").startswith("werrimbi_odom"):
             raise
@@ -159,7 +169,11 @@ def robot_of(values: Mapping[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRo
     )
     try:
         live = simulation.LiveRobot(
-            robot, seed=seed, reference=reference, hidden=[each.peculiarity for each in hidden]
+            robot,
+            seed=seed,
+            reference=reference,
+            hidden=[each.peculiarity for each in hidden],
+            room=None if values["room"] == "none" else getattr(rooms, str(values["room"]))(),
         )
     except (simulation.UnstableError, ValueError) as error:
         raise InputError(f"no such robot can be built: {str(error).splitlines()[0]}") from error

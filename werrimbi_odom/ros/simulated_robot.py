@@ -25,7 +25,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock as ClockMessage
-from sensor_msgs.msg import Imu, JointState
+from sensor_msgs.msg import Imu, JointState, LaserScan
 from std_srvs.srv import Trigger
 
 from werrimbi_odom.errors import InputError
@@ -80,6 +80,10 @@ class SimulatedRobot(Node):  # type: ignore[misc]
                 ("reference", self._robot.reference_lag, self._publish_reference),
             )
         ]
+        if values["room"] != "none":
+            turn = 1.0 / self._robot.lidar.rate_hz
+            self._dues.append(_Due(self._robot.lidar.rate_hz, turn, self._publish_scan))
+            self._scan = self._publisher(LaserScan, "scan")
         if self._publishes_clock:
             self._dues.insert(0, _Due(CLOCK_RATE, 0.0, self._publish_clock))
         self._joints = self._publisher(JointState, "joint_states")
@@ -182,11 +186,30 @@ class SimulatedRobot(Node):  # type: ignore[misc]
         if self._send is not None:
             self._send(self._transform("odom", (0.0, 0.0, 0.0)))
             self._send(self._transform("base_link_true", self._robot.pose))
+            self._send(self._transform("base_scan", self._robot.lidar.mount, "base_link"))
 
-    def _transform(self, child: str, pose: Pose | tuple[float, float, float]) -> TransformStamped:
+    def _publish_scan(self, time: float, _: float) -> None:
+        """A turn, stamped with the time of its first beam."""
+        lidar = self._robot.lidar
+        message = LaserScan(
+            angle_max=lidar.increment * (lidar.beams - 1),
+            angle_increment=lidar.increment,
+            time_increment=lidar.beam_interval,
+            scan_time=1.0 / lidar.rate_hz,
+            range_min=lidar.nearest,
+            range_max=lidar.farthest,
+            ranges=self._robot.sweep(time).tolist(),
+        )
+        message.header.stamp = self._stamp(time)
+        message.header.frame_id = "base_scan"
+        self._scan.publish(message)
+
+    def _transform(
+        self, child: str, pose: Pose | tuple[float, float, float], parent: str = "world"
+    ) -> TransformStamped:
         message = TransformStamped(child_frame_id=child)
         message.header.stamp = self._stamp(self._robot.time)
-        message.header.frame_id = "world"
+        message.header.frame_id = parent
         moved, turn = message.transform.translation, message.transform.rotation
         moved.x, moved.y, yaw = pose
         turn.z, turn.w = math.sin(0.5 * yaw), math.cos(0.5 * yaw)

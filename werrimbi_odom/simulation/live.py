@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from .engine import PERIOD, Driven, Pose, TruePath
 from .field import FieldSensors, gyro_of
 from .hidden.peculiarity import Peculiarity
+from .lidar import Room, sweeps_at
 from .recorder import counter_zeros, motor_speeds, prepared, stream
 from .recording import Recording
 from .robot import TrueRobot
@@ -45,7 +46,9 @@ class LiveRobot:
     hidden : sequence of Peculiarity
         What is odd; extra channels are not seen live.
     sensors : FieldSensors, optional
-        The gyro's.
+        The gyro's and the lidar's.
+    room : Room, optional
+        What the lidar sees. The engine knows nothing of it: the robot drives through its walls.
     """
 
     def __init__(
@@ -57,6 +60,7 @@ class LiveRobot:
         start: Pose = Pose(0.0, 0.0, 0.0),  # noqa: B008 (immutable)
         hidden: Sequence[Peculiarity] = (),
         sensors: FieldSensors | None = None,
+        room: Room | None = None,
     ) -> None:
         ready = prepared(robot, seed=seed, reference=reference, start=start, hidden=hidden)
         self._robot, self._sensor, self._hidden = ready.robot, ready.sensor, tuple(hidden)
@@ -67,7 +71,10 @@ class LiveRobot:
         self._noise = stream(seed, "reference")
         self._rngs = [np.random.default_rng([seed, 79, number]) for number in range(len(hidden))]
         self._counted = [one for one in (odd.counted(ready.robot) for odd in hidden) if one]
-        self._gyro = gyro_of(sensors or FieldSensors(), robot_seed=seed)
+        sensors = sensors or FieldSensors()
+        self.lidar, self._room = sensors.lidar, room
+        self._lidar_noise = np.random.default_rng([seed, 81])
+        self._gyro = gyro_of(sensors, robot_seed=seed)
         self._gyro_noise = np.random.default_rng([seed, 80])
         self._rows = np.empty((2 * KEPT, 8))
         self._count = self._unchecked = 0
@@ -144,6 +151,13 @@ class LiveRobot:
         rate = (after - before) / (until - since)
         noise = self._gyro.noise * self._gyro_noise.standard_normal()
         return float(self._gyro.scale * rate + self._gyro.bias + noise)
+
+    def sweep(self, start: float) -> Floats:
+        """Ranges [m] of the lidar's beams in the turn that began at a time and has ended."""
+        assert self._room is not None
+        at = np.array([start])
+        seen = sweeps_at(self._path(), self._room, self.lidar, at, self._lidar_noise)
+        return np.asarray(seen.ranges[0])
 
     def _keep(self) -> None:
         """Add the present row; of twice as many as are needed the older half goes."""
