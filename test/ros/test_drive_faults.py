@@ -224,6 +224,7 @@ def test_a_fault_stops_it_for_good(
     assert played.wanted == 0.0
 
 
+@pytest.mark.evidence
 def test_a_robot_that_does_not_obey_is_told_to_stop_at_the_border(played: PlayedRobot) -> None:
     played.under_way()
     played.stuck = 0.4

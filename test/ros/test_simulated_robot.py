@@ -63,7 +63,14 @@ def test_a_square_ends_where_it_began_and_its_recording_can_be_read(
     quick = {"max_vel_x": 0.8, "max_vel_theta": 1.6, "acc_lim_x": 2.5, "acc_lim_theta": 8.0}
     file = tmp_path / "robot.yaml"
     with (
-        beside(tmp_path, client.environment, "simulated_robot", robot_file=file, imu_rate=20.0),
+        beside(
+            tmp_path,
+            client.environment,
+            "simulated_robot",
+            robot_file=file,
+            imu_rate=20.0,
+            reference_rate=10.0,
+        ),
         beside(tmp_path, client.environment, "drive_node", **about, **quick, **PATIENT) as drive,
     ):
         measured = client.keep(PoseStamped, "reference")
@@ -186,8 +193,16 @@ def test_several_effects_can_be_hidden() -> None:
 @pytest.mark.parametrize(
     ("words", "says"),
     [
-        (["-p", "real_time_factor:=2.0"], "real_time_factor 2 needs publish_clock: true"),
-        (["-p", "seeds:=2"], "unknown parameter seeds: did you mean seed?"),
+        pytest.param(
+            ["-p", "real_time_factor:=2.0"],
+            "real_time_factor 2 needs publish_clock: true",
+            marks=pytest.mark.evidence,
+        ),
+        pytest.param(
+            ["-p", "seeds:=2"],
+            "unknown parameter seeds: did you mean seed?",
+            marks=pytest.mark.evidence,
+        ),
         ([], "the physics engine is not installed (mujoco is missing): pip install mujoco"),
     ],
     ids=["faster", "misspelt", "no mujoco"],
