@@ -110,7 +110,9 @@ setup(
     entry_points={
         "console_scripts": [
             f"compare_node = {PACKAGE}.ros.start:compare_node",
+            f"drive_node = {PACKAGE}.ros.start:drive_node",
             f"odom_node = {PACKAGE}.ros.start:odom_node",
+            f"simulated_robot = {PACKAGE}.ros.start:simulated_robot",
             f"werrimbi = {PACKAGE}.cli.main:main",
         ],
     },

@@ -16,16 +16,21 @@ import pytest
 ROOT = Path(__file__).parents[2]
 WHAT_ROS_SEES = (
     "lib/werrimbi_odom/compare_node",
+    "lib/werrimbi_odom/drive_node",
     "lib/werrimbi_odom/odom_node",
+    "lib/werrimbi_odom/simulated_robot",
     "lib/werrimbi_odom/werrimbi",
     "share/werrimbi_odom/package.xml",
     "share/werrimbi_odom/config/robot.yaml",
     "share/werrimbi_odom/config/ekf.yaml",
     "share/werrimbi_odom/launch/compare.launch.xml",
+    "share/werrimbi_odom/launch/drive.launch.xml",
     "share/werrimbi_odom/launch/odom.launch.xml",
     "share/werrimbi_odom/launch/odom_ekf.launch.xml",
+    "share/werrimbi_odom/launch/simulated.launch.xml",
     "share/werrimbi_odom/launch/view.launch.xml",
     "share/werrimbi_odom/rviz/odom.rviz",
+    "share/werrimbi_odom/rviz/simulated.rviz",
     "share/ament_index/resource_index/packages/werrimbi_odom",
 )
 

@@ -15,7 +15,10 @@ from test.package.launching import launched
 
 ROOT = Path(__file__).parents[2]
 FILES = sorted(path.name for path in (ROOT / "launch").glob("*"))
-ASKED = {"compare.launch.xml": {"reference": "/vrpn/robot/pose"}}
+ASKED = {
+    "compare.launch.xml": {"reference": "/vrpn/robot/pose"},
+    "drive.launch.xml": {"area_radius": "4.0"},
+}
 PACKAGE_OF = {"tf2_ros": "tf2_ros_py"}  # whose Python module bears another package's name
 ELSEWHERE = {("robot_localization", "ekf_node"), ("rviz2", "rviz2")}
 
@@ -69,11 +72,21 @@ def test_rviz_shows_path_pieces_and_ellipses_on_the_nodes_topics() -> None:
     assert set(shown["MarkerArray"]["Namespaces"]) == kinds | {f"{kind} ellipse" for kind in kinds}
     assert shown["Odometry"]["Topic"]["Value"] == "/odom"
     assert shown["Odometry"]["Covariance"]["Position"]["Scale"] == pytest.approx(2.4477)
-    # RViz in a namespace: view.launch.xml takes every absolute name of the file to it.
+
+
+@pytest.mark.parametrize("name", ["odom.rviz", "simulated.rviz"])
+def test_rviz_in_a_namespace_looks_at_that_robot(name: str) -> None:
+    """view.launch.xml takes every absolute name of the file to the namespace."""
     (view,) = launched(ROOT, "view.launch.xml", namespace="robot1")
-    topics = re.findall(r"Value: (/\S+)", (ROOT / "rviz" / "odom.rviz").read_text(encoding="utf-8"))
+    text = (ROOT / "rviz" / name).read_text(encoding="utf-8")
+    topics = re.findall(r"Value: (/\S+)", text)
+    assert topics
     for topic in topics:
         assert f"{topic}:={topic[1:]}" in view.arguments
+    # Only what differs: the view of a simulated robot shows all that the other shows.
+    shown = YAML(typ="safe").load(text)["Visualization Manager"]["Displays"]
+    plain = YAML(typ="safe").load((ROOT / "rviz" / "odom.rviz").read_text(encoding="utf-8"))
+    assert all(each in shown for each in plain["Visualization Manager"]["Displays"])
 
 
 def test_every_message_package_that_the_nodes_import_is_a_dependency() -> None:

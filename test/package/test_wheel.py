@@ -108,7 +108,7 @@ def test_what_is_missing_is_said_in_one_line(
 
 
 @pytest.mark.evidence
-@pytest.mark.parametrize("node", ["odom_node", "compare_node"])
+@pytest.mark.parametrize("node", ["odom_node", "compare_node", "drive_node", "simulated_robot"])
 def test_a_node_without_ros_says_so(alone: Path, tmp_path: Path, node: str) -> None:
     told = run([str(alone / node), "--ros-args"], tmp_path)
     assert told.returncode == 2

@@ -34,3 +34,15 @@ def test_what_may_change_at_run_time_is_listed() -> None:
     listed = between("changeable", "end of changeable").strip().rstrip(".").replace("\n", " ")
     assert listed.split(", ") == [f"`{p.name}`" for p in PARAMETERS if p.name in CHANGEABLE]
     assert len(CHANGEABLE) == len(listed.split(", "))
+
+
+@pytest.mark.parametrize(
+    ("node", "module"),
+    [("simulated_robot", "simulated_parameters"), ("drive_node", "drive_parameters")],
+)
+def test_the_tables_of_the_driving_page_are_what_the_commands_print(node: str, module: str) -> None:
+    command = [sys.executable, "-m", f"werrimbi_odom.ros.{module}"]
+    printed = subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout
+    page = (ROOT / "docs" / "driving.md").read_text(encoding="utf-8")
+    kept = page.partition(f"<!-- {node} -->\n")[2].partition(f"<!-- end of {node} -->")[0]
+    assert kept == printed

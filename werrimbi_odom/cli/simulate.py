@@ -145,17 +145,12 @@ def _in_the_field(
 
 def _chosen(wishes: Sequence[str], seed: int) -> list[Hidden]:
     """What was asked for with --hide, its strengths drawn where they were not given."""
-    from werrimbi_odom.simulation import StrengthError, UnknownEffectError, hide
+    from werrimbi_odom.simulation import StrengthError, UnknownEffectError, wished
 
     hidden = []
-    for number_of_wish, wish in enumerate(wishes):
-        name, _, number = wish.partition("=")
+    for number, wish in enumerate(wishes):
         try:
-            strength = float(number) if number else None
-        except ValueError:
-            raise InputError(f"--hide {wish}: the strength {number!r} is not a number") from None
-        try:
-            hidden.append(hide(name, strength, seed=seed, number=number_of_wish))
+            hidden.append(wished(wish, seed=seed, number=number))
         except UnknownEffectError as error:
             raise InputError(f"--hide {wish}: {error} (all: werrimbi simulate --list)") from error
         except StrengthError as error:

@@ -280,6 +280,15 @@ PARAMETERS: tuple[Parameter, ...] = (
         "nav_msgs/Odometry (yaw).",
         choices=("imu", "pose_stamped", "odometry"),
     ),
+    Parameter(
+        "slip_imu_topic",
+        "string",
+        "",
+        "",
+        "Topic of a gyro (sensor_msgs/Imu, z up): where it contradicts the wheels, they slip, and "
+        "the covariance grows by what was missed; empty: it does not.",
+        may_be_empty=True,
+    ),
 )
 
 

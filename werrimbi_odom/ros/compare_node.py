@@ -38,6 +38,7 @@ from werrimbi_odom.ros.compare_inputs import (
 from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError
 from werrimbi_odom.ros.compare_track import OdometryTrack, Reading
 from werrimbi_odom.ros.compare_window import Window
+from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.graph import Company, full_name
 from werrimbi_odom.ros.running import run
 
@@ -60,7 +61,7 @@ class CompareNode(Node):  # type: ignore[misc]
 
     def __init__(self) -> None:
         super().__init__("compare_node")
-        values = compare_parameters.declared(self)
+        values = declared(self, compare_parameters.PARAMETERS)
         xy, yaw = (
             compare_parameters.squared(values, f"reference_sigma_{part}") for part in ("xy", "yaw")
         )

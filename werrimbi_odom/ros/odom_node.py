@@ -10,13 +10,12 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 from builtin_interfaces.msg import Time as Stamp
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
-from geometry_msgs.msg import PoseWithCovarianceStamped, TransformStamped
+from geometry_msgs.msg import PoseWithCovarianceStamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
@@ -36,15 +35,15 @@ from werrimbi_odom.ros.learning import learning_of, told
 from werrimbi_odom.ros.markers import PieceTrail
 from werrimbi_odom.ros.messages import OdometryMessage, pose_from, transform_of
 from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.slip import slip_of
 from werrimbi_odom.ros.status import status_of
 from werrimbi_odom.ros.tracker import Finished, Tracker
+from werrimbi_odom.ros.transforms import transform_sender
 
 STATUS_PERIOD = 0.2
 """Seconds from one ~/status to the next."""
 DIAGNOSTICS_EVERY = 5
 """Times that ~/status comes for one /diagnostics."""
-
-SendTransform = Callable[[TransformStamped], None]
 
 
 class OdomNode(Node):  # type: ignore[misc]
@@ -76,8 +75,11 @@ class OdomNode(Node):  # type: ignore[misc]
         self._pieces = self._publisher(MarkerArray, "~/pieces", 100)
         self._status = self._publisher(DiagnosticStatus, "~/status", 10)
         self._diagnostics = self._publisher(DiagnosticArray, "/diagnostics", 10)
-        self._send_transform = _transform_sender(self) if values["enable_odom_tf"] else None
+        self._send_transform = (
+            transform_sender(self, "enable_odom_tf") if values["enable_odom_tf"] else None
+        )
         self._learning = learning_of(inputs.Wiring(self, values, self._take, self._health), robot)
+        self._slip = slip_of(inputs.Wiring(self, values, self._take, self._health), robot)
         self._input = inputs.subscribed(inputs.Wiring(self, values, self._take, self._health))
         self.create_subscription(
             PoseWithCovarianceStamped,
@@ -115,6 +117,9 @@ class OdomNode(Node):  # type: ignore[misc]
             self._send_transform(transform_of(odometry))
         self._keep(self._tracker.finished_by(estimate))
         self._learning.after(self._tracker)
+        missed = self._slip.missed(self._tracker)
+        if missed.heading:
+            self._keep(self._tracker.grow(missed))
 
     def _keep(self, finished: Finished | None) -> None:
         """Add a piece to those that RViz shows; without a viewer nothing is drawn."""
@@ -151,6 +156,7 @@ class OdomNode(Node):  # type: ignore[misc]
         self._health.silent_after = limits.gap_duration
         self._keep(self._tracker.retune(robot, settings.tolerance, limits))
         self._learning.retune(robot, tuple(changes))
+        self._slip.retune(robot)
         self.get_logger().info(
             "from here on: " + ", ".join(f"{name} {value}" for name, value in changes.items())
         )
@@ -203,7 +209,7 @@ class OdomNode(Node):  # type: ignore[misc]
 
     def _publish_diagnostics(self) -> None:
         name = f"{full_name(self)}: wheel encoders"
-        effects = told(self._settings.effects, self._learning)
+        effects = told(self._settings.effects, self._learning) | self._slip.told()
         # Another driver on the topic may be that of an arm, whose joints come too.
         wrong = self._company.look(others_welcome=self._health.foreign > self._foreign)
         self._foreign = self._health.foreign
@@ -254,18 +260,6 @@ class OdomNode(Node):  # type: ignore[misc]
             f"{values['input_type']} on {' and '.join(self._topics)}, odometry on "
             f"{self._odometry.topic_name} from {self._frame} to {values['base_frame_id']}"
         )
-
-
-def _transform_sender(node: Node) -> SendTransform:
-    try:
-        from tf2_ros import TransformBroadcaster
-    except ImportError as error:
-        raise InputError(
-            "enable_odom_tf needs tf2_ros, which is not installed here: install the package "
-            "ros-jazzy-tf2-ros-py, or set enable_odom_tf: false and let an EKF broadcast"
-        ) from error
-    sender: SendTransform = TransformBroadcaster(node).sendTransform
-    return sender
 
 
 def main(args: list[str] | None = None) -> int:

@@ -7,6 +7,7 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Callable
+from typing import TypeVar
 
 import rclpy
 from rclpy.exceptions import ParameterException
@@ -17,8 +18,16 @@ from rclpy.utilities import remove_ros_args
 
 from werrimbi_odom.errors import InputError
 
+Made = TypeVar("Made", bound=Node)
 
-def run(make_node: Callable[[], Node], name: str, args: list[str] | None = None) -> int:
+
+def run(
+    make_node: Callable[[], Made],
+    name: str,
+    args: list[str] | None = None,
+    *,
+    farewell: Callable[[Made], None] | None = None,
+) -> int:
     """Run a node until it is told to stop.
 
     Parameters
@@ -29,6 +38,8 @@ def run(make_node: Callable[[], Node], name: str, args: list[str] | None = None)
         For what is said before there is a node.
     args : list of str, optional
         Arguments for ROS; those of the command line if left out.
+    farewell : callable of the node, optional
+        What it does before it ends, whatever ends it, while it can still publish.
 
     Returns
     -------
@@ -48,6 +59,8 @@ def run(make_node: Callable[[], Node], name: str, args: list[str] | None = None)
     try:
         node = make_node()
         executor = SingleThreadedExecutor()
+        if farewell is not None:
+            return _spin_until_told(node, executor, told, farewell)
         # Not before: rclpy's handlers shut the context down, and rclpy cannot set up anything in
         # a context that is.
         install_signal_handlers(SignalHandlerOptions.ALL)
@@ -69,6 +82,20 @@ def run(make_node: Callable[[], Node], name: str, args: list[str] | None = None)
             node.destroy_node()
         rclpy.try_shutdown()  # puts the handlers back that stood before rclpy's
         told.ignore()
+    return 0
+
+
+def _spin_until_told(
+    node: Made, executor: SingleThreadedExecutor, told: _Told, farewell: Callable[[Made], None]
+) -> int:
+    """Spin with our own handlers of signals: rclpy's would end the context, and all talk."""
+    executor.add_node(node)
+    try:
+        while not told.to_end:
+            executor.spin_once(timeout_sec=0.02)
+    finally:
+        farewell(node)
+        executor.shutdown()
     return 0
 
 

@@ -18,6 +18,16 @@ def compare_node() -> int:
     return _started("compare_node")
 
 
+def simulated_robot() -> int:
+    """Run `simulated_robot`; returns the exit code."""
+    return _started("simulated_robot")
+
+
+def drive_node() -> int:
+    """Run `drive_node`; returns the exit code."""
+    return _started("drive_node")
+
+
 def _started(name: str) -> int:
     try:
         node = import_module(f"werrimbi_odom.ros.{name}")

@@ -17,6 +17,7 @@ from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.slip import Missed
 from werrimbi_odom.model.stretch import PieceTolerance
 from werrimbi_odom.ros.rehearsal import is_finite
 
@@ -39,6 +40,8 @@ class Tracker:
 
     def __init__(self, robot: Robot, tolerance: PieceTolerance, limits: EncoderLimits) -> None:
         self.pose = Pose()
+        self.heading = 0.0
+        """All that was turned [rad], wherever the pose was set in between."""
         self._known = CERTAIN
         self.stamp = Stamp()
         """Of the last reading that was taken."""
@@ -97,6 +100,7 @@ class Tracker:
         if self.tally.accepted > accepted:
             self.started, self.stamp = True, stamp
         if estimate is not None:
+            self.heading += estimate.pose.yaw - self.pose.yaw
             self.pose, self._known = estimate.pose, estimate.covariance
         return estimate
 
@@ -126,6 +130,18 @@ class Tracker:
         piece = self._odometer.set_pose(pose, covariance)
         self.pose, self._known = pose, covariance
         return Finished(piece, end) if any(piece.travel) else None
+
+    def grow(self, missed: Missed) -> Finished | None:
+        """Be less sure from here on; returns the piece that this ends, if it had any length."""
+        known, yaw = self.covariance, self.pose.yaw
+        cos, sin = math.cos(yaw), math.sin(yaw)
+        more = known._replace(
+            xx=known.xx + missed.along * cos * cos,
+            xy=known.xy + missed.along * cos * sin,
+            yy=known.yy + missed.along * sin * sin,
+            yawyaw=known.yawyaw + missed.heading,
+        )
+        return self.set_pose(self.pose, more)
 
     def reset(self) -> None:
         """Go on from the origin, with no distance driven."""

@@ -12,13 +12,23 @@ True
 
 Reading order: `robot` (what is true), `manoeuvre` (what is commanded), `chassis` and `engine` (what
 happens), `wheel_noise`, `sensors` (what is seen of it), `recorder` (one drive), `run_folder`,
-`sessions` (a day of drives), `hidden` (effects for others to find).
+`sessions` (a day of drives), `live` (driven as commands come), `hidden` (effects for others to
+find).
 """
 
 from .engine import Pose, TruePath, UnstableError
 from .field import FieldDrive, FieldSensors, as_in_the_field, seen_in_the_field
 from .field_bag import write_field_bag
-from .hidden import CATALOGUE, Hidden, Peculiarity, StrengthError, UnknownEffectError, hide
+from .hidden import (
+    CATALOGUE,
+    Hidden,
+    Peculiarity,
+    StrengthError,
+    UnknownEffectError,
+    hide,
+    wished,
+)
+from .live import LiveRobot
 from .manoeuvre import Manoeuvre, Pace, moves
 from .manoeuvres import (
     arcs,
@@ -44,6 +54,7 @@ __all__ = [
     "FieldDrive",
     "FieldSensors",
     "Hidden",
+    "LiveRobot",
     "Manoeuvre",
     "Nominal",
     "Pace",
@@ -73,6 +84,7 @@ __all__ = [
     "spins",
     "square",
     "start_stop",
+    "wished",
     "write_field_bag",
     "write_robot_file",
     "write_run",

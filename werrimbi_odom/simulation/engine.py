@@ -197,6 +197,60 @@ class Engine:
 Reshaper = Callable[[Engine, Stride], None]
 """Changes the robot while it drives, after each PERIOD; may remember what it saw."""
 
+Row = tuple[float, float, float, float, float, float]
+"""Of a TruePath: time, x, y, yaw, and the angles of both shafts."""
+
+
+class Driven:
+    """A robot that is driven period by period, with all that moves and changes it on the way.
+
+    Parameters
+    ----------
+    chassis, start, angles, shifters, reshapers
+        As of `drive`.
+    """
+
+    def __init__(
+        self,
+        chassis: Chassis,
+        start: Pose,
+        angles: tuple[float, float],
+        shifters: Sequence[Shifter] = (),
+        reshapers: Sequence[Reshaper] = (),
+    ) -> None:
+        self._engine = Engine(chassis, start, angles)
+        self._shifters, self._reshapers = tuple(shifters), tuple(reshapers)
+        self._pose, self._wheels = self._engine.pose, self._engine.wheel_angles
+        self._periods = 0
+        self.row: Row = (0.0, *self._pose, *self._engine.shaft_angles)
+        """The present row of the true path."""
+
+    def advance(self, left_speed: float, right_speed: float) -> Row:
+        """Hold the commanded speeds of the motors [rad/s] for one PERIOD; the path's next row."""
+        engine, before, wheels = self._engine, self._pose, self._wheels
+        self._periods += 1
+        engine.advance(left_speed, right_speed)
+        now, turned = engine.pose, engine.wheel_angles
+        stride = Stride(
+            time=self._periods * PERIOD,
+            period=PERIOD,
+            left=(turned[0] - wheels[0]) * engine.radius("left"),
+            right=(turned[1] - wheels[1]) * engine.radius("right"),
+            pose=now,
+        )
+        speed = (stride.left + stride.right) / 2 / PERIOD
+        creep = Shift(0.0, CURVE_CREEP * speed * (now.yaw - before.yaw), 0.0)
+        engine.move((creep, *(shifter(stride) for shifter in self._shifters)))
+        for reshape in self._reshapers:
+            reshape(engine, stride)
+        self._pose, self._wheels = engine.pose, turned
+        self.row = (stride.time, *self._pose, *engine.shaft_angles)
+        return self.row
+
+    def check(self) -> None:
+        """Raise UnstableError if anything went wrong since the beginning."""
+        self._engine.check()
+
 
 def drive(
     chassis: Chassis,
@@ -226,26 +280,10 @@ def drive(
     -------
     TruePath, of n + 1 rows
     """
-    engine = Engine(chassis, start, angles)
+    robot = Driven(chassis, start, angles, shifters, reshapers)
     rows = np.empty((len(wheel_speeds) + 1, 6))
-    before, wheels = engine.pose, engine.wheel_angles
-    rows[0] = (0.0, *before, *engine.shaft_angles)
+    rows[0] = robot.row
     for i, (left_speed, right_speed) in enumerate(wheel_speeds, start=1):
-        engine.advance(left_speed, right_speed)
-        now, turned = engine.pose, engine.wheel_angles
-        stride = Stride(
-            time=i * PERIOD,
-            period=PERIOD,
-            left=(turned[0] - wheels[0]) * engine.radius("left"),
-            right=(turned[1] - wheels[1]) * engine.radius("right"),
-            pose=now,
-        )
-        speed = (stride.left + stride.right) / 2 / PERIOD
-        creep = Shift(0.0, CURVE_CREEP * speed * (now.yaw - before.yaw), 0.0)
-        engine.move((creep, *(shifter(stride) for shifter in shifters)))
-        for reshape in reshapers:
-            reshape(engine, stride)
-        before, wheels = engine.pose, turned
-        rows[i] = (stride.time, *before, *engine.shaft_angles)
-    engine.check()
+        rows[i] = robot.advance(left_speed, right_speed)
+    robot.check()
     return TruePath(*np.ascontiguousarray(rows.T))

@@ -101,6 +101,23 @@ class FieldDrive:
     truth: dict[str, object] = field(default_factory=dict)
 
 
+@dataclass(frozen=True)
+class Gyro:
+    """One robot's gyro: bias and noise of a reading [rad/s], and its scale."""
+
+    bias: float
+    scale: float
+    noise: float
+
+
+def gyro_of(sensors: FieldSensors, *, robot_seed: int) -> Gyro:
+    """The gyro that a robot has in all its drives."""
+    own = np.random.default_rng([robot_seed, 78])
+    bias = float(own.uniform(-1.0, 1.0) * sensors.gyro_bias)
+    scale = float(1.0 + own.uniform(-1.0, 1.0) * sensors.gyro_scale)
+    return Gyro(bias, scale, sensors.gyro_noise)
+
+
 def as_in_the_field(
     recording: Recording,
     robot: TrueRobot,
@@ -118,9 +135,7 @@ def as_in_the_field(
     """
     sensors = sensors or FieldSensors()
     rng = np.random.default_rng([seed, 77])
-    own = np.random.default_rng([robot_seed, 78])
-    bias = float(own.uniform(-1.0, 1.0) * sensors.gyro_bias)
-    scale = float(1.0 + own.uniform(-1.0, 1.0) * sensors.gyro_scale)
+    gyro = gyro_of(sensors, robot_seed=robot_seed)
     path, held = _held(recording.true_path, rng)
     path, carried = _carried(path, rng)
     end = float(path.t_s[-1])
@@ -139,7 +154,7 @@ def as_in_the_field(
 
     at = sampling_times(sensors.imu_hz, end, rng)
     rate = np.interp(at, path.t_s, np.gradient(path.yaw_rad, path.t_s))
-    rate = scale * rate + bias + sensors.gyro_noise * rng.standard_normal(at.size)
+    rate = gyro.scale * rate + gyro.bias + gyro.noise * rng.standard_normal(at.size)
     imu = np.column_stack([*_stamped(at, sensors, rng), rate])
 
     at = sampling_times(sensors.localiser_hz, end, rng)
@@ -149,7 +164,7 @@ def as_in_the_field(
         "held": [_by_the_bag(held)],
         "carried": [_by_the_bag(carried)],
         "localiser_jumps": _by_the_bag(jumped),
-        "gyro": {"bias_rad_per_s": bias, "scale": scale},
+        "gyro": {"bias_rad_per_s": gyro.bias, "scale": gyro.scale},
     }
     odometry = _dead_reckoned(left, right, robot)
     room = around(path.x_m, path.y_m, robot_seed)

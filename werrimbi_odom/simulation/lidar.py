@@ -128,6 +128,13 @@ def scanned(path: TruePath, room: Room, lidar: Lidar, seed: int) -> Sweeps:
     rng = np.random.default_rng([seed, 79])
     turn = 1.0 / lidar.rate_hz
     start = np.arange(path.t_s[0] + rng.uniform(0.0, turn), path.t_s[-1] - turn, turn)
+    return sweeps_at(path, room, lidar, start, rng)
+
+
+def sweeps_at(
+    path: TruePath, room: Room, lidar: Lidar, start: Floats, rng: np.random.Generator
+) -> Sweeps:
+    """What a lidar sees in turns that begin at `start` (n,) [s]."""
     number = np.arange(lidar.beams)
     at = (start[:, None] + lidar.beam_interval * number).ravel()
     x, y, yaw = _lidar_at(path, lidar, at)

@@ -6,20 +6,23 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 from functools import reduce
-from typing import Literal
+from typing import Literal, overload
 
 import numpy as np
 from numpy.typing import NDArray
 
-from .chassis import chassis_of
-from .engine import PERIOD, Pose, TruePath, drive
+from .chassis import Chassis, chassis_of
+from .engine import PERIOD, Pose, Reshaper, Shifter, TruePath, drive
 from .hidden.peculiarity import Peculiarity
 from .manoeuvre import Manoeuvre
 from .recording import Recording
 from .robot import TrueRobot
 from .sensors import ReferenceSensor, count, sampling_times
 from .wheel_noise import wheel_noise
+
+Floats = NDArray[np.float64]
 
 REST = 0.6
 """Standstill before and after the manoeuvre [s]."""
@@ -53,6 +56,44 @@ def record(
     hidden : sequence of Peculiarity
         What is odd about the robot, its floor or its recording; acts in this order.
     """
+    ready = prepared(robot, seed=seed, reference=reference, start=start, hidden=hidden)
+    robot = ready.robot
+    path = drive(
+        ready.chassis,
+        wheel_speeds(robot, manoeuvre),
+        start=ready.start,
+        angles=ready.angles,
+        shifters=ready.shifters,
+        reshapers=ready.reshapers,
+    )
+    recording = _sample(robot, manoeuvre.name, path, ready.sensor, ticks_rate_hz, seed)
+    for number, odd in enumerate(hidden):
+        recording = odd.recording(recording, robot, stream(seed, "hidden", number))
+    return recording
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A robot ready to be driven, with all that is odd about it, as `drive` takes it."""
+
+    robot: TrueRobot
+    sensor: ReferenceSensor
+    chassis: Chassis
+    start: Pose
+    angles: tuple[float, float]
+    shifters: Sequence[Shifter]
+    reshapers: Sequence[Reshaper]
+
+
+def prepared(
+    robot: TrueRobot,
+    *,
+    seed: int,
+    reference: ReferenceSensor | None = None,
+    start: Pose | None = None,
+    hidden: Sequence[Peculiarity] = (),
+) -> Prepared:
+    """Put a robot on its floor; parameters as of `record`."""
     robot = reduce(lambda so_far, odd: odd.robot(so_far), hidden, robot)
     chassis = reduce(lambda so_far, odd: odd.chassis(so_far), hidden, chassis_of(robot))
     sensor = reduce(
@@ -60,29 +101,34 @@ def record(
     )
 
     def rng_of(number: int) -> np.random.Generator:
-        return _stream(seed, "hidden", number)
+        return stream(seed, "hidden", number)
 
     shifters = [odd.shifter(robot, rng_of(i)) for i, odd in enumerate(hidden)]
     reshapers = [odd.reshaper(chassis, rng_of(i)) for i, odd in enumerate(hidden)]
 
-    rng = _stream(seed, "start")
+    rng = stream(seed, "start")
     anywhere = Pose(*rng.uniform((-1.0, -1.0, -math.pi), (1.0, 1.0, math.pi)))
     angles = rng.uniform(0.0, 2 * math.pi, 2)
-    path = drive(
+    return Prepared(
+        robot,
+        sensor,
         chassis,
-        wheel_speeds(robot, manoeuvre),
         start=anywhere if start is None else start,
         angles=(float(angles[0]), float(angles[1])),
         shifters=[
-            wheel_noise(robot, _stream(seed, "wheel noise")),
+            wheel_noise(robot, stream(seed, "wheel noise")),
             *(shifter for shifter in shifters if shifter),
         ],
         reshapers=[reshaper for reshaper in reshapers if reshaper],
     )
-    recording = _sample(robot, manoeuvre.name, path, sensor, ticks_rate_hz, seed)
-    for number, odd in enumerate(hidden):
-        recording = odd.recording(recording, robot, rng_of(number))
-    return recording
+
+
+def counter_zeros(robot: TrueRobot, seed: int) -> tuple[int, int]:
+    """What the counters, left and right, show where their shafts' angles are zero."""
+    if robot.counters_keep_zero:
+        return 0, 0
+    left, right = stream(seed, "counters").integers(-100_000, 100_000, 2)
+    return int(left), int(right)
 
 
 def _sample(
@@ -95,18 +141,16 @@ def _sample(
 ) -> Recording:
     """What encoders and reference saw of the true path."""
     end = float(path.t_s[-1])
-    t = sampling_times(ticks_rate_hz, end, _stream(seed, "encoders"))
-    zeros = _stream(seed, "counters").integers(-100_000, 100_000, 2)
-    if robot.counters_keep_zero:
-        zeros = np.zeros_like(zeros)
+    t = sampling_times(ticks_rate_hz, end, stream(seed, "encoders"))
+    zeros = counter_zeros(robot, seed)
     left, right = (
-        count(path.t_s, angle, t, resolution, int(zero))
+        count(path.t_s, angle, t, resolution, zero)
         for angle, resolution, zero in (
             (path.left_angle_rad, robot.left_ticks_per_revolution, zeros[0]),
             (path.right_angle_rad, robot.right_ticks_per_revolution, zeros[1]),
         )
     )
-    rng = _stream(seed, "reference")
+    rng = stream(seed, "reference")
     reference_t = sensor.times(end, rng)
     x, y, yaw = sensor.measure(path, reference_t, rng)
     return Recording(
@@ -122,7 +166,7 @@ def _sample(
     )
 
 
-def wheel_speeds(robot: TrueRobot, manoeuvre: Manoeuvre) -> NDArray[np.float64]:
+def wheel_speeds(robot: TrueRobot, manoeuvre: Manoeuvre) -> Floats:
     """Motor speeds that the robot's own controller, believing the nominal geometry, asks for.
 
     Returns
@@ -133,8 +177,19 @@ def wheel_speeds(robot: TrueRobot, manoeuvre: Manoeuvre) -> NDArray[np.float64]:
     periods = math.ceil((manoeuvre.duration + 2 * REST) / PERIOD)
     times = PERIOD * np.arange(periods + 1, dtype=np.float64) - REST
     speed, yaw_rate = manoeuvre.commands(times)
+    return np.column_stack(motor_speeds(robot, speed, yaw_rate))
+
+
+@overload
+def motor_speeds(robot: TrueRobot, speed: float, yaw_rate: float) -> tuple[float, float]: ...
+@overload
+def motor_speeds(robot: TrueRobot, speed: Floats, yaw_rate: Floats) -> tuple[Floats, Floats]: ...
+def motor_speeds(
+    robot: TrueRobot, speed: float | Floats, yaw_rate: float | Floats
+) -> tuple[float | Floats, float | Floats]:
+    """Of the left and right motor [rad/s], by the nominal geometry."""
     half, radius = robot.nominal.wheel_separation / 2, robot.nominal.wheel_radius
-    return np.column_stack((speed - half * yaw_rate, speed + half * yaw_rate)) / radius
+    return (speed - half * yaw_rate) / radius, (speed + half * yaw_rate) / radius
 
 
 Purpose = Literal["start", "wheel noise", "encoders", "counters", "reference", "hidden"]
@@ -148,6 +203,6 @@ _PURPOSES: tuple[Purpose, ...] = (
 )
 
 
-def _stream(seed: int, purpose: Purpose, number: int = 0) -> np.random.Generator:
+def stream(seed: int, purpose: Purpose, number: int = 0) -> np.random.Generator:
     """Random numbers of one purpose in the run `seed`, always from their beginning."""
     return np.random.default_rng([seed, _PURPOSES.index(purpose), number])

@@ -9,7 +9,6 @@ what an effect would change in them. No physics engine: that is for tests.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,6 +16,7 @@ import numpy as np
 
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
 from werrimbi_odom.inference.rules import (
     FASTEST_PACE,
     HARD_START,
@@ -30,14 +30,13 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.wiring import Wiring
 
+__all__ = ["MANOEUVRES", "Ideal", "Pace", "ideal_run", "pace_of", "rates_of"]
+
 REST = 0.6
 """Standstill before and after [s]."""
 
 FINE = 0.005
 """Steps of the ideal path [s]."""
-
-Move = tuple[float, float, float]
-"""Length [m], turn [rad], and pace: 1 for fast, less for slower."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -60,79 +59,6 @@ class Pace:
     def yaw_rate(self) -> float:
         """Spinning with the wheels at 0.6 of their speed [rad/s]."""
         return 1.2 * self.speed / self.base
-
-
-@dataclass(frozen=True, slots=True)
-class Ideal:
-    """A manoeuvre of the library."""
-
-    name: str
-    """As `werrimbi_odom.simulation` calls it, where it has one."""
-    words: str
-    """What to drive."""
-    where: str
-    """The place in a sentence about what will differ there."""
-    moves: Callable[[float], Sequence[Move]]
-    """For a robot of a size [m]."""
-    hard: bool = False
-    """Started and stopped as hard as the robot does."""
-
-
-def _square(size: float) -> list[Move]:
-    sides = [(2.0 * size, 0.0, 0.6), (0.0, 0.5 * math.pi, 0.6)]
-    return sides * 4 + [(length, -turn, pace) for length, turn, pace in sides] * 4
-
-
-def _spins(size: float) -> list[Move]:
-    return [(0.0, sense * 4.0 * math.pi, pace) for pace in (1.0, 0.4) for sense in (1.0, -1.0)]
-
-
-def _arcs(size: float) -> list[Move]:
-    return [
-        (direction * radius * size * math.pi, direction * sense * math.pi, pace)
-        for pace in (0.3, 1.0)
-        for radius in (0.4, 1.2)
-        for sense in (1.0, -1.0)
-        for direction in (1.0, -1.0)
-    ]
-
-
-def _out_and_back(size: float) -> list[Move]:
-    return [(way * 3.0 * size, 0.0, pace) for pace in (0.25, 0.6, 1.0) * 2 for way in (1.0, -1.0)]
-
-
-def _start_stop(size: float) -> list[Move]:
-    # Unequal hops: else the legs, of one length, would all end at the same speed.
-    hops = (0.35, 0.5, 0.65, 0.8, 0.45, 0.6)
-    return [(way * hop * size, 0.0, 1.0) for way in (1.0, -1.0) for hop in hops] * 2
-
-
-def _figure_eight(size: float) -> list[Move]:
-    around = 2.0 * math.pi * size
-    return [(around, sense * 2.0 * math.pi, pace) for pace in (0.3, 0.8) for sense in (1.0, -1.0)]
-
-
-def _stand_still(size: float) -> list[Move]:
-    return [(0.0, 0.0, 60.0), (size, 0.0, 0.6), (0.0, 0.0, 60.0), (-size, 0.0, 0.6)]
-
-
-MANOEUVRES: tuple[Ideal, ...] = (
-    Ideal("spins", "spins on the spot, to the left and to the right, fast and slow",
-          "spinning on the spot", _spins),
-    Ideal("arcs", "small and large arcs, to both sides, forwards and backwards, slow and fast",
-          "on small and large arcs, slow and fast", _arcs),
-    Ideal("out_and_back", "lines, forwards and backwards again, slowly, then faster, then fast",
-          "on lines, slow and fast, forwards and backwards", _out_and_back),
-    Ideal("start_stop", "short hops with hard starts and hard stops, forwards and backwards",
-          "starting and stopping hard", _start_stop, True),
-    Ideal("square", "a square to the left and a square to the right, turning on the spot",
-          "round squares in both senses", _square),
-    Ideal("figure_eight", "figures of eight, slowly, then fast", "round eights, slow and fast",
-          _figure_eight),
-    Ideal("stand_still", "short lines, with a minute of standing still between them",
-          "standing still", _stand_still),
-)  # fmt: skip
-"""Simplest first: of equals the first one is taken."""
 
 
 def pace_of(runs: Together, robot: Robot) -> Pace:

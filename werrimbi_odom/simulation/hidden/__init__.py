@@ -6,7 +6,16 @@
 realistic strengths; each other file holds one family of them.
 """
 
-from .catalogue import CATALOGUE, Entry, Hidden, StrengthError, UnknownEffectError, find, hide
+from .catalogue import (
+    CATALOGUE,
+    Entry,
+    Hidden,
+    StrengthError,
+    UnknownEffectError,
+    find,
+    hide,
+    wished,
+)
 from .peculiarity import Peculiarity
 
 __all__ = [
@@ -18,4 +27,5 @@ __all__ = [
     "UnknownEffectError",
     "find",
     "hide",
+    "wished",
 ]

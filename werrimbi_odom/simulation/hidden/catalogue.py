@@ -238,3 +238,19 @@ def hide(name: str, strength: float | None = None, *, seed: int, number: int = 0
     if not math.isfinite(strength) or (entry.null > 0 and strength <= 0):
         raise StrengthError(f"the strength of {entry.name} cannot be {strength:g}")
     return Hidden(entry, strength, entry.make(strength, rng))
+
+
+def wished(wish: str, *, seed: int, number: int = 0) -> Hidden:
+    """What EFFECT or EFFECT=STRENGTH asks to be hidden; the rest as of `hide`.
+
+    Raises
+    ------
+    UnknownEffectError, StrengthError
+        When there is none of that name, or it cannot be that strong.
+    """
+    name, _, strength = wish.partition("=")
+    try:
+        value = float(strength) if strength else None
+    except ValueError:
+        raise StrengthError(f"the strength {strength!r} is not a number") from None
+    return hide(name, value, seed=seed, number=number)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from ..recording import Recording
 from ..robot import TrueRobot
 from ..sensors import count
-from .peculiarity import Peculiarity
+from .peculiarity import Counted, Peculiarity
 from .wheels import Side
 
 Floats = NDArray[np.float64]
@@ -21,6 +22,15 @@ Floats = NDArray[np.float64]
 def _angle(recording: Recording, side: Side) -> Floats:
     path = recording.true_path
     return path.left_angle_rad if side == "left" else path.right_angle_rad
+
+
+def _rows(recording: Recording) -> Iterator[tuple[float, float, float]]:
+    """Time and both shafts' angles."""
+    path = recording.true_path
+    return zip(
+        *(each.tolist() for each in (path.t_s, path.left_angle_rad, path.right_angle_rad)),
+        strict=True,
+    )
 
 
 def _ticks(recording: Recording, side: Side) -> NDArray[np.int64]:
@@ -61,15 +71,33 @@ class MissedTicks(Peculiarity):
     ) -> Recording:
         """Take the lost counts away."""
         t, angle = recording.true_path.t_s, _angle(recording, self.side)
-        radius = getattr(robot, f"{self.side}_wheel_radius")
-        steps = np.diff(angle)
-        fast = np.abs(steps / np.diff(t)) * radius > self.above
-        lost = self.fraction * np.concatenate(([0.0], np.cumsum(np.where(fast, steps, 0.0))))
+        seen = self.counted(robot)
+        counted = np.array([seen(*row) for row in _rows(recording)])
         resolution = _resolution(robot, self.side)
         missing = count(t, angle, recording.t_s, resolution) - count(
-            t, angle - lost, recording.t_s, resolution
+            t, counted[:, 0 if self.side == "left" else 1], recording.t_s, resolution
         )
         return _with_ticks(recording, self.side, _ticks(recording, self.side) - missing)
+
+    def counted(self, robot: TrueRobot) -> Counted:
+        """Both shafts' angles, the one of this side less what was lost so far."""
+        radius = getattr(robot, f"{self.side}_wheel_radius")
+        which = 0 if self.side == "left" else 1
+        before: tuple[float, float] | None = None  # time and angle
+        fast = 0.0
+
+        def count_on(time: float, left: float, right: float) -> tuple[float, float]:
+            nonlocal before, fast
+            angles = [left, right]
+            if before is not None:
+                step = angles[which] - before[1]
+                if abs(step / (time - before[0])) * radius > self.above:
+                    fast += step
+            before = time, angles[which]
+            angles[which] -= self.fraction * fast
+            return angles[0], angles[1]
+
+        return count_on
 
 
 @dataclass(frozen=True)
@@ -77,6 +105,11 @@ class EncoderSkew(Peculiarity):
     """The right counter is read later than the left one (earlier where negative) by `delay` [s]."""
 
     delay: float
+
+    @property
+    def ahead(self) -> float:
+        """A counter that is read later shows what comes after its stamp."""
+        return max(self.delay, 0.0)
 
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator

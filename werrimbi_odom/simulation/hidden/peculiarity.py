@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,9 @@ from ..engine import Reshaper, Shifter
 from ..recording import Recording
 from ..robot import TrueRobot
 from ..sensors import ReferenceSensor
+
+Counted = Callable[[float, float, float], tuple[float, float]]
+"""Takes time and both shafts' angles, period by period; gives the angles that are counted."""
 
 
 @dataclass(frozen=True)
@@ -46,6 +50,18 @@ class Peculiarity:
     def reference(self, sensor: ReferenceSensor) -> ReferenceSensor:
         """What measures the robot from outside."""
         return sensor
+
+    def counted(self, robot: TrueRobot) -> Counted | None:
+        """What counters make of their shafts' angles, where that depends on what was before.
+
+        For a robot that is seen live, of which no more than the last second is kept.
+        """
+        return None
+
+    @property
+    def ahead(self) -> float:
+        """How far a record looks ahead of its own stamp [s]."""
+        return 0.0
 
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator

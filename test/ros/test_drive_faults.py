@@ -1,0 +1,305 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""drive_node over DDS, on a robot that we play: each fault stops it, within 0.1 m.
+
+All of them, and how fast: `test_each_fault_stops_it_in_time`, which wants a machine of its own.
+"""
+
+from __future__ import annotations
+
+import math
+import signal
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rclpy.qos import QoSProfile
+from rclpy.time import Time
+from sensor_msgs.msg import Imu, LaserScan
+from std_srvs.srv import Trigger
+
+from test.ros.beside import Beside
+from test.ros.conftest import Launched, launcher
+
+VALUES = {
+    "manoeuvre": "paper_out_and_back",
+    "length": 1.5,
+    "area_ahead": 1.9,
+    "area_behind": 1.0,
+    "area_left": 1.0,
+    "area_right": 1.0,
+    "max_vel_x": 0.5,
+    "acc_lim_x": 2.0,
+    "max_deviation": 2.0,
+    "scan_topic": "scan",
+    "imu_topic": "imu",
+}
+SPEED = 0.2
+"""Over this the robot is under way [m/s]."""
+BRAKES = 3.0
+"""[m/s^2]"""
+BUSY = ("stopped: the odometry is silent", "stopped: the odometry comes")
+"""What a machine that is busy with other things makes of us now and then."""
+
+
+class PlayedRobot:
+    """A robot on paper that obeys cmd_vel, and whose odometry, gyro and scan can be spoilt."""
+
+    def __init__(self, client: Launched, folder: Path) -> None:
+        self.client, self._folder = client, folder
+        self.drive = self.driven()
+        self.x = self.speed = 0.0
+        self.wanted = 0.0
+        self.zero_at = math.inf
+        self.stuck: float | None = None
+        self.odometry: Callable[[Odometry], Odometry | None] = lambda message: message
+        self.gyro, self.nearest = 0.0, 2.0
+        self._at = time.monotonic()
+        node = client.node
+        deep = QoSProfile(depth=10)
+        self._odometry = node.create_publisher(Odometry, "odom", deep)
+        self._imu = node.create_publisher(Imu, "imu", deep)
+        self._scan = node.create_publisher(LaserScan, "scan", deep)
+        node.create_subscription(Twist, "cmd_vel", self._obey, deep)
+        node.create_timer(0.02, self._step)
+
+    def driven(self) -> Beside:
+        """A drive_node that has begun."""
+        return Beside(self._folder, self.client.environment, "drive_node", **VALUES)
+
+    def _obey(self, message: Twist) -> None:
+        self.wanted = message.linear.x
+        if not self.wanted and math.isinf(self.zero_at):
+            self.zero_at = time.monotonic()
+
+    def _step(self) -> None:
+        now = time.monotonic()
+        step, self._at = now - self._at, now
+        wanted = self.wanted if self.stuck is None else self.stuck
+        most = BRAKES * step
+        self.speed += min(max(wanted - self.speed, -most), most)
+        self.x += self.speed * step
+        stamp = Time(nanoseconds=time.time_ns()).to_msg()
+        message = Odometry()
+        message.header.stamp, message.header.frame_id = stamp, "odom"
+        message.pose.pose.position.x = self.x
+        message.pose.pose.orientation.w = 1.0
+        spoilt = self.odometry(message)
+        if spoilt is not None:
+            self._odometry.publish(spoilt)
+        imu = Imu()
+        imu.header.stamp, imu.angular_velocity.z = stamp, self.gyro
+        self._imu.publish(imu)
+        self._scan.publish(LaserScan(ranges=[math.inf, self.nearest], range_min=0.05))
+
+    def state(self) -> str:
+        """What drive_node last said of itself."""
+        told = [each for each in self.client.diagnostics if each.name == "drive_node: drive"]
+        return str(told[-1].message) if told else ""
+
+    def ask(self, service: str) -> Any:
+        """Call a service of drive_node."""
+        return self.client.call(Trigger, f"drive_node/{service}", Trigger.Request())
+
+    def under_way(self) -> None:
+        """Anew from the origin, until it drives; anew too where a busy machine delayed us."""
+        for _ in range(5):
+            self.x = self.speed = self.wanted = self.gyro = 0.0
+            self.nearest, self.stuck = 2.0, None
+            self.odometry = lambda message: message
+            self.client.until(lambda: self.ask("check").success, "robot that could start", 30.0)
+            self.client.diagnostics.clear()
+            if not self.ask("start").success:
+                continue
+            self.client.until(
+                lambda: self.speed > SPEED or self.state().startswith(BUSY),
+                f"motion ({self.state()})",
+                15.0,
+            )
+            if self.speed > SPEED:
+                self.zero_at = math.inf
+                return
+        raise AssertionError(self.state())
+
+    def stops(self, since: float, x: float, words: str) -> tuple[float, float]:
+        """Until it stands, having said why: time to the first zero [s], way to standstill [m]."""
+        self.client.until(lambda: not math.isinf(self.zero_at), "zero on cmd_vel")
+        self.client.until(lambda: words in self.state(), words)
+        self.stuck = None
+        self.client.until(lambda: not self.speed, "standstill")
+        assert self.state().startswith("stopped: "), self.state()
+        return self.zero_at - since, abs(self.x - x)
+
+
+@pytest.fixture(scope="module")
+def played(tmp_path_factory: pytest.TempPathFactory) -> Iterator[PlayedRobot]:
+    folder = tmp_path_factory.mktemp("drive")
+    for launch_one in launcher(folder):
+        client = launch_one()
+        robot = PlayedRobot(client, folder)
+        yield robot
+        assert robot.drive.stop() == 0, robot.drive.said()
+        assert "Traceback" not in robot.drive.said(), robot.drive.said()
+
+
+def silent(robot: PlayedRobot) -> None:
+    robot.odometry = lambda message: None
+
+
+def back(robot: PlayedRobot) -> None:
+    def spoil(message: Odometry) -> Odometry:
+        message.header.stamp.sec -= 5
+        return message
+
+    robot.odometry = spoil
+
+
+def delayed(robot: PlayedRobot) -> None:
+    waiting: list[Odometry] = []
+
+    def spoil(message: Odometry) -> Odometry | None:
+        waiting.append(message)
+        return waiting.pop(0) if len(waiting) > 16 else None
+
+    robot.odometry = spoil
+
+
+def jumping(robot: PlayedRobot) -> None:
+    def spoil(message: Odometry) -> Odometry:
+        message.pose.pose.position.y += 0.4
+        return message
+
+    robot.odometry = spoil
+
+
+def no_number(robot: PlayedRobot) -> None:
+    def spoil(message: Odometry) -> Odometry:
+        message.pose.pose.position.y = math.nan
+        return message
+
+    robot.odometry = spoil
+
+
+def slipping(robot: PlayedRobot) -> None:
+    robot.gyro = 0.6
+
+
+def something_near(robot: PlayedRobot) -> None:
+    robot.nearest = 0.3
+
+
+def asked(robot: PlayedRobot) -> None:
+    robot.ask("stop")
+
+
+FAULTS: dict[Callable[[PlayedRobot], None], str] = {
+    silent: "the odometry is silent for 0.1",
+    back: "the odometry's stamps go back",
+    delayed: "the odometry ",  # first it is silent, and then comes late
+    jumping: "the odometry jumped by 0.40 m",
+    no_number: "the odometry is no pose",
+    slipping: "the wheels slip",
+    something_near: "the scan sees something at 0.30 m",
+    asked: "asked to stop",
+}
+
+
+@pytest.mark.parametrize("fault", [silent, jumping, something_near, asked])
+def test_a_fault_stops_it_for_good(
+    played: PlayedRobot, fault: Callable[[PlayedRobot], None]
+) -> None:
+    played.under_way()
+    since, x = time.monotonic(), played.x
+    fault(played)
+    _, way = played.stops(since, x, FAULTS[fault])
+    assert way < 0.1
+    played.client.rest(0.2)
+    assert played.wanted == 0.0
+
+
+@pytest.mark.evidence
+def test_a_robot_that_does_not_obey_is_told_to_stop_at_the_border(played: PlayedRobot) -> None:
+    played.under_way()
+    played.stuck = 0.4
+    played.client.until(lambda: played.x > 1.6, "way to the border")  # 1.9 less the radius
+    _, way = played.stops(time.monotonic(), 1.6, "it left the area")
+    assert way < 0.1
+
+
+def test_another_on_cmd_vel_stops_it_and_keeps_it_from_starting(played: PlayedRobot) -> None:
+    played.under_way()
+    since, x = time.monotonic(), played.x
+    other = played.client.node.create_publisher(Twist, "cmd_vel", 10)
+    _, way = played.stops(since, x, "another publishes /cmd_vel too (/client_")
+    assert way < 0.1
+    answer = played.ask("start")
+    assert not answer.success
+    assert "another publishes /cmd_vel too" in answer.message
+    played.client.node.destroy_publisher(other)
+
+
+@pytest.mark.parametrize(
+    "end", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.evidence)]
+)
+def test_told_to_end_it_stops_the_robot_first_and_moves_nothing_when_it_is_back(
+    played: PlayedRobot, end: int
+) -> None:
+    client, drive = played.client, played.drive
+    played.under_way()
+    x = played.x
+    drive.process.send_signal(end)
+    client.until(lambda: not math.isinf(played.zero_at), "zero on cmd_vel")
+    client.until(lambda: not played.speed, "standstill")
+    assert abs(played.x - x) < 0.1, drive.said()
+    client.until(lambda: drive.process.poll() is not None, "end")
+    assert drive.stop() == 0, drive.said()
+    assert "told to end" in drive.said()
+    client.diagnostics.clear()
+    played.wanted = math.nan  # a command of any kind would be noticed
+    played.stuck = 0.0
+    played.drive = played.driven()
+    client.until(lambda: played.state().startswith("waiting"), "node that is back")
+    client.rest(1.0)
+    assert math.isnan(played.wanted)
+
+
+@pytest.mark.evidence
+def test_killed_in_mid_drive_the_base_stops_and_a_successor_waits(played: PlayedRobot) -> None:
+    """Nothing here can stop a robot whose driver was killed: the base's own timeout does."""
+    played.under_way()
+    played.drive.process.kill()
+    played.client.until(lambda: played.drive.process.poll() is not None, "end")
+    played.client.diagnostics.clear()
+    played.wanted = math.nan
+    played.stuck = 0.0
+    played.drive = played.driven()
+    played.client.until(lambda: played.state().startswith("waiting"), "node that is back")
+    played.client.rest(1.0)
+    assert math.isnan(played.wanted)
+    played.under_way()  # and can be asked again
+
+
+@pytest.mark.evidence
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.__name__)
+def test_each_fault_stops_it_in_time(
+    played: PlayedRobot, fault: Callable[[PlayedRobot], None]
+) -> None:
+    """From the fault to the first zero on cmd_vel; ten times."""
+    times, ways = [], []
+    for _ in range(10):
+        played.under_way()
+        since, x = time.monotonic(), played.x
+        fault(played)
+        took, way = played.stops(since, x, FAULTS[fault])
+        times.append(took)
+        ways.append(way)
+    print(f"{fault.__name__}: {max(times):.3f} s, {max(ways):.3f} m")
+    assert max(times) < 0.2
+    assert max(ways) < 0.1

@@ -1,0 +1,39 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""odom_node with a gyro: wheels that slip make it less sure, and nothing else does."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+pytest.importorskip("rclpy")
+
+from rclpy.time import Time
+from sensor_msgs.msg import Imu
+
+
+def test_a_spin_that_the_gyro_denies_makes_the_heading_unsure(
+    launch: Any, robot: dict[str, Any]
+) -> None:
+    node = launch(robot | {"slip_imu_topic": "imu"}).begin()
+
+    def spin(body: float) -> float:
+        """Turn the wheels by 0.6 rad within a second and a half; the variance of the heading."""
+        for step in range(75):
+            message = Imu()
+            message.angular_velocity.z = body if 10 <= step < 60 else 0.0
+            node.step(*((-13.4, 6.7) if 10 <= step < 60 else (0, 0)))
+            message.header.stamp = Time(nanoseconds=round(1e9 * node.now)).to_msg()
+            node.send(Imu, "imu", message)
+            node.rest(0.002)
+        return float(node.last().pose.covariance[35])
+
+    honest = spin(0.6015)  # as the wheels turn
+    assert honest < 1e-4
+    _, _, values = node.report()
+    assert values["slip"] == "0 times, 0.0 deg missed"
+    assert spin(0.0) == pytest.approx(0.36, rel=0.1)
+    _, _, values = node.report()
+    assert values["slip"].startswith("1 times, 3")

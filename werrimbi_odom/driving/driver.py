@@ -1,0 +1,248 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""When the robot moves, and when it stops.
+
+A `Driver` stands still until `start`, drives its plan once, and stands still again; whatever is
+wrong stops it, and nothing but another `start` moves it on. Time comes from outside: `now` is any
+clock that goes on steadily.
+"""
+
+from __future__ import annotations
+
+import math
+from collections import deque
+from typing import Literal
+
+from werrimbi_odom.driving.limits import STILL, Area, Command, Limits
+from werrimbi_odom.driving.plan import SLACK, Plan, room_of, seen_from
+from werrimbi_odom.driving.tracker import Tracker
+from werrimbi_odom.driving.watch import SLIP_WINDOW, Reading, Watch, fault_between
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.model.pose import Pose, compose
+from werrimbi_odom.model.turns import Turns
+
+State = Literal["waiting", "driving", "done", "stopped"]
+
+MIN_PERIOD = 0.012
+"""Shortest time between two commands [s]: faster odometry is watched, but commands need no more."""
+PAUSE, SHORT_PAUSE = 0.2, 0.1
+"""After a longer pause of the odometry [s] the plan has waited for it, as a base does whose
+commands stopped; and the command changes by no more than in so long."""
+OLDEST = 0.5
+"""By which the odometry's stamps may differ from the node's clock when a drive begins [s]."""
+AT_REST, AT_REST_TURN = 0.02, 0.05
+"""Fastest that still counts as standing [m/s, rad/s], over the last AT_REST_FOR seconds."""
+AT_REST_FOR = 0.3
+LATER = 60.0
+"""How much longer than planned a drive may take before it is given up [s]; with half as long."""
+
+
+class Driver:
+    """A robot that is driven through a plan.
+
+    Parameters
+    ----------
+    plan : Plan
+    limits : Limits
+    area : Area
+        About the pose of the first start.
+    watch : Watch
+    """
+
+    def __init__(self, plan: Plan, limits: Limits, area: Area, watch: Watch) -> None:
+        self.plan, self.limits, self.area, self.watch = plan, limits, area, watch
+        self.state: State = "waiting"
+        self.words = "waiting to be asked to start"
+        self.command = STILL
+        """The last one."""
+        self.last: Reading | None = None
+        self._heard = self._scanned = self._turned = -math.inf
+        self._nearest = math.inf
+        self._anchor: Pose | None = None
+        self._origin = Pose(0.0, 0.0, 0.0)
+        self._tracker = Tracker(plan, limits)
+        self._slip = Turns(SLIP_WINDOW)
+        self._since: deque[Reading] = deque()  # twice AT_REST_FOR
+        self._commanded = 0.0
+        self._least_age = math.inf
+        self._ends_by = math.inf
+
+    # ------------------------------------------------------------------------- asked for
+
+    def refusal(self, now: float) -> str:
+        """Why a drive cannot begin; "" if it can."""
+        last, watch = self.last, self.watch
+        if self.state == "driving":
+            return "it is driving already"
+        if last is None or now - self._heard > watch.odom_timeout:
+            return "no odometry comes"
+        if abs(last.age) > OLDEST:
+            return (
+                f"the odometry's stamps are {last.age:.2f} s old by this computer's clock: it is "
+                "delayed, or clocks are apart (use_sim_time?)"
+            )
+        if not self._at_rest():
+            return "the robot moves, or has not been heard to stand for long enough"
+        wrong = self._of_surroundings(now)
+        if wrong:
+            return wrong
+        path = self.plan.path()
+        room = room_of(path, self.area, seen_from(self._anchor or last.pose, last.pose))
+        if room < SLACK:
+            far = max(math.hypot(point.x, point.y) for point in path)
+            return (
+                f"the path leads {SLACK - room:.2f} m too near to the border of the area or beyond "
+                f"(it goes {far:.2f} m from where it begins; the robot's radius and {SLACK:g} m "
+                "are kept free): give more area, or a smaller manoeuvre"
+            )
+        return ""
+
+    def start(self, now: float) -> None:
+        """Begin to drive.
+
+        Raises
+        ------
+        InputError
+            When it cannot be; the message says why.
+        """
+        wrong = self.refusal(now)
+        if wrong:
+            raise InputError(wrong)
+        assert self.last is not None
+        self._origin = self.last.pose
+        self._anchor = self._anchor or self._origin
+        self._tracker = Tracker(self.plan, self.limits)
+        self._commanded, self._least_age = self.last.stamp, self.last.age
+        planned = self.plan.duration(self.limits)
+        self._ends_by = self.last.stamp + 1.5 * planned + LATER
+        self.state, self.words = "driving", f"driving {self.plan.name}"
+
+    def stop(self, why: str) -> None:
+        """Stand still at once; of a robot that is not driven nothing changes."""
+        if self.state == "driving":
+            self.state, self.words = "stopped", why
+        self.command = STILL
+
+    # ------------------------------------------------------------------------- what comes in
+
+    def odometry(self, reading: Reading, now: float) -> Command | None:
+        """Take an odometry message; the command to send, if one is due."""
+        before, self.last = self.last, reading
+        self._heard = now
+        self._slip.wheels(reading.stamp, reading.pose.yaw)
+        wrong = fault_between(before, reading, self.limits) if before else ""
+        if wrong:  # and where the area was is not known any more
+            self._since.clear()
+            self._anchor = None
+        self._since.append(reading)
+        while reading.stamp - self._since[0].stamp > 2.0 * AT_REST_FOR:
+            self._since.popleft()
+        if self.state != "driving":
+            return None
+        self._least_age = min(self._least_age, reading.age)
+        wrong = wrong or self._of_reading(reading) or self._of_surroundings(now)
+        if wrong:
+            return self._stopped(wrong)
+        duration = reading.stamp - self._commanded
+        if duration < MIN_PERIOD:
+            return None
+        self._commanded = reading.stamp
+        pose = seen_from(self._origin, reading.pose)
+        wanted = self._tracker.follow(pose, min(duration, PAUSE))
+        if self._tracker.done:
+            self.state, self.words = "done", f"{self.plan.name} is driven"
+            self.command = STILL
+            return STILL
+        wrong = self._of_following()
+        if wrong:
+            return self._stopped(wrong)
+        self.command = self.limits.kept(wanted, self.command, min(duration, SHORT_PAUSE))
+        return self.command
+
+    def scan(self, nearest: float, now: float) -> Command | None:
+        """Take the nearest distance of a scan [m]; a command if it stops the robot."""
+        self._scanned, self._nearest = now, nearest
+        return self.tick(now)
+
+    def gyro(self, stamp: float, rate: float, now: float) -> Command | None:
+        """Take a yaw rate of the gyro [rad/s]; a command if it stops the robot."""
+        self._turned = now
+        self._slip.gyro(stamp, rate)
+        return self.tick(now)
+
+    def tick(self, now: float) -> Command | None:
+        """Look at the time; a command if that stops the robot."""
+        if self.state != "driving":
+            return None
+        wrong = self._of_surroundings(now)
+        if now - self._heard > self.watch.odom_timeout:
+            wrong = f"the odometry is silent for {now - self._heard:.2f} s"
+        return self._stopped(wrong) if wrong else None
+
+    # ------------------------------------------------------------------------- judging
+
+    def _stopped(self, why: str) -> Command:
+        self.stop(why)
+        return STILL
+
+    def _of_reading(self, reading: Reading) -> str:
+        late = reading.age - self._least_age
+        if late > self.watch.odom_timeout:
+            return f"the odometry comes {late:.2f} s later than before"
+        assert self._anchor is not None
+        if reading.stamp > self._ends_by:
+            return "the manoeuvre takes far longer than planned"
+        here = seen_from(self._anchor, reading.pose)
+        if self.area.room(here.x, here.y) < 0.0:
+            return f"it left the area ({here.x:.2f}, {here.y:.2f} m from the start)"
+        return ""
+
+    def _of_surroundings(self, now: float) -> str:
+        watch = self.watch
+        if watch.scan_min_distance > 0.0:
+            if now - self._scanned > watch.scan_timeout:
+                return "no scan comes"
+            if self._nearest < watch.scan_min_distance:
+                return f"the scan sees something at {self._nearest:.2f} m"
+        if watch.slip > 0.0:
+            if now - self._turned > watch.odom_timeout:
+                return "no gyro comes"
+            apart = self._slip.difference()
+            if abs(apart) > watch.slip:
+                return f"the wheels slip: they and the gyro differ by {math.degrees(apart):.1f} deg"
+        return ""
+
+    def _of_following(self) -> str:
+        tracker, watch = self._tracker, self.watch
+        if tracker.deviation > watch.deviation or abs(tracker.turned_off) > watch.turned_off:
+            return (
+                f"the robot does not follow: {tracker.deviation:.2f} m and "
+                f"{math.degrees(tracker.turned_off):.0f} deg from where it should be"
+            )
+        return ""
+
+    def _at_rest(self) -> bool:
+        """Whether the last part of a second was heard of, and nothing moved in it."""
+        first, last = self._since[0], self._since[-1]
+        duration = last.stamp - first.stamp
+        if duration < AT_REST_FOR:
+            return False
+        moved = seen_from(first.pose, last.pose)
+        return (
+            math.hypot(moved.x, moved.y) < AT_REST * duration
+            and abs(moved.yaw) < AT_REST_TURN * duration
+        )
+
+    # ------------------------------------------------------------------------- told
+
+    def shown(self) -> list[Pose]:
+        """The path in the frame of the odometry, from where the drive began or would begin."""
+        start = self._origin
+        if self.state != "driving" and self.last is not None:
+            start = self.last.pose
+        return [compose(start, point) for point in self.plan.path()]
+
+    @property
+    def progress(self) -> str:
+        """How far it is."""
+        return f"{self._tracker.index} of {len(self.plan.moves)} moves"

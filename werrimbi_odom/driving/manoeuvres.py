@@ -1,0 +1,116 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The manoeuvres that can be driven: those that `diagnose` proposes, UMBmark's, the paper's."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from werrimbi_odom.driving.limits import Limits
+from werrimbi_odom.driving.plan import Move, Plan
+from werrimbi_odom.errors import InputError, nearest
+from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
+
+SIDE = 4.0
+"""Of UMBmark's square [m], as its authors drove it."""
+WAY = 10.0
+"""Of the paper's out-and-back [m] (Chong and Kleeman 1997, section 5.2)."""
+PACE = 0.6
+"""Of both, as a share of the full speed: calmly, so that what is measured is no slip."""
+
+
+def _sides(side: float, sense: float) -> list[Move]:
+    return [Move(side, 0.0, PACE), Move(0.0, sense * 0.5 * math.pi, PACE)] * 4
+
+
+BEFORE = Move(0.0, 0.0, rest=1.0)
+"""A second's standstill before the first move: for who stands by, and for what is recorded."""
+
+OWN: dict[str, tuple[str, float, Callable[[float], list[Move]]]] = {
+    "umbmark_ccw": ("UMBmark's square to the left", SIDE, lambda side: _sides(side, 1.0)),
+    "umbmark_cw": ("UMBmark's square to the right", SIDE, lambda side: _sides(side, -1.0)),
+    "umbmark": (
+        "UMBmark's squares, to the left and to the right",
+        SIDE,
+        lambda side: _sides(side, 1.0) + _sides(side, -1.0),
+    ),
+    "paper_out_and_back": (
+        "straight ahead and backwards again",
+        WAY,
+        lambda way: [Move(way, 0.0, PACE), Move(-way, 0.0, PACE)],
+    ),
+}
+"""Words, usual length [m], and the moves for a length."""
+
+NAMES = (*(each.name for each in MANOEUVRES), *OWN)
+
+
+def plan_of(name: str, *, size: float = 1.0, length: float = 0.0, repetitions: int = 1) -> Plan:
+    """The manoeuvre of a name.
+
+    Parameters
+    ----------
+    size : float
+        Unit of the library's manoeuvres [m].
+    length : float
+        Side or way of the others [m]; 0: the usual one.
+    repetitions : int
+
+    Raises
+    ------
+    InputError
+        When there is none of that name.
+    """
+    if name in OWN:
+        words, usual, moves = OWN[name]
+        return Plan(name, words, (BEFORE, *moves(length or usual) * repetitions))
+    ideal = next((each for each in MANOEUVRES if each.name == name), None)
+    if ideal is None:
+        near = nearest(name, NAMES) or f"; there are {', '.join(NAMES)}"
+        raise InputError(f"no manoeuvre is called {name!r}{near}")
+    return Plan(name, ideal.words, (BEFORE, *_moves(ideal, size) * repetitions))
+
+
+def _moves(ideal: Ideal, size: float) -> list[Move]:
+    """A rest of the library's is (0, 0, seconds)."""
+    moves = []
+    for length, turn, pace in ideal.moves(size):
+        if length == 0.0 and turn == 0.0:
+            moves.append(Move(0.0, 0.0, rest=pace))
+        else:
+            moves.append(Move(length, turn, pace, ideal.hard))
+    return moves
+
+
+def proposed(path: Path, limits: Limits, *, size: float = 1.0) -> Plan:
+    """What `werrimbi diagnose --json FILE` proposes to drive next, for as long as it says.
+
+    Raises
+    ------
+    InputError
+        When the file is none of diagnose's, or it proposes nothing that can be driven.
+    """
+    try:
+        told: Any = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError) as error:
+        raise InputError(f"diagnosis: {path} cannot be read as JSON: {error}") from error
+    if not isinstance(told, dict) or "next_manoeuvre" not in told:
+        raise InputError(f"diagnosis: {path} was not written by werrimbi diagnose --json")
+    ahead = told["next_manoeuvre"]
+    if ahead is None:
+        raise InputError(
+            f"diagnosis: nothing needs to be driven next: the verdict is {told.get('verdict')}"
+        )
+    if ahead["name"] not in NAMES:
+        raise InputError(
+            f"diagnosis: {ahead['name']} is no drive, but work by hand: "
+            f"{ahead.get('do') or ahead.get('why')}"
+        )
+    once = plan_of(str(ahead["name"]), size=size)
+    minutes = float(ahead.get("minutes") or 0.0)
+    times = max(math.ceil(60.0 * minutes / once.duration(limits)), 1)
+    return plan_of(once.name, size=size, repetitions=times)

@@ -1,0 +1,82 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Parameters of the nodes beside odom_node; a robot file given to them as well is let pass."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Sequence
+
+from rcl_interfaces.msg import ParameterDescriptor
+from rclpy.node import Node
+from rclpy.parameter import Parameter as Given
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files import parameters as robot_file
+from werrimbi_odom.files.effect_parameters import EFFECTS
+from werrimbi_odom.files.parameters import Parameter, Value
+
+
+def declared(node: Node, parameters: Sequence[Parameter]) -> dict[str, Value]:
+    """Declare every parameter, with the values that the node was started with.
+
+    Raises
+    ------
+    InputError
+        When one is unknown or wrong; the message names all of them.
+    """
+    with node.handle:
+        given = {name: item.value for name, item in node.handle.get_parameters(Given).items()}
+    known = {item.name: item for item in parameters}
+    wrong = [
+        _unknown(name, list(known))
+        for name in given
+        if name not in known and not _is_for_others(node, name)
+    ]
+    values: dict[str, Value] = {}
+    for item in parameters:
+        assert item.default is not None
+        try:
+            values[item.name] = item.checked(given.get(item.name, item.default))
+        except InputError as error:
+            wrong.append(str(error))
+    if wrong:
+        raise InputError(". ".join(wrong))
+    for name, value in values.items():
+        unit = f" [{known[name].unit}]" if known[name].unit else ""
+        description = ParameterDescriptor(description=known[name].says + unit, read_only=True)
+        node.declare_parameter(name, value, description, ignore_override=True)
+    return values
+
+
+def _is_for_others(node: Node, name: str) -> bool:
+    """Whether it is ROS's own, or stands in a robot file whose top key is /**."""
+    if name.startswith("qos_overrides.") or node.has_parameter(name):
+        return True
+    return "." in name or name in {EFFECTS, *(item.name for item in robot_file.PARAMETERS)}
+
+
+def _unknown(name: str, known: list[str]) -> str:
+    near = difflib.get_close_matches(name, known, 1, 0.5)
+    hint = f"did you mean {near[0]}?" if near else f"there are {', '.join(known)}"
+    return f"unknown parameter {name}: {hint}"
+
+
+def _told(default: Value | None) -> str:
+    """A default as YAML has it."""
+    if isinstance(default, tuple):
+        return f"[{', '.join(default)}]"
+    return str(default).lower() if isinstance(default, bool) else str(default)
+
+
+def table(parameters: Sequence[Parameter]) -> str:
+    """The parameters as Markdown, for the docs."""
+    lines = ["| parameter | type | default | unit | what it is |", "|---|---|---|---|---|"]
+    for item in parameters:
+        says = item.says
+        if item.choices:
+            says += f" One of {', '.join(f'`{each}`' for each in item.choices)}."
+        default = f"`{_told(item.default)}`" if item.default != "" else "empty"
+        start = f"| `{item.name}` | {item.kind} | {default}"
+        lines.append(f"{start} | {item.unit} | {says} |")
+    return "\n".join(lines) + "\n"

@@ -1,0 +1,322 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Drives a manoeuvre by cmd_vel, in closed loop on the odometry, within limits that a user gives.
+
+    ros2 run werrimbi_odom drive_node --ros-args -p manoeuvre:=square -p area_radius:=4.0
+    ros2 service call /drive_node/start std_srvs/srv/Trigger
+
+It judges nothing itself: `werrimbi_odom.driving.driver.Driver` says when to move, and when to stop.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+from builtin_interfaces.msg import Time as Stamp
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from geometry_msgs.msg import Point, Twist, TwistStamped
+from nav_msgs.msg import Odometry
+from rclpy.clock import Clock, ClockType
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from sensor_msgs.msg import Imu, LaserScan
+from std_srvs.srv import Trigger
+from visualization_msgs.msg import Marker
+
+from werrimbi_odom.driving.driver import Driver
+from werrimbi_odom.driving.limits import STILL, Command
+from werrimbi_odom.driving.watch import Reading
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.model.pose import Pose
+from werrimbi_odom.ros import drive_parameters, inputs, planar
+from werrimbi_odom.ros.declaring import declared
+from werrimbi_odom.ros.drive_records import Records
+from werrimbi_odom.ros.graph import full_name
+from werrimbi_odom.ros.running import run
+
+TICK = 0.02
+"""Seconds between two looks at the time."""
+HOLD = 1.0
+"""Seconds for which zeros are repeated after a drive; then `cmd_vel` is left to others."""
+LEVELS = {
+    "waiting": DiagnosticStatus.OK,
+    "driving": DiagnosticStatus.OK,
+    "done": DiagnosticStatus.OK,
+    "stopped": DiagnosticStatus.WARN,
+}
+
+
+class DriveNode(Node):  # type: ignore[misc]
+    """A Driver on topics and services.
+
+    Raises
+    ------
+    InputError
+        When a parameter is wrong, or no area is given.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("drive_node")
+        values = self._values = declared(self, drive_parameters.PARAMETERS)
+        self._driver = Driver(
+            drive_parameters.chosen_plan(values),
+            drive_parameters.limits_of(values),
+            drive_parameters.area_of(values),
+            drive_parameters.watch_of(values),
+        )
+        self._records = Records(self, values)
+        self._stamped = bool(values["use_stamped_vel"])
+        self._frame = "odom"
+        self._held_until = -math.inf
+        self._told = self._driver.state
+        self._shown_from: Pose | None = None
+        self._commands = self._publisher(TwistStamped if self._stamped else Twist, "cmd_vel")
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._path = self._publisher(Marker, "~/path", latched)
+        self._diagnostics = self._publisher(DiagnosticArray, "/diagnostics")
+        self._subscribe(Odometry, "odom", self._on_odometry)
+        if values["scan_topic"]:
+            self._subscribe(LaserScan, str(values["scan_topic"]), self._on_scan)
+        if values["imu_topic"]:
+            self._subscribe(Imu, str(values["imu_topic"]), self._on_imu)
+        self.create_service(Trigger, "~/start", self._on_start)
+        self.create_service(Trigger, "~/stop", self._on_stop)
+        self.create_service(Trigger, "~/check", self._on_check)
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.create_timer(TICK, self._tick, clock=steady)
+        self.create_timer(1.0, self._report, clock=steady)
+        plan = self._driver.plan
+        self.get_logger().info(
+            f"{plan.name}: {plan.words}; {plan.duration(self._driver.limits):.0f} s. It waits for "
+            f"{full_name(self)}/start, and shows the path on {full_name(self)}/path"
+        )
+
+    # ------------------------------------------------------------------------- what comes in
+
+    def _on_odometry(self, message: Any) -> None:
+        driver, now = self._driver, time.monotonic()
+        try:
+            x, y = planar.place_of(message.pose.pose.position)
+            yaw = planar.yaw_of(message.pose.pose.orientation, slack=1e-2)
+        except InputError as error:
+            self._stop(f"the odometry is no pose: {error.args[0]}")
+            return
+        self._frame = message.header.frame_id
+        stamp = _seconds(message.header.stamp)
+        age = 1e-9 * self.get_clock().now().nanoseconds - stamp
+        self._send(driver.odometry(Reading(stamp, age, Pose(x, y, yaw)), now))
+        self._after()
+
+    def _on_scan(self, message: Any) -> None:
+        least = message.range_min
+        nearest = min((each for each in message.ranges if each >= least), default=math.inf)
+        self._send(self._driver.scan(nearest, time.monotonic()))
+        self._after()
+
+    def _on_imu(self, message: Any) -> None:
+        stamp, rate = _seconds(message.header.stamp), float(message.angular_velocity.z)
+        if math.isfinite(rate):
+            self._send(self._driver.gyro(stamp, rate, time.monotonic()))
+            self._after()
+
+    def _tick(self) -> None:
+        """Look at the time and at who else is there; repeat zeros after a drive."""
+        driver, now = self._driver, time.monotonic()
+        if driver.state == "driving":
+            others = self._others()
+            if others:
+                driver.stop(others)
+                self._send(STILL)
+            else:
+                self._send(driver.tick(now))
+            self._after()
+        if driver.state != "driving" and now < self._held_until:
+            self._send(STILL)
+        self._records.look()
+        self._show(again=False)
+
+    # ------------------------------------------------------------------------- asked for
+
+    def _on_start(self, _: Any, response: Any) -> Any:
+        wrong = self._others() or self._driver.refusal(time.monotonic())
+        if wrong:
+            response.success, response.message = False, f"it does not start: {wrong}"
+            self.get_logger().warning(response.message)
+            return response
+        self._show(again=True)
+        if self._values["dry_run"]:
+            response.success = True
+            response.message = f"it could start; nothing moves (dry_run). {self._words()}"
+            return response
+        try:
+            self._records.begin(self._driver.plan.name)
+            self._driver.start(time.monotonic())
+        except InputError as error:
+            self._records.close()
+            response.success, response.message = False, f"it does not start: {error}"
+            return response
+        response.success, response.message = True, f"it drives. {self._words()}"
+        self.get_logger().info(response.message)
+        self._told = "driving"
+        self._report()
+        return response
+
+    def _on_stop(self, _: Any, response: Any) -> Any:
+        was_driving = self._driver.state == "driving"
+        self._stop("asked to stop")
+        response.success = True
+        response.message = "it stops" if was_driving else "it was not driving"
+        return response
+
+    def _on_check(self, _: Any, response: Any) -> Any:
+        wrong = self._others() or self._driver.refusal(time.monotonic())
+        self._show(again=True)
+        response.success = not wrong
+        response.message = wrong or f"it could start. {self._words()}"
+        return response
+
+    def _stop(self, why: str) -> None:
+        """Zeros at once, whatever was before."""
+        was_driving = self._driver.state == "driving"
+        self._driver.stop(why)
+        if was_driving:
+            self._send(STILL)
+        self._after()
+
+    def farewell(self) -> None:
+        """Stop, for good: what to do before the node ends."""
+        if self._driver.state == "driving":
+            self._stop("told to end (Ctrl-C)")
+            until = time.monotonic() + 0.3
+            while time.monotonic() < until:
+                self._send(STILL)
+                time.sleep(TICK)
+        self._records.close()
+
+    # ------------------------------------------------------------------------- out
+
+    def _send(self, command: Command | None) -> None:
+        if command is None:
+            return
+        twist = Twist()
+        twist.linear.x, twist.angular.z = command
+        if self._stamped:
+            message = TwistStamped(twist=twist)
+            message.header.stamp = self.get_clock().now().to_msg()
+            message.header.frame_id = "base_link"
+            self._commands.publish(message)
+        else:
+            self._commands.publish(twist)
+
+    def _after(self) -> None:
+        """Say how a drive ended, once."""
+        driver = self._driver
+        if driver.state == self._told:
+            return
+        self._told = driver.state
+        if driver.state not in ("done", "stopped"):
+            return
+        self._held_until = time.monotonic() + HOLD
+        self._records.ending()
+        log = self.get_logger()
+        # Two lines, because rclpy knows a logging call by its line and its severity.
+        if driver.state == "done":
+            log.info(f"{driver.words}. Next: {self._records.next_command()}")
+        else:
+            log.warning(f"stopped: {driver.words}. Next: {self._records.next_command()}")
+        self._report()
+
+    def _words(self) -> str:
+        driver = self._driver
+        least = driver.plan.duration(driver.limits)
+        return f"{driver.plan.name} takes {least:.0f} s; {self._records.words()}"
+
+    def _show(self, *, again: bool) -> None:
+        """Publish the path, where the robot stands elsewhere than when it was last shown."""
+        driver = self._driver
+        if driver.last is None or driver.state == "driving":
+            return
+        here, seen = driver.last.pose, self._shown_from
+        if seen is not None and not again:
+            moved = math.hypot(here.x - seen.x, here.y - seen.y)
+            if moved < 0.02 and abs(math.remainder(here.yaw - seen.yaw, 2.0 * math.pi)) < 0.02:
+                return
+        self._shown_from = here
+        marker = Marker(type=Marker.LINE_STRIP, action=Marker.ADD, ns="path")
+        marker.header.frame_id = self._frame
+        marker.pose.orientation.w = 1.0
+        marker.scale.x = 0.02
+        marker.color.r, marker.color.g, marker.color.b, marker.color.a = 0.84, 0.37, 0.0, 1.0
+        marker.points = [Point(x=point.x, y=point.y) for point in driver.shown()]
+        self._path.publish(marker)
+
+    def _report(self) -> None:
+        driver = self._driver
+        status = DiagnosticStatus(
+            level=LEVELS[driver.state],
+            name=f"{full_name(self)}: drive",
+            message=f"{driver.state}: {driver.words}",
+            hardware_id="base",
+            values=[
+                KeyValue(key="manoeuvre", value=driver.plan.name),
+                KeyValue(key="progress", value=driver.progress),
+                KeyValue(key="speed", value=f"{driver.command.speed:.3f} m/s"),
+                KeyValue(key="yaw rate", value=f"{driver.command.yaw_rate:.3f} rad/s"),
+            ],
+        )
+        array = DiagnosticArray(status=[status])
+        array.header.stamp = self.get_clock().now().to_msg()
+        self._diagnostics.publish(array)
+
+    # ------------------------------------------------------------------------- set-up
+
+    def _others(self) -> str:
+        """Who else commands the robot; "" if nobody."""
+        topic = self._commands.topic_name
+        if self.count_publishers(topic) <= 1:
+            return ""
+        own = f"/{full_name(self)}"
+        names = [
+            f"{str(each.node_namespace).rstrip('/')}/{each.node_name}"
+            for each in self.get_publishers_info_by_topic(topic)
+        ]
+        if own in names:
+            names.remove(own)
+        return (
+            f"another publishes {topic} too ({', '.join(sorted(names))}); a node that was killed "
+            "is listed for 20 s"
+        )
+
+    def _publisher(self, kind: type, topic: str, qos: QoSProfile | None = None) -> Publisher:
+        callbacks = PublisherEventCallbacks(use_default_callbacks=False)
+        return self.create_publisher(
+            kind, topic, qos or QoSProfile(depth=10), event_callbacks=callbacks
+        )
+
+    def _subscribe(self, kind: type, topic: str, take: Callable[[Any], None]) -> None:
+        self.create_subscription(
+            kind,
+            topic,
+            take,
+            inputs.sensor_qos(),
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+        )
+
+
+def _seconds(stamp: Stamp) -> float:
+    return float(stamp.sec) + 1e-9 * float(stamp.nanosec)
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is told to stop; returns the exit code."""
+    return run(DriveNode, "drive_node", args, farewell=DriveNode.farewell)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,254 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Parameters of drive_node, declared once."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from pathlib import Path
+
+from werrimbi_odom.driving.limits import Area, Limits
+from werrimbi_odom.driving.manoeuvres import NAMES, plan_of, proposed
+from werrimbi_odom.driving.plan import Plan
+from werrimbi_odom.driving.watch import Watch
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.parameters import Parameter, Value
+from werrimbi_odom.ros.declaring import table
+
+FASTEST = 5.0
+"""More than this no drive needs [m/s], [rad/s]."""
+
+
+def _length(name: str, says: str) -> Parameter:
+    return Parameter(name, "float", 0.0, "m", says, minimum=0.0, maximum=1000.0)
+
+
+PARAMETERS: tuple[Parameter, ...] = (
+    Parameter(
+        "manoeuvre",
+        "string",
+        "square",
+        "",
+        "What to drive.",
+        choices=NAMES,
+    ),
+    Parameter(
+        "diagnosis",
+        "string",
+        "",
+        "",
+        "File of `werrimbi diagnose --json`: drive what it proposes, in place of `manoeuvre`.",
+        may_be_empty=True,
+    ),
+    Parameter(
+        "size",
+        "float",
+        1.0,
+        "m",
+        "Size of the manoeuvres that `diagnose` proposes: a square has sides of twice this. 1 "
+        "suits wheels 35 cm apart.",
+        above=0.0,
+        maximum=100.0,
+    ),
+    _length("length", "Side of UMBmark's squares, way of `paper_out_and_back`; 0: 4 m, and 10 m."),
+    Parameter(
+        "repetitions",
+        "integer",
+        1,
+        "",
+        "How often to drive it in one go.",
+        minimum=1,
+        maximum=1000,
+    ),
+    Parameter("max_vel_x", "float", 0.3, "m/s", "Fastest command.", above=0.0, maximum=FASTEST),
+    Parameter("max_vel_theta", "float", 1.0, "rad/s", "Fastest turn.", above=0.0, maximum=FASTEST),
+    Parameter(
+        "acc_lim_x",
+        "float",
+        0.5,
+        "m/s^2",
+        "Hardest change of the speed; a stop is a zero at once.",
+        above=0.0,
+        maximum=FASTEST,
+    ),
+    Parameter(
+        "acc_lim_theta",
+        "float",
+        1.5,
+        "rad/s^2",
+        "Hardest change of the rate of turning.",
+        above=0.0,
+        maximum=4.0 * FASTEST,
+    ),
+    _length("area_radius", "The robot stays within this of its first start; 0: not given."),
+    _length("area_ahead", "Or within a rectangle: this far ahead of its first start,"),
+    _length("area_behind", "behind it,"),
+    _length("area_left", "to its left,"),
+    _length("area_right", "and to its right. Of a rectangle all four must be given."),
+    Parameter(
+        "robot_radius",
+        "float",
+        0.3,
+        "m",
+        "Of the circle about the middle of the axle that holds all of the robot.",
+        above=0.0,
+        maximum=100.0,
+    ),
+    Parameter(
+        "dry_run",
+        "boolean",
+        False,
+        "",
+        "`~/start` checks all and shows the path, and moves nothing.",
+    ),
+    Parameter(
+        "use_stamped_vel",
+        "boolean",
+        False,
+        "",
+        "Publish geometry_msgs/TwistStamped on `cmd_vel`, else Twist.",
+    ),
+    Parameter(
+        "odom_timeout",
+        "float",
+        0.15,
+        "s",
+        "Stop when the odometry is silent for so long, or comes so much later than before.",
+        minimum=0.02,
+        maximum=2.0,
+    ),
+    Parameter(
+        "max_deviation",
+        "float",
+        0.15,
+        "m",
+        "Stop when the robot is so far from where it should be by now.",
+        above=0.0,
+        maximum=2.0,
+    ),
+    Parameter(
+        "scan_topic",
+        "string",
+        "",
+        "",
+        "A sensor_msgs/LaserScan that stops the robot; empty: none.",
+        may_be_empty=True,
+    ),
+    Parameter(
+        "scan_min_distance",
+        "float",
+        0.5,
+        "m",
+        "Stop when the scan sees something nearer to the scanner.",
+        above=0.0,
+        maximum=100.0,
+    ),
+    Parameter(
+        "imu_topic",
+        "string",
+        "",
+        "",
+        "A sensor_msgs/Imu (z up) whose turn rate stops the robot when its wheels slip; empty: "
+        "none.",
+        may_be_empty=True,
+    ),
+    Parameter(
+        "max_slip",
+        "float",
+        0.06,
+        "rad",
+        "Stop when turns of the wheels and of the gyro differ by so much within 0.2 s.",
+        above=0.0,
+        maximum=3.0,
+    ),
+    Parameter(
+        "record",
+        "string",
+        "",
+        "",
+        "Folder in which each drive is recorded as a rosbag2 (MCAP; needs rosbags); empty: none.",
+        may_be_empty=True,
+    ),
+    Parameter(
+        "record_topics",
+        "strings",
+        ("joint_states", "odom", "imu", "reference", "scan", "/tf", "/tf_static"),
+        "",
+        "What is recorded, of it what there is.",
+    ),
+    Parameter(
+        "robot_file",
+        "string",
+        "",
+        "",
+        "Robot file, for the command that is told at the end; nothing is read from it.",
+        may_be_empty=True,
+    ),
+)
+
+
+def limits_of(values: Mapping[str, Value]) -> Limits:
+    """How fast, and how briskly."""
+    names = ("max_vel_x", "max_vel_theta", "acc_lim_x", "acc_lim_theta")
+    return Limits(*(_number(values, name) for name in names))
+
+
+def area_of(values: Mapping[str, Value]) -> Area:
+    """Where the robot must stay.
+
+    Raises
+    ------
+    InputError
+        When no area is given, or not all of a rectangle.
+    """
+    sides = {name: _number(values, f"area_{name}") for name in ("ahead", "behind", "left", "right")}
+    radius = _number(values, "area_radius")
+    missing = [f"area_{name}" for name, value in sides.items() if not value]
+    if len(missing) == 4 and not radius:
+        raise InputError(
+            "no area is given in which the robot may move: give area_radius, or area_ahead, "
+            "area_behind, area_left and area_right [m], measured from where it stands"
+        )
+    if 0 < len(missing) < 4:
+        raise InputError(f"{', '.join(missing)} must be given too, with the other sides [m]")
+    if len(missing) == 4:
+        sides = {}
+    return Area(**sides, radius=radius or math.inf, robot_radius=_number(values, "robot_radius"))
+
+
+def watch_of(values: Mapping[str, Value]) -> Watch:
+    """When to stop."""
+    return Watch(
+        odom_timeout=_number(values, "odom_timeout"),
+        deviation=_number(values, "max_deviation"),
+        scan_min_distance=_number(values, "scan_min_distance") if values["scan_topic"] else 0.0,
+        slip=_number(values, "max_slip") if values["imu_topic"] else 0.0,
+    )
+
+
+def chosen_plan(values: Mapping[str, Value]) -> Plan:
+    """What to drive.
+
+    Raises
+    ------
+    InputError
+        When the diagnosis cannot be used.
+    """
+    size = _number(values, "size")
+    if values["diagnosis"]:
+        return proposed(Path(str(values["diagnosis"])), limits_of(values), size=size)
+    return plan_of(
+        str(values["manoeuvre"]),
+        size=size,
+        length=_number(values, "length"),
+        repetitions=int(_number(values, "repetitions")),
+    )
+
+
+def _number(values: Mapping[str, Value], name: str) -> float:
+    return float(values[name])  # type: ignore[arg-type]
+
+
+if __name__ == "__main__":
+    print(table(PARAMETERS), end="")

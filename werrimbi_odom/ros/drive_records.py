@@ -1,0 +1,97 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What is recorded of the drives of drive_node, and what is said of it."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping
+from pathlib import Path
+
+from rclpy.node import Node
+
+from werrimbi_odom.files.parameters import Value
+from werrimbi_odom.ros.bagging import Bagging, known_types
+
+LINGER = 0.5
+"""Seconds for which what comes after a drive is still recorded."""
+
+
+class Records:
+    """A bag for each drive, where one is wanted.
+
+    Parameters
+    ----------
+    node : Node
+        That drives.
+    values : mapping
+        Its parameters.
+
+    Raises
+    ------
+    InputError
+        When rosbags is needed and not installed.
+    """
+
+    def __init__(self, node: Node, values: Mapping[str, Value]) -> None:
+        self._node = node
+        self._folder = str(values["record"])
+        self._robot = str(values["robot_file"]) or "ROBOT.yaml"
+        names = values["record_topics"]
+        assert isinstance(names, tuple)
+        self._topics = [node.resolve_topic_name(name) for name in names]
+        self._bag: Bagging | None = None
+        self._ends = math.inf
+        if self._folder:
+            known_types()  # now: a robot that is to start does not wait for it
+
+    def begin(self, name: str) -> None:
+        """Record a drive, if that is wanted.
+
+        Raises
+        ------
+        InputError
+            When it cannot be written.
+        """
+        self.close()
+        if self._folder:
+            bag = Path(self._folder) / f"{name}_{time.strftime('%Y%m%d_%H%M%S')}"
+            self._bag = Bagging(self._node, bag, self._topics)
+
+    def ending(self) -> None:
+        """Record on for a little while."""
+        self._ends = time.monotonic() + LINGER
+
+    def look(self) -> None:
+        """Close the bag when that is over."""
+        if time.monotonic() > self._ends:
+            self.close()
+
+    def close(self) -> None:
+        """End the recording now."""
+        if self._bag is not None:
+            self._bag.close()
+        self._bag, self._ends = None, math.inf
+
+    def words(self) -> str:
+        """Where it is recorded, or how it can be."""
+        if self._bag is not None:
+            return f"recorded in {self._bag.folder}: {' '.join(self._bag.topics)}"
+        if self._folder:
+            return f"it will be recorded in {self._folder}"
+        there = {name for name, _ in self._node.get_topic_names_and_types()}
+        topics = " ".join(each for each in self._topics if each in there)
+        return f"to record it: ros2 bag record -s mcap -o BAG {topics}"
+
+    def next_command(self) -> str:
+        """What looks at the recording."""
+        bag = str(self._bag.folder) if self._bag else "BAG"
+        ticks, reference = (
+            next((each for each in self._topics if each.endswith(name)), name)
+            for name in ("/joint_states", "/reference")
+        )
+        return (
+            f"werrimbi diagnose --robot {self._robot} --ticks-topic {ticks} "
+            f"--reference-topic {reference} {bag}"
+        )

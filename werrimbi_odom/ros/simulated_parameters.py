@@ -1,0 +1,202 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Parameters of simulated_robot, declared once."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.parameters import Parameter
+from werrimbi_odom.ros.declaring import table
+
+if TYPE_CHECKING:
+    from werrimbi_odom.simulation import Hidden, LiveRobot, TrueRobot
+
+PARAMETERS: tuple[Parameter, ...] = (
+    Parameter(
+        "hide",
+        "string",
+        "",
+        "",
+        "Effect to hide in the robot, `EFFECT` or `EFFECT=STRENGTH` as for `werrimbi simulate "
+        "--hide` (`werrimbi simulate --list`); several with commas; `random` takes any; `none`.",
+        may_be_empty=True,
+    ),
+    Parameter(
+        "seed",
+        "integer",
+        1,
+        "",
+        "Of all that is random: noises, wheel angles, counters, the gyro, what `hide` leaves open.",
+        minimum=0,
+        maximum=2**31,
+    ),
+    Parameter(
+        "real_time_factor",
+        "float",
+        1.0,
+        "",
+        "Simulated seconds in a second. Other than 1: with `publish_clock`, and `use_sim_time` for "
+        "all other nodes.",
+        above=0.0,
+        maximum=20.0,
+    ),
+    Parameter(
+        "publish_clock",
+        "boolean",
+        False,
+        "",
+        "Publish simulated time on /clock, and stamp with it; else stamps are the time of day.",
+    ),
+    Parameter(
+        "use_stamped_vel",
+        "boolean",
+        False,
+        "",
+        "Take geometry_msgs/TwistStamped on `cmd_vel`, else Twist.",
+    ),
+    Parameter(
+        "cmd_vel_timeout",
+        "float",
+        0.5,
+        "s",
+        "The robot stops when no command has come for so long.",
+        above=0.0,
+        maximum=10.0,
+    ),
+    Parameter(
+        "joint_states_rate",
+        "float",
+        50.0,
+        "Hz",
+        "Messages a second on `joint_states`.",
+        above=0.0,
+        maximum=200.0,
+    ),
+    Parameter("imu_rate", "float", 100.0, "Hz", "The same on `imu`.", above=0.0, maximum=200.0),
+    Parameter(
+        "reference_rate",
+        "float",
+        20.0,
+        "Hz",
+        "The same on `reference`.",
+        above=0.0,
+        maximum=200.0,
+    ),
+    Parameter(
+        "reference_sigma_xy",
+        "float",
+        0.001,
+        "m",
+        "Noise of the reference: standard deviation of x and of y.",
+        minimum=0.0,
+        maximum=10.0,
+    ),
+    Parameter(
+        "reference_sigma_yaw",
+        "float",
+        0.002,
+        "rad",
+        "The same of its heading.",
+        minimum=0.0,
+        maximum=1.0,
+    ),
+    Parameter(
+        "room",
+        "string",
+        "none",
+        "",
+        "What a lidar sees and publishes on `scan`, with walls that the robot drives through; the "
+        "robot begins in the middle.",
+        choices=("none", "living_room", "arena"),
+    ),
+    Parameter(
+        "enable_tf",
+        "boolean",
+        False,
+        "",
+        "Broadcast world -> odom (where the robot began) and world -> base_link_true (the truth) "
+        "on /tf; needs tf2_ros.",
+    ),
+    Parameter(
+        "robot_file",
+        "string",
+        "",
+        "",
+        "New file to write: the robot as its maker believes it to be, for odom_node.",
+        may_be_empty=True,
+    ),
+)
+
+
+def robot_of(values: Mapping[str, Any]) -> tuple[LiveRobot, list[Hidden], TrueRobot]:
+    """The robot, what is hidden in it, and what its maker believes.
+
+    Raises
+    ------
+    InputError
+        When there is no such thing to hide, or mujoco is not installed.
+    """
+    try:
+        from werrimbi_odom import simulation
+        from werrimbi_odom.simulation import rooms
+    except ModuleNotFoundError as missing:
+        if (missing.name or "").startswith("werrimbi_odom"):
+            raise
+        raise InputError(
+            f"the physics engine is not installed ({missing.name} is missing): "
+            "pip install mujoco rosbags, or pip install 'werrimbi_odom[simulation]'"
+        ) from missing
+    seed = int(values["seed"])
+    wishes = [
+        wish.strip() for wish in str(values["hide"]).split(",") if wish.strip() not in ("", "none")
+    ]
+    try:
+        hidden = [
+            simulation.wished(wish, seed=seed, number=number) for number, wish in enumerate(wishes)
+        ]
+    except (simulation.UnknownEffectError, simulation.StrengthError) as error:
+        raise InputError(f"hide: {error} (all: werrimbi simulate --list)") from error
+    robot = simulation.TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
+    believed = robot
+    for each in hidden:
+        believed = each.peculiarity.written(believed)
+    reference = simulation.ReferenceSensor(
+        sigma_xy=float(values["reference_sigma_xy"]), sigma_yaw=float(values["reference_sigma_yaw"])
+    )
+    try:
+        live = simulation.LiveRobot(
+            robot,
+            seed=seed,
+            reference=reference,
+            hidden=[each.peculiarity for each in hidden],
+            room=None if values["room"] == "none" else getattr(rooms, str(values["room"]))(),
+        )
+    except (simulation.UnstableError, ValueError) as error:
+        raise InputError(f"no such robot can be built: {str(error).splitlines()[0]}") from error
+    return live, hidden, believed
+
+
+def write_believed(robot: TrueRobot, path: Path) -> None:
+    """Write the robot file that a robot's maker would write.
+
+    Raises
+    ------
+    InputError
+        When there is one, or it cannot be written.
+    """
+    from werrimbi_odom.simulation import write_robot_file
+
+    if path.exists():
+        raise InputError(f"robot_file: {path} is there already; name a new one")
+    try:
+        write_robot_file(robot, path)
+    except OSError as error:
+        raise InputError(f"robot_file: {path} cannot be written: {error.strerror}") from error
+
+
+if __name__ == "__main__":
+    print(table(PARAMETERS), end="")

@@ -1,0 +1,288 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A robot in the physics engine as a ROS node: commands in, what its sensors see out.
+
+    ros2 run werrimbi_odom simulated_robot --ros-args -p hide:=castor_kick
+
+`SimulatedRobot._advance` is the whole of its time; everything else is set-up and reports.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+import time as clock
+from collections.abc import Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from builtin_interfaces.msg import Time as Stamp
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from geometry_msgs.msg import PoseStamped, TransformStamped, Twist, TwistStamped
+from rclpy.clock import Clock, ClockType
+from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import QoSProfile
+from rosgraph_msgs.msg import Clock as ClockMessage
+from sensor_msgs.msg import Imu, JointState, LaserScan
+from std_srvs.srv import Trigger
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.ros import inputs, simulated_parameters
+from werrimbi_odom.ros.declaring import declared
+from werrimbi_odom.ros.graph import full_name
+from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.transforms import transform_sender
+
+if TYPE_CHECKING:
+    from werrimbi_odom.simulation import Pose
+
+TICK = 0.01
+"""Seconds of the wall between two looks at the time."""
+BEHIND = 0.5
+"""Seconds of the wall that may be made up for; beyond that the simulation is late for good."""
+CLOCK_RATE = 100.0
+"""Messages on /clock in a simulated second."""
+BEGINS = 1.0
+"""Simulated time on /clock at the start [s]; a stamp of zero means none."""
+
+
+class SimulatedRobot(Node):  # type: ignore[misc]
+    """A robot that is driven by `cmd_vel`.
+
+    Raises
+    ------
+    InputError
+        When a parameter is wrong, or mujoco is not installed.
+    """
+
+    def __init__(self) -> None:
+        super().__init__("simulated_robot")
+        values = declared(self, simulated_parameters.PARAMETERS)
+        self._factor = float(values["real_time_factor"])  # type: ignore[arg-type]
+        self._publishes_clock = bool(values["publish_clock"])
+        if self._factor != 1.0 and not self._publishes_clock:
+            raise InputError(
+                f"real_time_factor {self._factor:g} needs publish_clock: true (and use_sim_time: "
+                "true for all other nodes): without it they would take time to go as on the wall"
+            )
+        self._timeout = float(values["cmd_vel_timeout"])  # type: ignore[arg-type]
+        self._robot, self._hidden, self._believed = simulated_parameters.robot_of(values)
+        if values["robot_file"]:
+            simulated_parameters.write_believed(self._believed, Path(str(values["robot_file"])))
+        self._tick = 2.0 * math.pi / self._believed.left_ticks_per_revolution
+        self._dues = [
+            _Due(float(values[f"{name}_rate"]), lag, publish)  # type: ignore[arg-type]
+            for name, lag, publish in (
+                ("joint_states", self._robot.counters_lag, self._publish_joints),
+                ("imu", 0.0, self._publish_imu),
+                ("reference", self._robot.reference_lag, self._publish_reference),
+            )
+        ]
+        if values["room"] != "none":
+            turn = 1.0 / self._robot.lidar.rate_hz
+            self._dues.append(_Due(self._robot.lidar.rate_hz, turn, self._publish_scan))
+            self._scan = self._publisher(LaserScan, "scan")
+        if self._publishes_clock:
+            self._dues.insert(0, _Due(CLOCK_RATE, 0.0, self._publish_clock))
+        self._joints = self._publisher(JointState, "joint_states")
+        self._imu = self._publisher(Imu, "imu")
+        self._reference = self._publisher(PoseStamped, "reference")
+        if self._publishes_clock:
+            self._clock_out = self._publisher(ClockMessage, "/clock")
+        self._diagnostics = self._publisher(DiagnosticArray, "/diagnostics")
+        self._send = transform_sender(self, "enable_tf") if values["enable_tf"] else None
+        stamped = bool(values["use_stamped_vel"])
+        self.create_subscription(
+            TwistStamped if stamped else Twist,
+            "cmd_vel",
+            (lambda message: self._command(message.twist)) if stamped else self._command,
+            inputs.sensor_qos(),
+            event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
+        )
+        self.create_service(Trigger, "~/truth", self._tell)
+        self._commanded = -math.inf
+        self._asked = (0.0, 0.0)
+        self._late = 0.0
+        self._epoch = BEGINS if self._publishes_clock else clock.time()
+        self._began = clock.monotonic()
+        self._reported = (self._began, 0.0)
+        steady = Clock(clock_type=ClockType.STEADY_TIME)
+        self.create_timer(TICK, self._advance, clock=steady)
+        self.create_timer(1.0, self._report, clock=steady)
+        kind = "TwistStamped" if stamped else "Twist"
+        self.get_logger().info(
+            f"a robot in the physics engine: {kind} on {self.resolve_topic_name('cmd_vel')} drives "
+            "it; joint_states, imu and reference come out; ~/truth tells what is hidden in it"
+        )
+
+    # ------------------------------------------------------------------------- time
+
+    def _advance(self) -> None:
+        """Let the robot's time catch up with the wall's, and its sensors speak on the way."""
+        from werrimbi_odom.simulation import UnstableError
+        from werrimbi_odom.simulation.engine import PERIOD
+
+        robot = self._robot
+        behind = (clock.monotonic() - self._began) - robot.time / self._factor
+        if behind > BEHIND:
+            self._began += behind - BEHIND
+            self._late += behind - BEHIND
+            if not self._publishes_clock:
+                self._epoch += behind - BEHIND
+            behind = BEHIND
+        for _ in range(int(behind * self._factor / PERIOD)):
+            if robot.time - self._commanded > self._timeout:
+                self._asked = (0.0, 0.0)
+            robot.command(*self._asked)
+            try:
+                robot.advance()
+            except UnstableError as error:
+                raise InputError(str(error)) from error
+            for due in self._dues:
+                due.look(robot.time)
+
+    def _command(self, twist: Any) -> None:
+        speed, yaw_rate = float(twist.linear.x), float(twist.angular.z)
+        if not (math.isfinite(speed) and math.isfinite(yaw_rate)):
+            self.get_logger().warning("a command that is no number: the robot stops")
+            speed = yaw_rate = 0.0
+        self._asked = speed, yaw_rate
+        self._commanded = self._robot.time
+
+    # ------------------------------------------------------------------------- out
+
+    def _publish_clock(self, time: float, _: float) -> None:
+        self._clock_out.publish(ClockMessage(clock=self._stamp(time)))
+
+    def _publish_joints(self, time: float, _: float) -> None:
+        counts = self._robot.counters(time)
+        message = JointState(
+            name=["left_wheel_joint", "right_wheel_joint"],
+            position=[count * self._tick for count in counts],
+        )
+        message.header.stamp = self._stamp(time)
+        self._joints.publish(message)
+
+    def _publish_imu(self, time: float, since: float) -> None:
+        message = Imu()
+        message.header.stamp = self._stamp(time)
+        message.header.frame_id = "imu_link"
+        message.orientation_covariance[0] = -1.0  # it has none
+        message.angular_velocity.z = self._robot.gyro(since, time)
+        message.linear_acceleration.z = 9.81
+        self._imu.publish(message)
+
+    def _publish_reference(self, time: float, _: float) -> None:
+        pose = self._robot.reference(time)
+        message = PoseStamped()
+        message.header.stamp = self._stamp(time)
+        message.header.frame_id = "world"
+        place, turn = message.pose.position, message.pose.orientation
+        place.x, place.y = pose.x, pose.y
+        turn.z, turn.w = math.sin(0.5 * pose.yaw), math.cos(0.5 * pose.yaw)
+        self._reference.publish(message)
+        if self._send is not None:
+            self._send(self._transform("odom", (0.0, 0.0, 0.0)))
+            self._send(self._transform("base_link_true", self._robot.pose))
+            self._send(self._transform("base_scan", self._robot.lidar.mount, "base_link"))
+
+    def _publish_scan(self, time: float, _: float) -> None:
+        """A turn, stamped with the time of its first beam."""
+        lidar = self._robot.lidar
+        message = LaserScan(
+            angle_max=lidar.increment * (lidar.beams - 1),
+            angle_increment=lidar.increment,
+            time_increment=lidar.beam_interval,
+            scan_time=1.0 / lidar.rate_hz,
+            range_min=lidar.nearest,
+            range_max=lidar.farthest,
+            ranges=self._robot.sweep(time).tolist(),
+        )
+        message.header.stamp = self._stamp(time)
+        message.header.frame_id = "base_scan"
+        self._scan.publish(message)
+
+    def _transform(
+        self, child: str, pose: Pose | tuple[float, float, float], parent: str = "world"
+    ) -> TransformStamped:
+        message = TransformStamped(child_frame_id=child)
+        message.header.stamp = self._stamp(self._robot.time)
+        message.header.frame_id = parent
+        moved, turn = message.transform.translation, message.transform.rotation
+        moved.x, moved.y, yaw = pose
+        turn.z, turn.w = math.sin(0.5 * yaw), math.cos(0.5 * yaw)
+        return message
+
+    def _tell(self, _: Any, response: Any) -> Any:
+        response.success = True
+        response.message = "; ".join(
+            f"{each.entry.name} = {each.strength:g} {each.entry.unit}: {each.entry.says}"
+            for each in self._hidden
+        )
+        response.message = response.message or "nothing is hidden"
+        return response
+
+    def _report(self) -> None:
+        now, time = clock.monotonic(), self._robot.time
+        pace = (time - self._reported[1]) / (now - self._reported[0])
+        self._reported = now, time
+        slow = pace < 0.9 * self._factor
+        words = f"{pace:.2f} simulated seconds in a second"
+        status = DiagnosticStatus(
+            level=DiagnosticStatus.WARN if slow else DiagnosticStatus.OK,
+            name=f"{full_name(self)}: simulation",
+            message=f"{words}, not {self._factor:g}: this machine is too slow" if slow else words,
+            hardware_id="physics engine",
+            values=[
+                KeyValue(key="time", value=f"{time:.3f} s"),
+                KeyValue(key="time lost", value=f"{self._late:.3f} s"),
+                KeyValue(key="speed asked", value=f"{self._asked[0]:.3f} m/s"),
+                KeyValue(key="yaw rate asked", value=f"{self._asked[1]:.3f} rad/s"),
+            ],
+        )
+        array = DiagnosticArray(status=[status])
+        array.header.stamp = self._stamp(time)
+        self._diagnostics.publish(array)
+
+    def _stamp(self, time: float) -> Stamp:
+        seconds, nanoseconds = divmod(round(1e9 * (self._epoch + time)), 10**9)
+        return Stamp(sec=seconds, nanosec=nanoseconds)
+
+    def _publisher(self, kind: type, topic: str) -> Publisher:
+        callbacks = PublisherEventCallbacks(use_default_callbacks=False)
+        return self.create_publisher(kind, topic, QoSProfile(depth=100), event_callbacks=callbacks)
+
+
+class _Due:
+    """A sensor that speaks at its own rate, once what it says can be had.
+
+    Parameters
+    ----------
+    rate : float
+        [Hz]
+    lag : float
+        Time after a stamp until it can be published [s].
+    publish : callable of (time, time before)
+    """
+
+    def __init__(self, rate: float, lag: float, publish: Callable[[float, float], None]) -> None:
+        self._rate, self._lag, self._publish = rate, lag, publish
+        self._count = 0
+
+    def look(self, now: float) -> None:
+        """Publish if it is time."""
+        time = (self._count + 1) / self._rate
+        if time + self._lag <= now + 1e-9:
+            self._publish(time, self._count / self._rate)
+            self._count += 1
+
+
+def main(args: list[str] | None = None) -> int:
+    """Run the node until it is told to stop; returns the exit code."""
+    return run(SimulatedRobot, "simulated_robot", args)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,179 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A robot that is driven now: commands in, readings of its sensors out, in bounded memory."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .engine import PERIOD, Driven, Pose, TruePath
+from .field import FieldSensors, gyro_of
+from .hidden.peculiarity import Peculiarity
+from .lidar import Room, sweeps_at
+from .recorder import counter_zeros, motor_speeds, prepared, stream
+from .recording import Recording
+from .robot import TrueRobot
+from .sensors import ReferenceSensor, count
+
+Floats = NDArray[np.float64]
+
+ACCELERATION, YAW_ACCELERATION = 3.0, 12.0
+"""Most that the robot's own controller asks of its motors [m/s^2, rad/s^2]; brisker than any drive
+of `sessions`, and within what the tyres hold."""
+
+CHECKED_EVERY = 20
+"""Periods between two looks at the engine's warnings, each of which costs more than a period."""
+
+KEPT = 400
+"""Rows of the true path that are kept, 2 s: more than any sensor looks back."""
+
+
+class LiveRobot:
+    """A robot in the engine, driven period by period as commands come.
+
+    Parameters
+    ----------
+    robot : TrueRobot
+    seed : int
+        Of everything random, as of `record`.
+    reference : ReferenceSensor, optional
+    start : Pose
+        Where the robot begins, in the world.
+    hidden : sequence of Peculiarity
+        What is odd; extra channels are not seen live.
+    sensors : FieldSensors, optional
+        The gyro's and the lidar's.
+    room : Room, optional
+        What the lidar sees. The engine knows nothing of it: the robot drives through its walls.
+    """
+
+    def __init__(
+        self,
+        robot: TrueRobot,
+        *,
+        seed: int,
+        reference: ReferenceSensor | None = None,
+        start: Pose = Pose(0.0, 0.0, 0.0),  # noqa: B008 (immutable)
+        hidden: Sequence[Peculiarity] = (),
+        sensors: FieldSensors | None = None,
+        room: Room | None = None,
+    ) -> None:
+        ready = prepared(robot, seed=seed, reference=reference, start=start, hidden=hidden)
+        self._robot, self._sensor, self._hidden = ready.robot, ready.sensor, tuple(hidden)
+        self._driven = Driven(
+            ready.chassis, ready.start, ready.angles, ready.shifters, ready.reshapers
+        )
+        self._zeros = counter_zeros(ready.robot, seed)
+        self._noise = stream(seed, "reference")
+        self._rngs = [np.random.default_rng([seed, 79, number]) for number in range(len(hidden))]
+        self._counted = [one for one in (odd.counted(ready.robot) for odd in hidden) if one]
+        sensors = sensors or FieldSensors()
+        self.lidar, self._room = sensors.lidar, room
+        self._lidar_noise = np.random.default_rng([seed, 81])
+        self._gyro = gyro_of(sensors, robot_seed=seed)
+        self._gyro_noise = np.random.default_rng([seed, 80])
+        self._rows = np.empty((2 * KEPT, 8))
+        self._count = self._unchecked = 0
+        self._wanted = self._speeds = (0.0, 0.0)
+        self.counters_lag = max((odd.ahead for odd in hidden), default=0.0)
+        """How long after its stamp a reading of the counters can be had [s]."""
+        delays = (self._sensor.delay, self._sensor.delay + self._sensor.heading_delay)
+        self.reference_lag = max(0.0, *(-delay for delay in delays))
+        """The same of the reference [s]."""
+        self._keep()
+
+    @property
+    def time(self) -> float:
+        """Since the beginning [s]."""
+        return self._driven.row[0]
+
+    @property
+    def pose(self) -> Pose:
+        """Where the robot truly is."""
+        return Pose(*self._driven.row[1:4])
+
+    def command(self, speed: float, yaw_rate: float) -> None:
+        """Ask for a speed [m/s] and a yaw rate [rad/s], from now on."""
+        self._wanted = speed, yaw_rate
+
+    def advance(self) -> None:
+        """Drive for one PERIOD.
+
+        Raises
+        ------
+        UnstableError
+            When the engine lost its footing.
+        """
+        most = ACCELERATION * PERIOD, YAW_ACCELERATION * PERIOD
+        self._speeds = (
+            _towards(self._speeds[0], self._wanted[0], most[0]),
+            _towards(self._speeds[1], self._wanted[1], most[1]),
+        )
+        self._driven.advance(*motor_speeds(self._robot, *self._speeds))
+        self._keep()
+        self._unchecked += 1
+        if self._unchecked == CHECKED_EVERY:
+            self._unchecked = 0
+            self._driven.check()
+
+    def counters(self, time: float) -> tuple[int, int]:
+        """What the counters, left and right, show at a time of the last second."""
+        path = self._path()
+        at = np.array([time])
+        counted = self._rows[: self._count, 6:]
+        left, right = (
+            count(path.t_s, np.ascontiguousarray(counted[:, side]), at, resolution, zero)
+            for side, resolution, zero in (
+                (0, self._robot.left_ticks_per_revolution, self._zeros[0]),
+                (1, self._robot.right_ticks_per_revolution, self._zeros[1]),
+            )
+        )
+        none = np.empty(0)
+        seen = Recording("live", at, left, right, none, none, none, none, path)
+        for odd, rng in zip(self._hidden, self._rngs, strict=True):
+            if odd.counted(self._robot) is None:
+                seen = odd.recording(seen, self._robot, rng)
+        return int(seen.left_ticks[0]), int(seen.right_ticks[0])
+
+    def reference(self, time: float) -> Pose:
+        """What the reference measures at a time of the last second."""
+        measured = self._sensor.measure(self._path(), np.array([time]), self._noise)
+        return Pose(*(float(each[0]) for each in measured))
+
+    def gyro(self, since: float, until: float) -> float:
+        """Mean yaw rate [rad/s] that the gyro reads between two times of the last second."""
+        path = self._path()
+        before, after = np.interp([since, until], path.t_s, path.yaw_rad)
+        rate = (after - before) / (until - since)
+        noise = self._gyro.noise * self._gyro_noise.standard_normal()
+        return float(self._gyro.scale * rate + self._gyro.bias + noise)
+
+    def sweep(self, start: float) -> Floats:
+        """Ranges [m] of the lidar's beams in the turn that began at a time and has ended."""
+        assert self._room is not None
+        at = np.array([start])
+        seen = sweeps_at(self._path(), self._room, self.lidar, at, self._lidar_noise)
+        return np.asarray(seen.ranges[0])
+
+    def _keep(self) -> None:
+        """Add the present row; of twice as many as are needed the older half goes."""
+        if self._count == len(self._rows):
+            self._rows[:KEPT] = self._rows[KEPT:]
+            self._count = KEPT
+        row = self._driven.row
+        angles = row[4], row[5]
+        for one in self._counted:
+            angles = one(row[0], *angles)
+        self._rows[self._count] = (*row, *angles)
+        self._count += 1
+
+    def _path(self) -> TruePath:
+        return TruePath(*np.ascontiguousarray(self._rows[: self._count, :6].T))
+
+
+def _towards(value: float, wanted: float, most: float) -> float:
+    return value + math.copysign(min(abs(wanted - value), most), wanted - value)
