@@ -82,7 +82,7 @@ def test_a_bag_without_a_reference_lists_what_it_has_and_what_can_be_one(
 ) -> None:
     pytest.importorskip("rosbags", reason="rosbags is not installed")
     err = said(capsys, 2, RECORDINGS / "square_bag", "--reference-topic", "none")
-    assert "there is no reference to compare with (Imu, NavSatFix, Odometry, PointStamped," in err
+    assert "there is no reference to compare with (Imu, LaserScan, NavSatFix, Odometry," in err
     assert "the bag has /" in err
     assert "(sensor_msgs/msg/JointState)" in err
 

@@ -49,7 +49,7 @@ def fleet_table(fleet: Fleet, width: int = 100) -> str:
 
 def robots_table(fleet: Fleet) -> Table:
     """The same for a page, whole."""
-    words = [at for at in range(len(HEADS)) if at not in _RIGHT]
+    words = [at for at in range(1, len(HEADS)) if at not in _RIGHT]
     return Table("", HEADS, [cells(row, whole=True) for row in fleet.rows], words)
 
 
