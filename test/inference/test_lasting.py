@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -136,3 +137,18 @@ def test_what_all_drives_agree_on_lasts_however_many_they_are(drives: int) -> No
     rest = noise + 120.0 * np.where(parts % 20 == 0, few, -few)
     gain = float((free[:, 0] @ rest) ** 2)
     assert _chance(gain, 1, free, rest, parts) > 1e-3
+
+
+def test_axes_that_begin_anew_have_no_common_direction() -> None:
+    """A path by scans begins at its first scan: a slope is none that two drives could show."""
+
+    def slopes(time: np.ndarray, random: np.random.Generator) -> np.ndarray:
+        return np.outer(time, [0.004, 0.0, 0.0])
+
+    runs = [driven(seed, slopes, f"drive_{seed}") for seed in range(90, 93)]
+    found = diagnose(runs[:2], ROBOT, LIBRARY, holdout=runs[2:])
+    assert found.found == ("floor_slope",)
+    anew = [replace(run, reference=replace(run.reference, own_axes=True)) for run in runs]
+    found = diagnose(anew[:2], ROBOT, LIBRARY, holdout=anew[2:])
+    assert "floor_slope" not in [item.effect for item in found.ranking]
+    assert {"heading", "position"}.isdisjoint(cell.variable.name for cell in found.depends_on)

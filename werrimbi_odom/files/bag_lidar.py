@@ -86,7 +86,9 @@ class LidarCollector:
         x, y, yaw = (np.ascontiguousarray(each) for each in poses.T)
         # Not local_map: in a room the map walks by less than a match errs (docs/scans.md), and a
         # wander that is fitted takes what a lidar mounted askew does for its own.
-        reference = Reference(found.time, x, y, yaw, sigma_xy, sigma_yaw, kind="absolute")
+        reference = Reference(
+            found.time, x, y, yaw, sigma_xy, sigma_yaw, kind="absolute", own_axes=True
+        )
         return reference, told
 
     def _mounted(self, mount: Mount) -> str:

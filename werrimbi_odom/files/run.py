@@ -60,6 +60,9 @@ class Reference:
     """Standard deviation of yaw, where it is stated [rad]."""
     kind: ReferenceKind | None = field(default=None, kw_only=True)
     """What its noise is like, where the reader knows; None where it does not."""
+    own_axes: bool = field(default=False, kw_only=True)
+    """Its axes begin anew with each drive, and where it was cut (scans without a map): then drives
+    have no direction and no place of the floor in common."""
 
     @property
     def has_position(self) -> NDArray[np.bool_]:
@@ -81,6 +84,7 @@ class Reference:
             None if self.sigma_xy is None else self.sigma_xy[which],
             None if self.sigma_yaw is None else self.sigma_yaw[which],
             kind=self.kind,
+            own_axes=self.own_axes,
         )
 
 

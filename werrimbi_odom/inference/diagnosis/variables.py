@@ -21,6 +21,9 @@ from werrimbi_odom.model.pose import Floats
 CONSTANT = "constant"
 """Name of the variable that is 1 everywhere: an error in proportion to its amount alone."""
 
+ON_THE_FLOOR = frozenset({"heading", "x", "y"})
+"""Quantities of a drive that only axes which all drives have in common give a meaning."""
+
 Form = Literal["constant", "line", "curve", "turns", "place"]
 
 
@@ -130,6 +133,8 @@ def variables_of(runs: Together, model: Model) -> tuple[Variable, ...]:
         found.append(robots(name, "", _mean(span), name))
     if np.mean(np.abs(acceleration) > GRIP) > SELDOM_BEYOND:
         found = [item for item in found if item.name != "acceleration"]
+    if runs.own_axes:
+        found = [item for item in found if not ON_THE_FLOOR & set(item.looks_at)]
     return tuple(item for item in found if item.name == CONSTANT or np.ptp(item.left) > 0.0)
 
 

@@ -93,6 +93,11 @@ class Together:
         return not np.isfinite(self.finish[:, :2]).any()
 
     @property
+    def own_axes(self) -> bool:
+        """Whether references begin with axes of their own, so that no direction is common."""
+        return any(run.measured.own_axes for run in self.runs)
+
+    @property
     def run_of_step(self) -> NDArray[np.intp]:
         """Index of the run of each step, shape (n,)."""
         return self.known("run_of_step", _runs_of_steps)

@@ -369,9 +369,11 @@ def _gaps_between(record: Record, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
 
 def _poses(reference: Reference, rows: NDArray[np.intp]) -> Reference:
     if rows.size == reference.time.size:
-        return Reference(reference.time, reference.x, reference.y, reference.yaw)
+        return Reference(
+            reference.time, reference.x, reference.y, reference.yaw, own_axes=reference.own_axes
+        )
     columns = (reference.time, reference.x, reference.y, reference.yaw)
-    return Reference(*(part[rows] for part in columns))
+    return Reference(*(part[rows] for part in columns), own_axes=reference.own_axes)
 
 
 def _typical(sigma: Floats | None) -> float | None:
