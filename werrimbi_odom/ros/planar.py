@@ -98,10 +98,11 @@ def rounded_up(covariance: PoseCovariance[float]) -> PoseCovariance[float]:
     xx, yy, yawyaw = xx * UP, yy * UP, yawyaw * UP
     if yawyaw > 0.0:  # what x and y vary beside what the heading explains of it
         a, b, c = xx - xyaw * (xyaw / yawyaw), yy - yyaw * (yyaw / yawyaw), xyaw * (yyaw / yawyaw)
-        if a >= 0.0 and b >= 0.0 and (xy - c) * (xy - c) <= a * b:
+        if a >= 0.0 and b >= 0.0 and abs(xy - c) <= math.sqrt(a) * math.sqrt(b):
             return PoseCovariance(xx, xy, xyaw, yy, yyaw, yawyaw)
-    elif not (xyaw or yyaw or yawyaw) and min(xx, yy) >= 0.0 and xy * xy <= xx * yy:
-        return PoseCovariance(xx, xy, xyaw, yy, yyaw, yawyaw)
+    elif not (xyaw or yyaw or yawyaw) and min(xx, yy) >= 0.0:
+        if abs(xy) <= math.sqrt(xx) * math.sqrt(yy):  # products of the entries may underflow
+            return PoseCovariance(xx, xy, xyaw, yy, yyaw, yawyaw)
     matrix = PoseCovariance(abs(xx), xy, xyaw, abs(yy), yyaw, abs(yawyaw)).matrix()
     sigma = np.sqrt(matrix.diagonal())
     size = np.where(sigma > 0.0, sigma, np.inf)
