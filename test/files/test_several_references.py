@@ -31,10 +31,10 @@ def localiser(noise: float = 0.02) -> Reference:
     return Reference(TIME, np.cos(TIME), np.sin(TIME), np.angle(np.exp(1j * yaw)))
 
 
-def gyro() -> Reference:
+def gyro(scale: float = 1.0) -> Reference:
     """Headings at 50 Hz that begin at zero and drift by 0.01 rad/s."""
     time = np.arange(-1.0, 61.0, 0.02)
-    yaw = 4.0 * np.sin(0.3 * time) + 0.2 * time + 0.01 * time
+    yaw = scale * (4.0 * np.sin(0.3 * time) + 0.2 * time) + 0.01 * time
     return Reference(time, *(np.full(time.size, np.nan),) * 2, yaw - yaw[0])
 
 
@@ -46,6 +46,13 @@ def test_a_gyros_headings_are_laid_upon_a_localisers() -> None:
         assert np.abs(np.diff(found.yaw - YAW)).max() < 1e-3, "its own noise, not the localiser's"
         assert "steady drift of" in told
         assert "+34" in told or "-34" in told, "0.01 rad/s are 34 degrees a minute"
+        assert "what it shows of a turn" not in told, "its scale is right"
+
+
+def test_a_gyro_that_shows_too_little_of_a_turn_is_mended_by_the_localiser() -> None:
+    found, told = merged("bag", localiser(0.005), gyro(0.98))
+    assert np.abs(found.yaw - found.yaw[0] - (YAW - YAW[0])).max() < 0.01
+    assert "what it shows of a turn is 98." in told
 
 
 def test_what_cannot_be_put_together_is_said() -> None:

@@ -60,8 +60,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         choices=("laboratory", "field"),
         default="laboratory",
         help="laboratory: counters and motion capture, in run folders; field: bags (rosbag2) with "
-        "joint states, a gyro, /odom and /tf of a localiser, and the robot held and carried in "
-        "between (when, stands in truth.json)",
+        "joint states, a gyro, a lidar, /odom and /tf of a localiser, and the robot held and "
+        "carried in between (when, stands in truth.json)",
     )
     parser.add_argument(
         "--list", action="store_true", help="list what can be hidden, with units, and stop"

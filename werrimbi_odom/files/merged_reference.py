@@ -4,8 +4,9 @@
 
 A gyro tells turning far better than a localiser does, and drifts; a localiser tells where the robot
 is and roughly how it faces, and does not drift. So the gyro's heading is laid upon the localiser's
-(an angle and a steady drift, fitted to all of the drive) and stands in its place. Positions and
-headings keep a noise and a delay of their own; the wheels take no part in this.
+(an angle, a steady drift, and its scale where the drive turns enough to tell it; fitted to all of
+the drive) and stands in its place. Positions and headings keep a noise and a delay of their own;
+the wheels take no part in this.
 """
 
 from __future__ import annotations
@@ -20,6 +21,11 @@ from werrimbi_odom.model.pose import Floats
 
 FEWEST = 10
 """Headings that both must have told: fewer do not tell an angle and a drift from noise."""
+LASTING = 10.0
+"""For how long a localiser errs alike [s]; AMCL and SLAM correct themselves in 5 to 30."""
+_MEDIAN_TO_SIGMA = 1.4826  # of a normal scatter
+SCALE_TOLD, SCALE_MOST = 4.0, 0.1
+"""Standard deviations beyond which a gyro's scale is told, and the most that a gyro's is off."""
 
 
 def merged(place: str, first: Reference, second: Reference) -> tuple[Reference, str]:
@@ -66,31 +72,50 @@ def merged(place: str, first: Reference, second: Reference) -> tuple[Reference, 
         )
     at = np.interp(poses.time, time, yaw)
     since = poses.time - poses.time[both][0]
-    angle, drift = _laid(since[both], poses.yaw[both], at[both])
-    laid = np.where(inside, at + angle + drift * since, np.nan)
+    middle = float(np.mean(at[both]))
+    angle, drift, scale = _laid(since[both], poses.yaw[both], at[both], middle)
+    laid = np.where(inside, middle + scale * (at - middle) + angle + drift * since, np.nan)
     degrees = np.degrees(60.0 * drift)
     told = (
         "headings are those of the one without positions, turned onto the other's and freed of a "
         f"steady drift of {degrees:+.2g}° a minute"
     )
+    if scale != 1.0:
+        told += f"; what it shows of a turn is {100.0 / scale:.2f} % of the other's, and mended"
     return replace(poses, yaw=laid, sigma_yaw=None), told
 
 
-def _laid(since: Floats, yaw: Floats, at: Floats) -> tuple[float, float]:
-    """Angle and drift that lay headings `at` upon `yaw`; jumps of either do not count (Huber)."""
+def _laid(since: Floats, yaw: Floats, at: Floats, middle: float) -> tuple[float, float, float]:
+    """Angle, drift and scale that lay headings `at` upon `yaw`; jumps do not count (Huber)."""
     from scipy.optimize import least_squares
 
-    apart = yaw - at
-    apart = np.unwrap(apart)
-    scale = max(float(np.median(np.abs(apart - np.median(apart)))), 1e-6)
-    found = least_squares(
-        lambda values: values[0] + values[1] * since - apart,
-        [float(np.median(apart)), 0.0],
-        loss="huber",
-        f_scale=scale,
-        x_scale=[1.0, 1.0 / max(float(since[-1]), 1.0)],
-    )
-    return float(found.x[0]), float(found.x[1])
+    apart = np.unwrap(yaw - at)
+    spread = max(float(np.median(np.abs(apart - np.median(apart)))), 1e-6)
+    columns = np.stack([np.ones(at.size), since, at - middle], axis=-1)
+    begin = np.array([float(np.median(apart)), 0.0, 0.0])
+    sizes = np.array([1.0, 1.0 / max(float(since[-1]), 1.0), 1.0 / max(float(np.ptp(at)), 1.0)])
+
+    def fitted(free: int) -> Floats:
+        found = least_squares(
+            lambda values: columns[:, :free] @ values - apart,
+            begin[:free],
+            loss="huber",
+            f_scale=spread,
+            x_scale=sizes[:free],
+        )
+        return np.asarray(found.x)
+
+    without, whole = fitted(2), fitted(3)
+    left = apart - columns @ whole
+    # A localiser errs alike for seconds: as many headings tell as there are times of LASTING.
+    count = max(float(since[-1] - since[0]) / LASTING, 1.0)
+    noise = _MEDIAN_TO_SIGMA * float(np.median(np.abs(left - np.median(left))))
+    clear = np.linalg.lstsq(columns[:, :2], columns[:, 2], rcond=None)[0]
+    free = columns[:, 2] - columns[:, :2] @ clear
+    told = abs(whole[2]) * float(np.std(free)) * np.sqrt(count)
+    if told > SCALE_TOLD * max(noise, 1e-12) and abs(whole[2]) < SCALE_MOST:
+        return float(whole[0]), float(whole[1]), 1.0 + float(whole[2])
+    return float(without[0]), float(without[1]), 1.0
 
 
 def _ascending(reference: Reference) -> tuple[Floats, Floats]:

@@ -100,9 +100,10 @@ def rounded_up(covariance: PoseCovariance[float]) -> PoseCovariance[float]:
         a, b, c = xx - xyaw * (xyaw / yawyaw), yy - yyaw * (yyaw / yawyaw), xyaw * (yyaw / yawyaw)
         if a >= 0.0 and b >= 0.0 and abs(xy - c) <= math.sqrt(a) * math.sqrt(b):
             return PoseCovariance(xx, xy, xyaw, yy, yyaw, yawyaw)
-    elif not (xyaw or yyaw or yawyaw) and min(xx, yy) >= 0.0:
-        if abs(xy) <= math.sqrt(xx) * math.sqrt(yy):  # products of the entries may underflow
-            return PoseCovariance(xx, xy, xyaw, yy, yyaw, yawyaw)
+    elif not (xyaw or yyaw or yawyaw) and (
+        min(xx, yy) >= 0.0 and abs(xy) <= math.sqrt(xx) * math.sqrt(yy)  # xx * yy may underflow
+    ):
+        return PoseCovariance(xx, xy, xyaw, yy, yyaw, yawyaw)
     matrix = PoseCovariance(abs(xx), xy, xyaw, abs(yy), yyaw, abs(yawyaw)).matrix()
     sigma = np.sqrt(matrix.diagonal())
     size = np.where(sigma > 0.0, sigma, np.inf)

@@ -41,7 +41,7 @@ from werrimbi_odom.inference.fitting.design import Design, Point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, STEP, Knob
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance, score_test
-from werrimbi_odom.inference.rules import DATED, RIVAL, SURE
+from werrimbi_odom.inference.rules import DATED, MOST_ALONE, RIVAL, SURE
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.pose import Floats
 
@@ -136,7 +136,12 @@ def _beside(
     groups = groups_of([knob.name for knob in evidence.numbers], evidence.values, len(drives.names))
     found = segmented(drives, groups, fit.price_of_one)
     place = np.argsort(order)
-    steps = [step for step in found.steps if _lasts(runs, evidence, found.steps, step, place)]
+    steps = [
+        step
+        for step in found.steps
+        if _of_several(step, len(runs.runs), diagnosis.kind)
+        and _lasts(runs, evidence, found.steps, step, place)
+    ]
     if not steps:
         return ()
     worth = sum(step.gain - fit.price_of_one * (step.degrees + 1) for step in steps)
@@ -201,6 +206,18 @@ def evidence_of(
         own / size,
         np.repeat(runs.run_of_leg, 3),
     )
+
+
+def _of_several(step: Step, drives: int, kind: ReferenceKind) -> bool:
+    """Whether more than one drive is on either side, where it must be.
+
+    A reference that wanders, or adds up its errors, has a drive now and then in which it errs
+    otherwise than in all others: that is no robot that changed, and changed back.
+    """
+    if kind == "absolute":
+        return True
+    several = MOST_ALONE < step.shape.first < drives - MOST_ALONE
+    return several and step.shape.kind != "alone"
 
 
 def _lasts(

@@ -8,6 +8,10 @@ MOST_CHANGES = 40
 """Changes that are looked for, one after the other: one every nine days of a year. Chosen: more
 are no changes but a scatter from drive to drive, which is estimated as such."""
 
+MOST_ALONE = 1
+"""Drives on one side of a change that are too few to show it by a reference that wanders: how it
+errs is as much alike within a drive as a change is."""
+
 DATED = 1e8
 """Stamps [s] above this are dates: no clock that begins with a drive shows three years."""
 
