@@ -13,6 +13,7 @@ from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.held import without_held_poses
 from werrimbi_odom.files.judgeable import refuse_unjudgeable
+from werrimbi_odom.files.merged_reference import with_one_scale
 from werrimbi_odom.files.reading import read_run
 from werrimbi_odom.files.replacing import place_of
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
@@ -160,12 +161,21 @@ def gathered(
             run = _read(drive, source, how, references[number])
         refuse_unjudgeable(run)
         found.append(run)
+    found = _with_one_scale(found, len(runs))
     if how.kind is None:
         how = replace(how, kind=_kind_of(found))
     if how.kind != "incremental":
         found = [without_held_poses(run, source.robot) for run in found]
     count = len(runs)
     return Recordings(source, collection, tuple(found[:count]), tuple(found[count:]), how)
+
+
+def _with_one_scale(runs: Sequence[Run], fitted: int) -> list[Run]:
+    """Headings that were a gyro's with the scale that the fitted drives tell together."""
+    references = [run.reference for run in runs]
+    known = [each for each in references if each is not None]
+    scaled = iter(with_one_scale(known, [each for each in references[:fitted] if each is not None]))
+    return [run if run.reference is None else replace(run, reference=next(scaled)) for run in runs]
 
 
 def _kind_of(runs: Sequence[Run]) -> ReferenceKind:

@@ -4,19 +4,21 @@
 
 A gyro tells turning far better than a localiser does, and drifts; a localiser tells where the robot
 is and roughly how it faces, and does not drift. So the gyro's heading is laid upon the localiser's
-(an angle, a steady drift, and its scale where the drive turns enough to tell it; fitted to all of
-the drive) and stands in its place. Positions and headings keep a noise and a delay of their own;
-the wheels take no part in this.
+(an angle and a steady drift, fitted to all of the drive) and stands in its place; its scale is told
+by all drives together. Positions and headings keep a noise and a delay of their own; the wheels
+take no part in this.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import Reference
+from werrimbi_odom.files.run import GyroTurn, Reference
 from werrimbi_odom.model.pose import Floats
 
 FEWEST = 10
@@ -72,50 +74,76 @@ def merged(place: str, first: Reference, second: Reference) -> tuple[Reference, 
         )
     at = np.interp(poses.time, time, yaw)
     since = poses.time - poses.time[both][0]
-    middle = float(np.mean(at[both]))
-    angle, drift, scale = _laid(since[both], poses.yaw[both], at[both], middle)
-    laid = np.where(inside, middle + scale * (at - middle) + angle + drift * since, np.nan)
+    columns = np.stack([np.ones(at.size), since, at], axis=-1)
+    angle, drift = _laid(columns[both, :2], poses.yaw[both] - at[both])
+    laid = np.where(inside, at + angle + drift * since, np.nan)
     degrees = np.degrees(60.0 * drift)
     told = (
         "headings are those of the one without positions, turned onto the other's and freed of a "
         f"steady drift of {degrees:+.2g}° a minute"
     )
-    if scale != 1.0:
-        told += f"; what it shows of a turn is {100.0 / scale:.2f} % of the other's, and mended"
-    return replace(poses, yaw=laid, sigma_yaw=None), told
+    gyro = _gyro_turn(columns, poses.yaw - at, both)
+    return replace(poses, yaw=laid, sigma_yaw=None, gyro=gyro), told
 
 
-def _laid(since: Floats, yaw: Floats, at: Floats, middle: float) -> tuple[float, float, float]:
-    """Angle, drift and scale that lay headings `at` upon `yaw`; jumps do not count (Huber)."""
+def with_one_scale(references: Sequence[Reference], of: Sequence[Reference]) -> list[Reference]:
+    """Gyros' headings with the scale that some drives together tell, where they do.
+
+    It is one gyro in all drives, and one drive tells its scale no better than the other reference
+    wanders in it.
+
+    Parameters
+    ----------
+    of
+        The drives that tell it; the others have no part in it.
+    """
+    told = [each.gyro for each in of if each.gyro is not None]
+    weights = np.array([each.std**-2 for each in told])
+    if not told:
+        return list(references)
+    scales = np.array([each.scale for each in told])
+    scale = float(weights @ scales / weights.sum())
+    apart = float(weights @ (scales - scale) ** 2) / max(len(told) - 1, 1)
+    std = float(np.sqrt(max(apart, 1.0) / weights.sum()))
+    if not SCALE_TOLD * std < abs(scale - 1.0) < SCALE_MOST:
+        return list(references)
+    return [
+        each
+        if each.gyro is None
+        else replace(each, yaw=each.yaw + (scale - 1.0) * each.gyro.turned)
+        for each in references
+    ]
+
+
+def _gyro_turn(columns: Floats, apart: Floats, both: NDArray[np.bool_]) -> GyroTurn:
+    """What the gyro turned, and by how much the other turned more, (m,)."""
+    clear = np.linalg.lstsq(columns[both, :2], columns[both, 2], rcond=None)[0]
+    turned = columns[:, 2] - columns[:, :2] @ clear
+    angle, drift, more = _laid(np.column_stack([columns[both, :2], turned[both]]), apart[both])
+    left = np.unwrap(apart[both]) - angle - drift * columns[both, 1] - more * turned[both]
+    noise = _MEDIAN_TO_SIGMA * float(np.median(np.abs(left - np.median(left))))
+    # A localiser errs alike for a while: as many headings tell as there are such whiles.
+    count = max(float(np.ptp(columns[both, 1])) / LASTING, 1.0)
+    spread = max(float(np.std(turned[both])), 1e-9)
+    return GyroTurn(turned, 1.0 + more, max(noise, 1e-6) / spread / np.sqrt(count))
+
+
+def _laid(columns: Floats, apart: Floats) -> Floats:
+    """What to take of each column to explain angles; jumps do not count (Huber)."""
     from scipy.optimize import least_squares
 
-    apart = np.unwrap(yaw - at)
+    apart = np.unwrap(apart)
     spread = max(float(np.median(np.abs(apart - np.median(apart)))), 1e-6)
-    columns = np.stack([np.ones(at.size), since, at - middle], axis=-1)
-    begin = np.array([float(np.median(apart)), 0.0, 0.0])
-    sizes = np.array([1.0, 1.0 / max(float(since[-1]), 1.0), 1.0 / max(float(np.ptp(at)), 1.0)])
-
-    def fitted(free: int) -> Floats:
-        found = least_squares(
-            lambda values: columns[:, :free] @ values - apart,
-            begin[:free],
-            loss="huber",
-            f_scale=spread,
-            x_scale=sizes[:free],
-        )
-        return np.asarray(found.x)
-
-    without, whole = fitted(2), fitted(3)
-    left = apart - columns @ whole
-    # A localiser errs alike for seconds: as many headings tell as there are times of LASTING.
-    count = max(float(since[-1] - since[0]) / LASTING, 1.0)
-    noise = _MEDIAN_TO_SIGMA * float(np.median(np.abs(left - np.median(left))))
-    clear = np.linalg.lstsq(columns[:, :2], columns[:, 2], rcond=None)[0]
-    free = columns[:, 2] - columns[:, :2] @ clear
-    told = abs(whole[2]) * float(np.std(free)) * np.sqrt(count)
-    if told > SCALE_TOLD * max(noise, 1e-12) and abs(whole[2]) < SCALE_MOST:
-        return float(whole[0]), float(whole[1]), 1.0 + float(whole[2])
-    return float(without[0]), float(without[1]), 1.0
+    begin = np.zeros(columns.shape[1])
+    begin[0] = float(np.median(apart))
+    found = least_squares(
+        lambda values: columns @ values - apart,
+        begin,
+        loss="huber",
+        f_scale=spread,
+        x_scale=1.0 / np.maximum(np.ptp(columns, axis=0), 1.0),
+    )
+    return np.asarray(found.x)
 
 
 def _ascending(reference: Reference) -> tuple[Floats, Floats]:

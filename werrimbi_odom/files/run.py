@@ -42,6 +42,16 @@ class Ticks:
         return int(self.time.size)
 
 
+class GyroTurn(NamedTuple):
+    """What a gyro showed whose headings were laid upon another reference's; see `merged`."""
+
+    turned: Floats
+    """Turning, clear of what an angle and a steady drift make of it, shape (m,) [rad]."""
+    scale: float
+    """Turning by the other over the gyro's, told by this drive alone."""
+    std: float
+
+
 @dataclass(frozen=True, eq=False)
 class Reference:
     """What was measured from outside; arrays of shape (m,), NaN where not measured."""
@@ -63,6 +73,8 @@ class Reference:
     own_axes: bool = field(default=False, kw_only=True)
     """Its axes begin anew with each drive, and where it was cut (scans without a map): then drives
     have no direction and no place of the floor in common."""
+    gyro: GyroTurn | None = field(default=None, kw_only=True)
+    """Where `yaw` is a gyro's, laid upon another reference's."""
 
     @property
     def has_position(self) -> NDArray[np.bool_]:
@@ -85,6 +97,7 @@ class Reference:
             None if self.sigma_yaw is None else self.sigma_yaw[which],
             kind=self.kind,
             own_axes=self.own_axes,
+            gyro=None if self.gyro is None else self.gyro._replace(turned=self.gyro.turned[which]),
         )
 
 
