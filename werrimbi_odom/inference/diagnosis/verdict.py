@@ -143,7 +143,11 @@ def told(
         others = (*torn, *own_scale_instead(found[0], final, given, laid))
         rivals = tuple(dict.fromkeys((*(rivals or (found[0],)), *others))) if others else rivals
     verdict: Verdict
-    another = of_another_drive(judge.train, _plain(final, set_up.robot))
+    as_given = Model(given, judge.nothing_of_own)
+    another = all(
+        of_another_drive(judge.train, model)
+        for model in (_plain(final, set_up.robot), as_given)  # a fit of few poses may lead astray
+    )
     if another:
         verdict, found, rivals, torn = "unknown", (), (), ()
     elif not found:
@@ -153,7 +157,7 @@ def told(
         verdict, found, rivals, torn = "unknown", (), (), ()
     else:
         verdict = "ambiguous" if len(rivals) > 1 else "named"
-    start = judge.of(Model(given, judge.nothing_of_own))
+    start = judge.of(as_given)
     last = judge.of(_plain(final, set_up.robot))
     return Diagnosis(
         verdict,

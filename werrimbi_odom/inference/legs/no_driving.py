@@ -124,7 +124,7 @@ def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> 
     low, high = minimum_filter1d(expected, reach), maximum_filter1d(expected, reach)
     off = np.maximum(np.maximum(low - windows.measured, windows.measured - high), 0.0)
     rolls = windows.rolled > windows.still
-    keeps = rolls & (found.off <= NO_DRIVING_EDGE * gross)
+    keeps = rolls & (gross > 0.0) & (found.off <= NO_DRIVING_EDGE * gross)
     noise = float(np.median(found.off[keeps]))
     rough = NO_DRIVING_ROUGH * float(np.median(found.off[keeps] / gross[keeps]))
     least = max(NO_DRIVING_NOISE * noise, slowest)

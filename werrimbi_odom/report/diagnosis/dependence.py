@@ -62,6 +62,13 @@ _RARE = 0.02
 """Share of the way, at either end, that is too rare to be told of."""
 
 
+_MOST, _MOST_TURN = 1.0, 2.0 * math.pi
+"""Largest errors that are told: a metre a metre, a radian a radian; and a whole turn each metre.
+What is larger was told by steps in which there was next to nothing to err by."""
+_UNTOLD = "by more than wheels can do, for hardly any of it was driven"
+_TURNS_PER_METRE = {("heading", "travel"), ("heading", "path")}
+
+
 def short_name(variable: str) -> str:
     """A variable's name for tables and figures; the same wherever it stands."""
     return _SHORT.get(variable, variable.replace("_", " "))
@@ -89,7 +96,9 @@ def dependence_words(cell: Dependence) -> str:
     """The whole cell: "how far the left wheel rolls goes with ...: 0.4 % more ..."."""
     what = _AMOUNTS[cell.amount.channel, cell.amount.per]
     verb = "is wrong in proportion to" if cell.variable.name == CONSTANT else "goes with"
-    return f"{what} {verb} {variable_words(cell)}: {strength_words(cell)}{_shape(cell)}"
+    strength = strength_words(cell)
+    shape = "" if strength == _UNTOLD else _shape(cell)
+    return f"{what} {verb} {variable_words(cell)}: {strength}{shape}"
 
 
 def strength_words(cell: Dependence) -> str:
@@ -102,6 +111,8 @@ def strength_words(cell: Dependence) -> str:
     else:
         low, high = _quantiles(values, _weights(cell), np.array([_RARE, 1.0 - _RARE]))
         size = 0.5 * float(high - low)
+    if size > (_MOST_TURN if (cell.channel, cell.amount.per) in _TURNS_PER_METRE else _MOST):
+        return _UNTOLD
     sign = "" if cell.variable.name == CONSTANT else "±"
     return f"{sign}{_in_unit(cell, size)}"
 
