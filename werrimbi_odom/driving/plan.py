@@ -89,6 +89,10 @@ class Plan:
         return sum(Profile.of(move, limits).duration + move.rest for move in self.moves)
 
 
+NOTHING = 1e-6
+"""Of a move [m, rad]: what is smaller is none, and ramps that divide by it are no numbers."""
+
+
 @dataclass(frozen=True, slots=True)
 class Profile:
     """A move's progress from 0 to 1: faster, steadily on, slower.
@@ -110,7 +114,7 @@ class Profile:
     @classmethod
     def of(cls, move: Move, limits: Limits) -> Profile:
         """The quickest within the limits, at the move's pace."""
-        if not (move.length or move.turn):
+        if max(abs(move.length), abs(move.turn)) < NOTHING:
             return cls(0.0, 0.0, 0.0)
         brisk = HEADROOM * (1.0 if move.hard else GENTLE)
         most = HEADROOM * move.pace

@@ -30,7 +30,7 @@ _ERRORS_OF_SCALARS = (ValueError, ArithmeticError, LookupError, TypeError, Attri
 _TAGS = ("!", *("tag:yaml.org,2002:" + kind for kind in ("str", "int", "float", "bool", "null")))
 
 _READ_OTHERWISE = re.compile(
-    r"[-+]?(0[0-9_]+|0[ob][0-7_]+|0x[0-9a-f_]*_[0-9a-f_]*|(?=[^_]*_)[0-9._]+(e[-+]?[0-9_]+)?)",
+    r"[-+]?(0[0-9_]+|0[ob][0-7_]+|0x[0-9a-f_]*_[0-9a-f_]*|(?=[^_]*_)(?=[._]*[0-9])[0-9._]+(e[-+]?[0-9_]+)?)",
     re.IGNORECASE,
 )
 """Numbers to YAML 1.2 which are other numbers, or texts, to ROS: its reader asks C's strtol, to
