@@ -13,7 +13,14 @@ from numpy.typing import NDArray
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.prediction import anchors, headings_of, path_of, right_handed
 from werrimbi_odom.inference.fitting.together import Together
-from werrimbi_odom.inference.rules import CURVE_KNOTS, FLOOR_CELL, FLOOR_CELLS, GRIP, SELDOM_BEYOND
+from werrimbi_odom.inference.rules import (
+    CURVE_KNOTS,
+    FLOOR_CELL,
+    FLOOR_CELLS,
+    GRIP,
+    SELDOM_BACK,
+    SELDOM_BEYOND,
+)
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
@@ -133,6 +140,10 @@ def variables_of(runs: Together, model: Model) -> tuple[Variable, ...]:
         found.append(robots(name, "", _mean(span), name))
     if np.mean(np.abs(acceleration) > GRIP) > SELDOM_BEYOND:
         found = [item for item in found if item.name != "acceleration"]
+    way = np.abs(drive.distance.change)
+    back = way[drive.speed.end < 0.0].sum() / max(way.sum(), 1e-9)
+    if not SELDOM_BACK < back < 1.0 - SELDOM_BACK:
+        found = [item for item in found if item.name != "direction"]
     if runs.own_axes:
         found = [item for item in found if not ON_THE_FLOOR & set(item.looks_at)]
     return tuple(item for item in found if item.name == CONSTANT or np.ptp(item.left) > 0.0)

@@ -111,6 +111,11 @@ share of the steps that may show more. Counts that come in bunches, or stamps th
 where it is more, the acceleration was not measured, and nothing is said to go with it. The real
 robots and the engine's are below 3 in nine steps of ten; one whose stamps wander is at 20."""
 
+SELDOM_BACK = 0.02
+"""Share of the way that must be driven backwards, and forwards, for errors to go with the sense of
+driving. Chosen: wheels that settle by a count as they stop make a millimetre or two a metre, and
+what is said of errors leaves out as much at either end."""
+
 NEIGHBOUR = 1.6
 """Widths of a floor's cell within which another cell is its neighbour: corners touch at 1.4, and
 steps are seldom in the very middle of their cell."""
