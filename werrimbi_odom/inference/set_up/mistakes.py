@@ -15,6 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.effects import find
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.calibration_sizes import skidding
 from werrimbi_odom.inference.legs.no_driving import looked_at
@@ -118,7 +119,13 @@ def look_for_mistakes(
         wheels = [as_skid(each) for each in wheels]
     degrees = [each for each in extra if each.effect == IN_DEGREES]
     late = [each for each in extra if each.effect != IN_DEGREES]
-    mended, findings = with_findings(robot, [*degrees, *wheels, *late, *mount], setting)
+    try:
+        mended, findings = with_findings(robot, [*degrees, *wheels, *late, *mount], setting)
+    except ValueError as error:  # a size beyond what its effect allows
+        raise InputError(
+            f"{runs[0].path}: wheels and reference have nothing in common ({error}): is it the "
+            "reference of this robot and this drive, in metres?"
+        ) from error
     return SetUp(findings, mended)
 
 
