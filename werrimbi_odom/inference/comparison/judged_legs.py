@@ -56,9 +56,6 @@ from werrimbi_odom.inference.rules import (
     LEGS_OF_A_LENGTH,
     LEGS_OF_A_RUN,
     MOST_WHEEL_NOISE,
-    OTHER_DRIVE,
-    OTHER_DRIVE_LEGS,
-    OTHER_DRIVE_TURN,
     QUARTER_TURN,
 )
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -492,53 +489,3 @@ def far_above_noise(prepared: Prepared, model: Model) -> bool:
     if not known.any():
         return False
     return bool(np.mean(error[known]) > FAR_ABOVE_NOISE**2 * np.median(promised[known]))
-
-
-def of_another_drive(prepared: Prepared, model: Model) -> bool:
-    """Whether a model, calibrated and all, tells hardly anything of what the reference measured.
-
-    At no length of leg are its errors less than what was driven, by position or by heading (of
-    drives that turn), and they are no noise: so the reference is of another robot, another drive or
-    another hour, or its topic is no pose. A poor reference passes by its long legs, a poor model by
-    its short ones.
-    """
-    every = [judged_legs(prepared, model, length) for length in prepared.cuts]
-    places = [legs.errors.error[:, :2] for legs in every]
-    ways = [
-        (legs.errors.along, np.hypot(legs.end_x - legs.x, legs.end_y - legs.y)) for legs in every
-    ]
-    turned = [legs.errors.error[:, 2:] for legs in every]
-    turns = [
-        (legs.errors.turn, wrap_all(legs.errors.turn + legs.errors.error[:, 2])) for legs in every
-    ]
-    return _untold(every, places, ways, slice(0, 2), 0.0) or _untold(
-        every, turned, turns, slice(2, 3), OTHER_DRIVE_TURN
-    )
-
-
-def _untold(
-    every: Sequence[Legs],
-    errors: Sequence[Floats],
-    driven: Sequence[tuple[Floats, Floats]],
-    places: slice,
-    least: float,
-) -> bool:
-    """Whether errors are as large as what was driven, by wheels or reference, at every length.
-
-    Lengths at which less than `least` was driven are not asked.
-    """
-    looked_at = False
-    for legs, error, both in zip(every, errors, driven, strict=True):
-        square = np.sum(error**2, axis=1)
-        known = np.isfinite(square) & np.isfinite(both[1])
-        if np.sum(known) < OTHER_DRIVE_LEGS:
-            continue
-        promised = np.trace(legs.errors.covariance[known, places, places], axis1=1, axis2=2)
-        way = max(float(np.median(each[known] ** 2)) for each in both)
-        noise = FAR_ABOVE_NOISE**2 * float(np.median(promised))
-        if way < least**2:
-            continue
-        if np.median(square[known]) < max(OTHER_DRIVE * way, noise):
-            return False
-        looked_at = True
-    return looked_at

@@ -15,7 +15,8 @@ from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
 from werrimbi_odom.inference.chances import chi2_above
-from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, of_another_drive
+from werrimbi_odom.inference.comparison.another_drive import of_another_drive
+from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit

@@ -1,0 +1,71 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Whether wheels and reference tell of the same drive at all."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from functools import cache
+
+import numpy as np
+
+from werrimbi_odom.inference.comparison.judged_legs import Legs, Prepared, judged_legs
+from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.rules import (
+    FAR_ABOVE_NOISE,
+    OTHER_DRIVE,
+    OTHER_DRIVE_LEGS,
+    OTHER_DRIVE_TURN,
+)
+from werrimbi_odom.model.pose import Floats, wrap_all
+
+Driven = Callable[[Legs], tuple[slice, Floats, Floats]]
+"""Of legs: which columns of the errors, and what wheels and reference say was driven, (m,) each."""
+
+
+def of_another_drive(prepared: Prepared, model: Model) -> bool:
+    """Whether a model, calibrated and all, tells hardly anything of what the reference measured.
+
+    At no length of leg are its errors less than what was driven, by position or by heading (of
+    drives that turn), and they are no noise: so the reference is of another robot, another drive or
+    another hour, or its topic is no pose. A poor reference passes by its long legs, a poor model by
+    its short ones.
+    """
+
+    @cache
+    def legs_of(length: float) -> Legs:
+        return judged_legs(prepared, model, length)
+
+    def all_untold(driven: Driven, least: float) -> bool:
+        return _untold((legs_of(length) for length in prepared.cuts), driven, least)
+
+    return all_untold(_by_position, 0.0) or all_untold(_by_heading, OTHER_DRIVE_TURN)
+
+
+def _by_position(legs: Legs) -> tuple[slice, Floats, Floats]:
+    return slice(0, 2), legs.errors.along, np.hypot(legs.end_x - legs.x, legs.end_y - legs.y)
+
+
+def _by_heading(legs: Legs) -> tuple[slice, Floats, Floats]:
+    turn = legs.errors.turn
+    return slice(2, 3), turn, wrap_all(turn + legs.errors.error[:, 2])
+
+
+def _untold(every: Iterable[Legs], driven: Driven, least: float) -> bool:
+    """Whether errors are as large as what was driven, at every length at which `least` was."""
+    looked_at = False
+    for legs in every:
+        places, rolled, measured = driven(legs)
+        square = np.sum(legs.errors.error[:, places] ** 2, axis=1)
+        known = np.isfinite(square) & np.isfinite(measured)
+        if np.sum(known) < OTHER_DRIVE_LEGS:
+            continue
+        promised = np.trace(legs.errors.covariance[known, places, places], axis1=1, axis2=2)
+        way = max(float(np.median(each[known] ** 2)) for each in (rolled, measured))
+        noise = FAR_ABOVE_NOISE**2 * float(np.median(promised))
+        if way < least**2:
+            continue
+        if np.median(square[known]) < max(OTHER_DRIVE * way, noise):
+            return False
+        looked_at = True
+    return looked_at
