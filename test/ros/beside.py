@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import pytest
+
 
 def arguments(values: dict[str, Any]) -> list[str]:
     """Parameters on a command line of ROS."""
@@ -22,6 +24,30 @@ def arguments(values: dict[str, Any]) -> list[str]:
         text = str(value).lower() if isinstance(value, bool) else str(value)
         words += ["-p", f"{name}:={text}"]
     return words
+
+
+def ended(process: subprocess.Popen[Any], with_signal: int = signal.SIGINT) -> int:
+    """End a process as Ctrl-C or a launch file does; returns its exit code."""
+    if process.poll() is None:
+        process.send_signal(with_signal)
+    try:
+        return process.wait(10.0)
+    finally:
+        process.kill()
+
+
+def stand_in_for_tf2_ros(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """For nodes started after this: tf2_ros, which has no wheel; publishes what it is to send."""
+    (folder / "tf2_ros.py").write_text(
+        "from geometry_msgs.msg import TransformStamped\n"
+        "class TransformBroadcaster:\n"
+        "    def __init__(self, node):\n"
+        "        self.publisher = node.create_publisher(TransformStamped, 'sent', 10)\n"
+        "    def sendTransform(self, transform):\n"
+        "        self.publisher.publish(transform)\n",
+        encoding="utf-8",
+    )
+    monkeypatch.setenv("PYTHONPATH", str(folder))
 
 
 class Beside:
@@ -47,12 +73,7 @@ class Beside:
 
     def stop(self, with_signal: int = signal.SIGINT) -> int:
         """End it; returns its exit code."""
-        if self.process.poll() is None:
-            self.process.send_signal(with_signal)
-        try:
-            return self.process.wait(10.0)
-        finally:
-            self.process.kill()
+        return ended(self.process, with_signal)
 
 
 @contextmanager

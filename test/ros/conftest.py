@@ -36,6 +36,7 @@ from sensor_msgs.msg import JointState  # noqa: E402
 from std_srvs.srv import Trigger  # noqa: E402
 from visualization_msgs.msg import MarkerArray  # noqa: E402
 
+from test.ros.beside import ended  # noqa: E402
 from werrimbi_odom.ros.domain import free_domain  # noqa: E402
 
 ROOT = Path(__file__).parents[2]
@@ -274,12 +275,7 @@ class Launched:
 
     def stop(self, with_signal: int = signal.SIGINT) -> int:
         """End the node as Ctrl-C or a launch file does; returns its exit code."""
-        if self.process.poll() is None:
-            self.process.send_signal(with_signal)
-        try:
-            return self.process.wait(10.0)
-        finally:
-            self.process.kill()
+        return ended(self.process, with_signal)
 
     def close(self) -> None:
         """End the node, and our part."""

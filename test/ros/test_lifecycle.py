@@ -22,6 +22,8 @@ from rosgraph_msgs.msg import Clock
 from sensor_msgs.msg import JointState
 from std_msgs.msg import Int64MultiArray
 
+from test.ros.beside import stand_in_for_tf2_ros
+
 Robot = dict[str, Any]
 Launch = Callable[..., Any]
 
@@ -121,16 +123,7 @@ def test_the_transform_goes_out_where_tf2_ros_is(
     launch: Launch, robot: Robot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With a stand-in for tf2_ros, which has no wheel: it publishes what it is told to send."""
-    (tmp_path / "tf2_ros.py").write_text(
-        "from geometry_msgs.msg import TransformStamped\n"
-        "class TransformBroadcaster:\n"
-        "    def __init__(self, node):\n"
-        "        self.publisher = node.create_publisher(TransformStamped, 'sent', 10)\n"
-        "    def sendTransform(self, transform):\n"
-        "        self.publisher.publish(transform)\n",
-        encoding="utf-8",
-    )
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    stand_in_for_tf2_ros(tmp_path, monkeypatch)
     node = launch(robot | {"enable_odom_tf": True})
     sent = node.keep(TransformStamped, "sent")
     node.begin()

@@ -23,7 +23,7 @@ from sensor_msgs.msg import Imu, LaserScan
 from std_srvs.srv import Trigger
 
 import werrimbi_odom as wo
-from test.ros.beside import beside
+from test.ros.beside import beside, stand_in_for_tf2_ros
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.ros.simulated_parameters import PARAMETERS, robot_of
 
@@ -144,16 +144,7 @@ def test_the_truth_goes_out_on_tf(
     launch: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """With a stand-in for tf2_ros, which has no wheel."""
-    (tmp_path / "tf2_ros.py").write_text(
-        "from geometry_msgs.msg import TransformStamped\n"
-        "class TransformBroadcaster:\n"
-        "    def __init__(self, node):\n"
-        "        self.publisher = node.create_publisher(TransformStamped, 'sent', 10)\n"
-        "    def sendTransform(self, transform):\n"
-        "        self.publisher.publish(transform)\n",
-        encoding="utf-8",
-    )
-    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    stand_in_for_tf2_ros(tmp_path, monkeypatch)
     client = launch(ROBOT)
     with beside(tmp_path, client.environment, "simulated_robot", enable_tf=True, room="arena"):
         sent = client.keep(TransformStamped, "sent")

@@ -52,7 +52,7 @@ def calibrate_fit(
 def calibrated(given: Recordings) -> Result[Calibration]:
     """`calibrate_fit` for what was read already."""
     from werrimbi_odom.inference.calibration.any_driving import calibrate
-    from werrimbi_odom.inference.legs.cutting import match_finely, stated
+    from werrimbi_odom.inference.legs.cutting import match_finely, sigmas_known
     from werrimbi_odom.inference.legs.no_driving import looked_at
     from werrimbi_odom.report.calibration.document import calibration_document
     from werrimbi_odom.report.calibration.fit_words import fit_in_words
@@ -65,12 +65,13 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     )
     runs = match_finely(given.runs, source.robot, how.leg, source.limits)
     kind = given.judging["kind"]
+    sigma_xy, sigma_yaw = sigmas_known(runs, kind, how.sigma_xy, how.sigma_yaw)
     found = calibrate(
         runs,
         source.robot,
         kind,
-        sigma_xy=how.sigma_xy or stated(runs, "sigma_xy", kind),
-        sigma_yaw=how.sigma_yaw or stated(runs, "sigma_yaw", kind),
+        sigma_xy=sigma_xy,
+        sigma_yaw=sigma_yaw,
     )
     left_out = _left_out(given, runs, found)
     figures = _json(found)

@@ -33,7 +33,7 @@ from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.together import together
-from werrimbi_odom.inference.legs.cutting import match_finely, stated
+from werrimbi_odom.inference.legs.cutting import match_finely, sigmas_known
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import (
     CALIBRATE_AGAIN,
@@ -127,10 +127,7 @@ def drive_told(
         When it has no usable reference or no ticks.
     """
     laid = together(match_finely([looked_at(run, robot, limits)], robot, leg, limits))
-    sigma = (
-        sigma_xy or stated(laid.runs, "sigma_xy", kind),
-        sigma_yaw or stated(laid.runs, "sigma_yaw", kind),
-    )
+    sigma = sigmas_known(laid.runs, kind, sigma_xy, sigma_yaw)
     fit = first_fit(laid, robot, kind, sigma)
     evidence = evidence_of(laid, fit.point, kind, fit.design, fit.scatter)
     told = evidence.drives(np.zeros(1))

@@ -36,7 +36,7 @@ from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict
 from werrimbi_odom.inference.fitting.candidates import Score
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.together import Together, together
-from werrimbi_odom.inference.legs.cutting import match_finely, stated
+from werrimbi_odom.inference.legs.cutting import match_finely, sigmas_known
 from werrimbi_odom.inference.rules import (
     CELLS_ASKED,
     LAW_SHARE,
@@ -88,10 +88,7 @@ def diagnose(
     begun = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
     judge, set_up = begun.judge, begun.set_up
     laid = together(match_finely(judge.fitted_on, set_up.robot, leg, limits))
-    sigma = (
-        sigma_xy or stated(laid.runs, "sigma_xy", kind),
-        sigma_yaw or stated(laid.runs, "sigma_yaw", kind),
-    )
+    sigma = sigmas_known(laid.runs, kind, sigma_xy, sigma_yaw)
     show(0.1, "calibration")
     fit = first_fit(laid, set_up.robot, kind, sigma)
     rounds: list[Round] = []

@@ -196,15 +196,27 @@ def delayed(run: MatchedRun, delay: float) -> MatchedRun:
     )
 
 
-def stated(runs: Sequence[MatchedRun], name: str, kind: ReferenceKind) -> float | None:
-    """The reference's noise (`sigma_xy` or `sigma_yaw`) as the records state it, if all do.
+def sigmas_known(
+    runs: Sequence[MatchedRun],
+    kind: ReferenceKind,
+    sigma_xy: float | None,
+    sigma_yaw: float | None,
+) -> tuple[float | None, float | None]:
+    """The reference's noise as it was given, else as the records state it, if all do.
 
     A localiser states how far it may be off in all, and not what it errs by from pose to pose.
     """
     if kind == "local_map":
-        return None
-    values = [getattr(run, name) for run in runs]
-    return None if any(value is None for value in values) else float(max(values))
+        return sigma_xy, sigma_yaw
+    return (
+        sigma_xy or _stated([run.sigma_xy for run in runs]),
+        sigma_yaw or _stated([run.sigma_yaw for run in runs]),
+    )
+
+
+def _stated(values: Sequence[float | None]) -> float | None:
+    known = [value for value in values if value is not None]
+    return max(known) if known and len(known) == len(values) else None
 
 
 def record_of(
