@@ -9,6 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from test.inference.driven import runs_of
 from test.recorded_robots import ROBOTS, with_recordings
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
@@ -132,6 +133,29 @@ def test_a_gyros_own_scale_is_told_beside_the_base_and_not_as_certain(scale: flo
     assert move.name == "ten_turns_by_hand"
     known = replace(NOMINAL, effects=(find("reference_scale").using(multiplier=scale),))
     assert diagnose(gyros, known, LIBRARY, "incremental").verdict == "none"
+
+
+@pytest.mark.parametrize(
+    ("name", "size"),
+    [("right_backlash", {"travel": 5e-3}), ("longitudinal_slip", {"coefficient": 0.02})],
+)
+def test_an_effects_own_length_is_no_way_for_a_gyro_to_the_size_of_the_wheels(
+    name: str, size: dict[str, float]
+) -> None:
+    """The size stood first in the order, and what was hidden was called undetermined."""
+    hidden = replace(NOMINAL, effects=(find(name).using(**size),))
+    gyros = []
+    for run in runs_of(hidden, range(1, 4), seconds=60):
+        assert run.reference is not None
+        nothing = np.full(run.reference.time.size, np.nan)
+        gyros.append(replace(run, reference=replace(run.reference, x=nothing, y=nothing)))
+    rivals = ("reference_delay", "castor_kick", "encoder_skew")
+    found = diagnose(gyros, NOMINAL, [find(each) for each in (name, *rivals)])
+    assert (found.verdict, found.found) == ("named", (name,))
+    assert found.final.held == ("wheel_radius_scale",)
+    ((own, true),) = size.items()
+    value = values_of(found, name)[own]
+    assert abs(value.value - true) < 3.0 * value.std
 
 
 def test_a_base_beyond_what_a_gyro_can_be_off_is_the_base() -> None:

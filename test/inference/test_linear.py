@@ -68,6 +68,14 @@ def test_of_equivalent_columns_the_first_is_kept() -> None:
     assert admitted(columns[:, ::-1], beside) == [0, 1]
 
 
+def test_a_column_that_is_not_known_well_enough_is_in_the_way_of_none_after_it() -> None:
+    alike = COLUMNS[:, 0] + 0.01 * COLUMNS[:, 1]
+    columns = np.stack([COLUMNS[:, 0], alike, COLUMNS[:, 1]], axis=-1)
+    beside = nuisance(NUISANCES[:, :0])
+    assert admitted(columns, beside) == [0, 1]
+    assert admitted(columns, beside, lambda tried: 1 not in tried) == [0, 2]
+
+
 def test_a_silent_column_is_neither_tested_nor_moved() -> None:
     none = np.zeros((200, 1))
     assert score_test(none, none, DATA) is None

@@ -13,6 +13,7 @@ off. A direction of them is determined if at least `DETERMINED` of it is left.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -115,10 +116,15 @@ def solved(columns: Floats, target: Floats) -> Floats:
     return result
 
 
-def admitted(columns: Floats, beside: Nuisance) -> list[int]:
+def admitted(
+    columns: Floats,
+    beside: Nuisance,
+    known: Callable[[list[int]], bool] = lambda tried: True,
+) -> list[int]:
     """Columns that are determined, taken one after the other; what comes first has precedence.
 
-    Of observationally equivalent parameters the first is kept.
+    Of observationally equivalent parameters the first is kept. One that would not be `known` well
+    enough beside those that are kept is passed over, and is in the way of none after it.
     """
     _, size = _unit(columns)
     free = beside.residual(columns)
@@ -127,7 +133,7 @@ def admitted(columns: Floats, beside: Nuisance) -> list[int]:
         if size[column] <= SILENT:
             continue
         others = nuisance(free[:, kept]).residual(free[:, column])
-        if float(np.sqrt(others @ others)) > DETERMINED * size[column]:
+        if float(np.sqrt(others @ others)) > DETERMINED * size[column] and known([*kept, column]):
             kept.append(column)
     return kept
 

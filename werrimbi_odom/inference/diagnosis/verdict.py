@@ -30,7 +30,7 @@ from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.rules import CALIBRATION_WORTH, RIVAL, SIGNIFICANT, SIMPLER, SURE
+from werrimbi_odom.inference.rules import CALIBRATION_WORTH, RIVAL, SIGNIFICANT, SURE
 from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding
 from werrimbi_odom.model.robot import Robot
 
@@ -228,9 +228,8 @@ def _rivals(
     if first in CALIBRATED:
         others = {name for subset in final.alternatives for name in subset if first not in subset}
         named = [first, *(name for name in CALIBRATED if name in others)]
-        # Calibration is what every robot needs; an effect is its rival where it needs less.
-        limit = final.total - SIMPLER * final.scatter
-        named += [item.effect for item in instead if item.total < limit]
+        # Calibration is what every robot needs; an effect is its rival where it costs no more.
+        named += [item.effect for item in instead if item.total <= final.total]
         return tuple(named) if len(named) > 1 else ()
     for this in rounds:
         fits = [fit for fit in this.tried if not fit.at_bound]

@@ -48,6 +48,8 @@ class Design:
     slopes: Floats
     columns: tuple[tuple[Knob, int], ...]
     """What the p are; a knob of the runs' own has one column for each run, with its index."""
+    sized: bool = True
+    """Whether any length was measured: headings know lengths over lengths alone."""
 
     def flat(self) -> tuple[Floats, Floats]:
         """As (3 m,) and (3 m, p)."""
@@ -130,4 +132,4 @@ def spread_out(
                 columns.append((knob, index))
                 parts.append(column * (runs.run_of_leg == index)[:, None])
     wide = np.stack(parts, axis=-1) if parts else np.zeros((runs.count, 3, 0))
-    return Design(white, wide, tuple(columns))
+    return Design(white, wide, tuple(columns), sized=not runs.headings_alone)

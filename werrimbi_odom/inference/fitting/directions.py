@@ -4,8 +4,9 @@
 
 The three multipliers are taken as base, ratio of the radii, and size of both. A heading knows the
 right and the left radius over the base, two numbers: base and ratio are then fitted and both radii
-keep their mean as it was given, for that is what a tape knows best. What is held is neither told
-with an error bar, nor written, nor offered as a rival.
+keep their mean as it was given, for that is what a tape knows best. (An effect with a length of its
+own would tell them apart, at the price of that length: play over base is known, play is not.) What
+is held is neither told with an error bar, nor written, nor offered as a rival.
 """
 
 from __future__ import annotations
@@ -22,7 +23,8 @@ from werrimbi_odom.inference.linear import admitted, covariance_of, nuisance
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
-CALIBRATED = ("track_width", "unequal_wheel_radii", "wheel_radius_scale")
+SIZE = "wheel_radius_scale"
+CALIBRATED = ("track_width", "unequal_wheel_radii", SIZE)
 """Effects that are the robot file's own multipliers by another name, the first to be kept first."""
 
 
@@ -81,27 +83,27 @@ def determined(design: Design, robot: Robot) -> Directions:
     """The directions that the data determine, and those of single runs."""
     every = every_direction(design.columns, robot)
     marks = design.flat()[1] @ every.matrix
-    shared = every.shared
+    shared = [index for index in every.shared if design.sized or every.names[index] != SIZE]
     own = [
-        index for index in range(len(every.names)) if index not in shared and marks[:, index].any()
+        index
+        for index in range(len(every.names))
+        if index not in every.shared and marks[:, index].any()
     ]
     beside = nuisance(marks[:, own])
     free = beside.residual(marks[:, shared])
-    # One after the other: what comes first has precedence over what is much like it.
-    kept: list[int] = []
-    for index in admitted(marks[:, shared], beside):
-        tried = [*kept, index]
+
+    def known(tried: list[int]) -> bool:
         spread = np.sqrt(np.diag(covariance_of(free[:, tried])))
-        if np.all(spread <= every.limits[[shared[number] for number in tried]]):
-            kept = tried
-    kept = [shared[index] for index in kept]
+        return bool(np.all(spread <= every.limits[[shared[number] for number in tried]]))
+
+    kept = [shared[index] for index in admitted(marks[:, shared], beside, known)]
     chosen = [*kept, *own]
     return Directions(
         tuple(every.names[index] for index in chosen),
         every.matrix[:, chosen],
         every.limits[chosen],
         list(range(len(kept))),
-        tuple(every.names[index] for index in shared if index not in kept),
+        tuple(every.names[index] for index in every.shared if index not in kept),
     )
 
 

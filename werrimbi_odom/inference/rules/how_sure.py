@@ -45,10 +45,6 @@ ENOUGH = 3.0 * RIVAL
 """Difference of costs that a proposed drive must promise. Where r is promised, the drive shows r
 with a standard deviation of 2 sqrt(r): of 30 it shows `RIVAL` or more in 97 % of cases."""
 
-SIMPLER = 3.0
-"""By how much an effect must cost less than the calibration it would replace, to be its rival: a
-Bayes factor of 4.5, "positive". Calibration is what every robot needs, so it is believed first."""
-
 CALIBRATION_WORTH = 2.0
 """Penalties that one number of the calibration must be worth to be called a finding, and not only
 fitted: once it is in every fit, twice it is news."""
