@@ -22,6 +22,10 @@ NEAR_THE_FLOOR = 1.25
 """What is found brings the held-out error to within this of the best that can be had."""
 
 
+BY_A_GYRO = {"reference_heading_delay": "reference_delay", "wheel_radius_scale": "track_width"}
+"""What headings alone call a thing that they cannot tell from it."""
+
+
 @dataclass(frozen=True, kw_only=True)
 class Judged:
     """What was said of a set, and what was true."""
@@ -130,15 +134,16 @@ def _of_outsider(line: Judged) -> str:
 def expected_names(line: Judged) -> set[str]:
     """Names that are right.
 
-    Of a gyro, whose headings are all that it tells, late headings are a late clock.
+    Of a gyro, whose headings are all that it tells, late headings are a late clock, and the size of
+    both wheels is the base's inverse, which is told in its place (and in a sentence beside it).
     """
     if line.entered:
         keys = {key for key, _ in line.entered}
         return {
             "track_width" if key == "wheel_separation" else "wheel_radius_scale" for key in keys
         }
-    late = line.seen == "gyro" and "reference_heading_delay" in line.hidden
-    return {*line.hidden, "reference_delay"} if late else set(line.hidden)
+    same = BY_A_GYRO if line.seen == "gyro" else {}
+    return {*line.hidden, *(same[name] for name in line.hidden if name in same)}
 
 
 def is_right(line: Judged) -> bool:

@@ -82,7 +82,7 @@ def test_a_size_is_found_as_surely_as_an_effect(away: float) -> None:
     found = diagnose([run], off, LIBRARY, holdout=[run])
     chances = [each.p_value for each in found.ranking if each.effect in found.found]
     assert all(each is not None and each < SURE for each in chances)
-    assert found.verdict == ("none" if away < 3.0 else "named")
+    assert found.found == (() if away < 3.0 else ("track_width",))
 
 
 @pytest.mark.parametrize("factor", [57.3, 1.0 / 2.1])

@@ -228,8 +228,8 @@ def _rivals(
     if first in CALIBRATED:
         others = {name for subset in final.alternatives for name in subset if first not in subset}
         named = [first, *(name for name in CALIBRATED if name in others)]
-        # Calibration is what every robot needs; an effect is its rival where it costs no more.
-        named += [item.effect for item in instead if item.total <= final.total]
+        limit = final.total + RIVAL * final.scatter
+        named += [item.effect for item in instead if item.total < limit]
         return tuple(named) if len(named) > 1 else ()
     for this in rounds:
         fits = [fit for fit in this.tried if not fit.at_bound]

@@ -123,8 +123,8 @@ def look_for_mistakes(
         mended, findings = with_findings(robot, [*degrees, *wheels, *late, *mount], setting)
     except ValueError as error:  # a size beyond what its effect allows
         raise InputError(
-            f"{runs[0].path}: wheels and reference have nothing in common ({error}): is it the "
-            "reference of this robot and this drive, in metres?"
+            f"{runs[0].path}: wheels and reference have nothing in common (no robot is as far off "
+            "as would explain it): is it the reference of this robot and this drive, in metres?"
         ) from error
     return SetUp(findings, mended)
 

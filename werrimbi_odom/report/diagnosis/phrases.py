@@ -275,3 +275,15 @@ def not_shown(told: Told) -> list[str]:
         )
         lines.append(f"No drive shows {listed(needing)} with such a reference; {better}.")
     return lines
+
+
+def by_headings_alone(diagnosis: Diagnosis) -> list[str]:
+    """The size of both wheels, where a base was found that is one with it."""
+    if not diagnosis.runs.headings_alone or "track_width" not in diagnosis.found:
+        return []
+    size = values_of(diagnosis, "wheel_radius_scale")["multiplier"].value
+    larger = f"{100.0 * abs(size - 1.0):.2g} % {'larger' if size > 1.0 else 'smaller'}"
+    return [
+        f"Headings know the wheels' size over the base alone: wheels that are both {larger} than "
+        "entered look the same to them as that base. A straight line of 10 m beside a tape tells."
+    ]

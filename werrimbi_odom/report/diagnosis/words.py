@@ -20,6 +20,7 @@ from werrimbi_odom.report.diagnosis.phrases import (
     about,
     also,
     at_bounds_words,
+    by_headings_alone,
     cost,
     judged,
     law,
@@ -153,7 +154,7 @@ def _named(told: Told, steps: NextSteps) -> list[str]:
         lines.append(f"On the robot: {sizes}.")
     lines += [*whole(told), *law(told), *_at_bounds(diagnosis)]
     lines += _next_add(told, steps)
-    return [*lines, *not_shown(told)]
+    return [*lines, *by_headings_alone(told.diagnosis), *not_shown(told)]
 
 
 def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
@@ -183,6 +184,7 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
         if effect is not None:
             size = sizes(diagnosis, name, believed=True)
             lines.append(f"- {name}: {effect.summary}{f' Fitted: {size}.' if size else ''}")
+    lines += by_headings_alone(diagnosis)
     lines += cost(told, rivals[0])
     move = told.manoeuvre
     if move is not None:
