@@ -12,8 +12,8 @@ import pytest
 
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import LIBRARY, all_effects
-from werrimbi_odom.files.asked import Asked, How
-from werrimbi_odom.fleet.one import Task, row_of
+from werrimbi_odom.files.recordings import Asked, How
+from werrimbi_odom.fleet.robot_task import Task, row_of
 
 RECORDING = Path(__file__).parents[2] / "werrimbi_odom" / "recordings" / "square"
 EFFECT = '''

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import Asked, How, read
 from werrimbi_odom.files.merged_reference import merged, with_one_scale
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.recordings import Asked, How, read
 from werrimbi_odom.files.run import Reference
 
 MS = 10**6

@@ -18,14 +18,14 @@ from typing import Any
 import pytest
 
 from test.fleet.conftest import broken
-from test.fleet.test_spread import KILLS, nowhere
+from test.fleet.test_process_pool import KILLS, nowhere
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import Asked, How
+from werrimbi_odom.files.recordings import Asked, How
 from werrimbi_odom.fleet import cluster as ours
 from werrimbi_odom.fleet.cluster import on_cluster
-from werrimbi_odom.fleet.code import EFFECTS, PACKAGE, code_here, doubts, refusal
-from werrimbi_odom.fleet.one import Task
+from werrimbi_odom.fleet.code_version import EFFECTS, PACKAGE, code_here, doubts, refusal
 from werrimbi_odom.fleet.parcel import packed, row_of_parcel
+from werrimbi_odom.fleet.robot_task import Task
 
 distributed = pytest.importorskip("distributed", reason="pip install werrimbi_odom[cluster]")
 

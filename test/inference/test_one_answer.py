@@ -19,7 +19,7 @@ from test.inference.test_gaps import parts, silent, without_ticks
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects.collection import all_effects, find
-from werrimbi_odom.files.asked import How, Recordings
+from werrimbi_odom.files.recordings import How, Recordings
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.adding.adding import add_effect

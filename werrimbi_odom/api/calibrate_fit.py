@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from werrimbi_odom.api.calibrate_umbmark import before_after
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
 from werrimbi_odom.api.result import NewRobot, Result
-from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
 
 if TYPE_CHECKING:

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, TypedDict
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import How, Recordings, gathered
-from werrimbi_odom.files.reading import read_run as read_one
+from werrimbi_odom.files.read_run import read_run as read_one
+from werrimbi_odom.files.recordings import How, Recordings, gathered
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 

@@ -8,7 +8,7 @@ import shlex
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from werrimbi_odom.files.asked import How, Recordings
+from werrimbi_odom.files.recordings import How, Recordings
 from werrimbi_odom.files.run import Run
 
 

@@ -13,7 +13,7 @@ from werrimbi_odom.cli.recordings import add_recording_arguments, read_recording
 from werrimbi_odom.cli.result_files import made_of, tell_written, write_json
 
 if TYPE_CHECKING:
-    from werrimbi_odom.files.asked import Recordings
+    from werrimbi_odom.files.recordings import Recordings
 
 HELP = "where no known effect explains the errors: write one from what they depend on"
 

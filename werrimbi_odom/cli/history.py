@@ -95,7 +95,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _spread(tasks: Sequence[DriveTask], jobs: int) -> Iterator[Looked]:
     from werrimbi_odom.api.history import told_of_task, unusable_task
-    from werrimbi_odom.fleet.spread import processors, spread
+    from werrimbi_odom.fleet.process_pool import processors, spread
 
     jobs = jobs or processors()
     if jobs == 1 or len(tasks) < _FEW:

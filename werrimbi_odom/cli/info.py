@@ -48,7 +48,7 @@ def run(arguments: argparse.Namespace) -> int:
     """
     from werrimbi_odom.api.info import info
     from werrimbi_odom.cli.result_files import tell_written, write_json
-    from werrimbi_odom.files.asked import refuse_twice
+    from werrimbi_odom.files.recordings import refuse_twice
 
     refuse_twice(arguments.runs)
     result = info(

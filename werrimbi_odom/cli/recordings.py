@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
-    from werrimbi_odom.files.asked import How, Recordings
+    from werrimbi_odom.files.recordings import How, Recordings
     from werrimbi_odom.files.robot_file import RobotFile
 
 
@@ -138,8 +138,8 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     """
     from werrimbi_odom.api.drives import refuse_circles
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.files.asked import Asked, read
     from werrimbi_odom.files.judgeable import words_about
+    from werrimbi_odom.files.recordings import Asked, read
 
     holdout = tuple(getattr(arguments, "holdout", None) or ())
     asked = Asked(arguments.robot, tuple(arguments.runs), holdout, how_of(arguments))
@@ -168,7 +168,7 @@ def remark(source: RobotFile, *more: str) -> None:
 
 def how_of(arguments: argparse.Namespace) -> How:
     """The options that say how drives are read and judged."""
-    from werrimbi_odom.files.asked import How
+    from werrimbi_odom.files.recordings import How
 
     topics = tuple(arguments.reference_topic or ())
     return How(

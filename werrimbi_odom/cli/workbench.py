@@ -14,7 +14,7 @@ from werrimbi_odom.cli.recordings import add_recording_arguments, read_recording
 from werrimbi_odom.cli.result_files import write_json
 
 if TYPE_CHECKING:
-    from werrimbi_odom.files.asked import Recordings
+    from werrimbi_odom.files.recordings import Recordings
     from werrimbi_odom.workbench.job import Job
     from werrimbi_odom.workbench.opening import Opening
     from werrimbi_odom.workbench.tab import Shared

@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, left_out_words, stamp_of
-from werrimbi_odom.files.contents import INT32, Wheels
-from werrimbi_odom.files.pairing import Pairing
+from werrimbi_odom.files.bag_contents import INT32, Wheels
+from werrimbi_odom.files.counter_pairs import Pairing
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Ticks
 

@@ -10,10 +10,10 @@ from typing import Protocol
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, topic_in_words
+from werrimbi_odom.files.bag_contents import INT32, INT64, JOINT_STATE, Contents, Wheels
 from werrimbi_odom.files.bag_counters import COUNTERS, Counters, MultiArrays, Pairs
 from werrimbi_odom.files.bag_joints import JointStates, wheel_names
 from werrimbi_odom.files.bag_odometry import OdometryTurnedBack
-from werrimbi_odom.files.contents import INT32, INT64, JOINT_STATE, Contents, Wheels
 from werrimbi_odom.files.made_from_wheels import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Ticks

@@ -3,7 +3,8 @@
 """Poses, their errors and the pieces along the steps of a whole run, in arrays.
 
 Two ways lead to the same figures: `march`, step by step as machine code, where there is some and
-the run is long enough for it to pay; and array operations here, after `cutting` has cut the run.
+the run is long enough for it to pay; and array operations here, for what
+`pieces_recorded` has cut.
 """
 
 from __future__ import annotations
@@ -24,14 +25,14 @@ from werrimbi_odom.model.covariance import (
     piece_covariance,
     plus,
 )
-from werrimbi_odom.model.cutting import Cut, cut
+from werrimbi_odom.model.effects_over_run import Driven
 from werrimbi_odom.model.march import March, Marching, march, sums_of
 from werrimbi_odom.model.moments import PathMoments
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
-from werrimbi_odom.model.passes import Driven
+from werrimbi_odom.model.pieces_online import NOTHING, PieceRule
+from werrimbi_odom.model.pieces_recorded import Cut, cut
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.stretch import NOTHING, PieceRule
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece
 
 WORTH_COMPILING = 200_000

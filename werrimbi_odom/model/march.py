@@ -3,7 +3,8 @@
 """A recorded run, step by step in single numbers: the lines that `compiled` makes machine code of.
 
 It is what `Odometer` does at each message, by the same functions and so to the last bit. In plain
-Python it would take as long as the odometer; for that case `cutting` and `trajectory` have arrays.
+Python it would take as long as the odometer; for that case `pieces_recorded` and `trajectory` have
+arrays.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ from werrimbi_odom.model.covariance import (
     path_noise_of,
 )
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
+from werrimbi_odom.model.pieces_online import NOTHING, PieceRule, Stretch, extended
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import WheelNoise
-from werrimbi_odom.model.stretch import NOTHING, PieceRule, Stretch, extended
 
 
 class Marching(NamedTuple):

@@ -19,9 +19,9 @@ from werrimbi_odom.model.encoder import Encoder, EncoderLimits, EncoderTally, Wh
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.of_floats import of_floats
 from werrimbi_odom.model.pieces import OpenPiece, Piece
+from werrimbi_odom.model.pieces_online import PieceRule, PieceTolerance, Stretch
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.stretch import PieceRule, PieceTolerance, Stretch
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known
 
 _displacement = of_floats(displacement)

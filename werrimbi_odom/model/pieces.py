@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The pieces that a drive is cut into: lines, arcs and spins (`stretch` has where they end)."""
+"""The pieces that a drive is cut into: lines, arcs and spins; `pieces_online` ends them."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from typing import Literal
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.of_floats import of_floats
+from werrimbi_odom.model.pieces_online import PieceRule, Stretch, extended
 from werrimbi_odom.model.pose import Pose
-from werrimbi_odom.model.stretch import PieceRule, Stretch, extended
 from werrimbi_odom.model.uncertainty import Uncertainty
 
 PieceKind = Literal["line", "arc", "spin"]

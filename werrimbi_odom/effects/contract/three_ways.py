@@ -4,7 +4,7 @@
 
 Live a step knows the pose that it begins at. A recorded run is done at once, and a predicted one
 from the poses that were measured: there the pose is told in further passes, to laws that look at
-it. What a law looks at is noted while it runs (`werrimbi_odom.model.passes`).
+it. What a law looks at is noted while it runs (`werrimbi_odom.model.effects_over_run`).
 """
 
 from __future__ import annotations
@@ -15,8 +15,14 @@ from werrimbi_odom.effects.contract.demands import demand, settings, told
 from werrimbi_odom.effects.contract.rehearsal import RADIUS, TRACK, Rehearsal
 from werrimbi_odom.model.driving import Driving, features
 from werrimbi_odom.model.effect import AppliedEffect, Effect
+from werrimbi_odom.model.effects_over_run import (
+    Driven,
+    Headings,
+    Places,
+    driven,
+    driven_from_measured,
+)
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
-from werrimbi_odom.model.passes import Driven, Headings, Places, driven, driven_from_measured
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
 

@@ -21,11 +21,11 @@ from werrimbi_odom.model.covariance import (
 )
 from werrimbi_odom.model.driving import acts
 from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.effects_over_run import Driven, driven_from_measured
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
-from werrimbi_odom.model.passes import Driven, driven_from_measured
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.view import View
 
 
 @dataclass(frozen=True, slots=True)

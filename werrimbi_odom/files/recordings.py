@@ -11,10 +11,10 @@ from typing import TypedDict
 
 from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.held import without_held_poses
 from werrimbi_odom.files.judgeable import refuse_unjudgeable
 from werrimbi_odom.files.merged_reference import with_one_scale
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.repeated_poses import without_held_poses
 from werrimbi_odom.files.replacing import place_of
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
