@@ -10,15 +10,22 @@ from typing import Protocol
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, topic_in_words
-from werrimbi_odom.files.bag_contents import INT32, INT64, JOINT_STATE, Contents, Wheels
-from werrimbi_odom.files.bag_counters import COUNTERS, Counters, MultiArrays, Pairs
+from werrimbi_odom.files.bag_contents import (
+    INT32,
+    INT64,
+    JOINT_STATE,
+    MULTI_ARRAY,
+    Contents,
+    Wheels,
+)
+from werrimbi_odom.files.bag_counters import Counters, MultiArrays, Pairs
 from werrimbi_odom.files.bag_joints import JointStates, wheel_names
 from werrimbi_odom.files.bag_odometry import OdometryTurnedBack
+from werrimbi_odom.files.drivers import DRIVERS
 from werrimbi_odom.files.made_from_wheels import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Ticks
 
-MULTI_ARRAY = "std_msgs/msg/Int64MultiArray"
 KINDS = {
     "joint_state": JOINT_STATE,
     "int32_pair": INT32,
@@ -110,6 +117,6 @@ def ticks_collector(path: Path, source: Wheels, robot_file: RobotFile) -> TicksC
     robot_file.refuse_counts(f"{path}, {source.name}")
     if source.kind == MULTI_ARRAY:
         return MultiArrays(path, source.name)
-    if source.kind in COUNTERS:
+    if source.kind in DRIVERS:
         return Counters(path, source, robot_file)
     return Pairs(path, source, robot_file)
