@@ -40,7 +40,7 @@ class _TwoCounts:
         return Ticks(np.array(self._time), *sides)
 
 
-class Counters(_TwoCounts):
+class CountersCollector(_TwoCounts):
     """Both counters of a driver, in a message with a stamp."""
 
     def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:

@@ -18,8 +18,8 @@ from werrimbi_odom.files.bag_contents import (
     Contents,
     Wheels,
 )
-from werrimbi_odom.files.bag_counters import Counters, MultiArrays, Pairs
-from werrimbi_odom.files.bag_joints import JointStates, wheel_names
+from werrimbi_odom.files.bag_counters import CountersCollector, MultiArrays, Pairs
+from werrimbi_odom.files.bag_joints import JointsCollector, wheel_names
 from werrimbi_odom.files.bag_odometry import OdometryTurnedBack
 from werrimbi_odom.files.drivers import DRIVERS
 from werrimbi_odom.files.made_from_wheels import ODOMETRY
@@ -111,12 +111,12 @@ class TicksCollector(Protocol):
 def ticks_collector(path: Path, source: Wheels, robot_file: RobotFile) -> TicksCollector:
     """The collector for a kind of source."""
     if source.kind == JOINT_STATE:
-        return JointStates(path, source.name, robot_file)
+        return JointsCollector(path, source.name, robot_file)
     if source.kind == ODOMETRY:
         return OdometryTurnedBack(path, source.name, robot_file)
     robot_file.refuse_counts(f"{path}, {source.name}")
     if source.kind == MULTI_ARRAY:
         return MultiArrays(path, source.name)
     if source.kind in DRIVERS:
-        return Counters(path, source, robot_file)
+        return CountersCollector(path, source, robot_file)
     return Pairs(path, source, robot_file)

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 
-class Driver(NamedTuple):
+class CounterMessage(NamedTuple):
     """What a message of a driver holds, of every robot that sends it."""
 
     left: str
@@ -29,7 +29,7 @@ class Driver(NamedTuple):
         return self.bits if self.bits < 32 else 0
 
 
-_TURTLEBOT3 = Driver(
+_TURTLEBOT3 = CounterMessage(
     "left_encoder",
     "right_encoder",
     32,
@@ -48,7 +48,7 @@ int32 right_encoder
 float32 battery
 """,
 )
-_KOBUKI = Driver(
+_KOBUKI = CounterMessage(
     "left_encoder",
     "right_encoder",
     16,
@@ -73,7 +73,7 @@ uint16 digital_input
 uint16[] analog_input
 """,
 )
-_CREATE = Driver(
+_CREATE = CounterMessage(
     "ticks_left",
     "ticks_right",
     32,

@@ -21,7 +21,7 @@ from werrimbi_odom.model.covariance import (
     path_noise_of,
 )
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
-from werrimbi_odom.model.pieces_online import NOTHING, PieceRule, Stretch, extended
+from werrimbi_odom.model.pieces_online import NOTHING, PieceRule, PieceSums, extended
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import WheelNoise
 
@@ -38,7 +38,7 @@ class Marching(NamedTuple):
     """Of the pose there."""
     earlier: float
     """Travel u of the pieces before [m]."""
-    stretch: Stretch
+    stretch: PieceSums
 
 
 def march(
@@ -105,7 +105,7 @@ March = Callable[..., tuple[Marching, int]]
 """`march`, or machine code of it."""
 
 
-def sums_of(stretch: Stretch) -> tuple[float, float, float, float, float]:
+def sums_of(stretch: PieceSums) -> tuple[float, float, float, float, float]:
     """What a piece has come to: travel of the wheels, and motion along, sideways and in turn."""
     along, sideways, turn = stretch.motion
     return stretch.left, stretch.right, along, sideways, turn

@@ -11,7 +11,7 @@ from typing import Literal
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.of_floats import of_floats
-from werrimbi_odom.model.pieces_online import PieceRule, Stretch, extended
+from werrimbi_odom.model.pieces_online import PieceRule, PieceSums, extended
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.uncertainty import Uncertainty
 
@@ -78,7 +78,7 @@ class OpenPiece:
     errors_start: Uncertainty[float]
     travelled: float = 0.0
     """Travel u of the earlier pieces, since the pose was last set [m]."""
-    stretch: Stretch = Stretch()  # noqa: RUF009 - an immutable value
+    stretch: PieceSums = PieceSums()  # noqa: RUF009 - an immutable value
 
     @property
     def travelled_after(self) -> float:

@@ -16,7 +16,7 @@ from werrimbi_odom.effects.contract.rehearsal import RADIUS, TRACK, Rehearsal
 from werrimbi_odom.model.driving import Driving, features
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.effects_over_run import (
-    Driven,
+    AfterEffects,
     Headings,
     Places,
     driven,
@@ -60,11 +60,11 @@ def _measured(poses: Floats) -> tuple[Headings, Places]:
     """What is told in the passes where the `poses` (3, n) of some steps were measured."""
     first = np.arange(poses.shape[1]) // _EVERY * _EVERY
 
-    def headings(found: Driven) -> Floats:
+    def headings(found: AfterEffects) -> Floats:
         gone = np.cumsum(found.motion.turn) - found.motion.turn
         return np.asarray(poses[2, first] + gone - gone[first])
 
-    def places(found: Driven, heading: Floats) -> tuple[Floats, Floats]:
+    def places(found: AfterEffects, heading: Floats) -> tuple[Floats, Floats]:
         x, y = (np.cumsum(part) - part for part in displacement(found.motion, heading))
         return poses[0, first] + x - x[first], poses[1, first] + y - y[first]
 
