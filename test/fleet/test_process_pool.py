@@ -16,7 +16,7 @@ import pytest
 
 from test.fleet.conftest import broken
 from werrimbi_odom.cli.main import INTERRUPTED
-from werrimbi_odom.files.recordings import Asked, How
+from werrimbi_odom.files.recordings import Asked, DriveOptions
 from werrimbi_odom.fleet import process_pool, robot_task
 from werrimbi_odom.fleet.robot_task import Task, row_of
 
@@ -37,15 +37,17 @@ if times == 2:  # the command itself has read it, and the first robot
 """
 
 
-def nowhere(name: str, how: How | None = None) -> Task:
+def nowhere(name: str, how: DriveOptions | None = None) -> Task:
     """A robot of which nothing is there."""
-    return Task(name, Asked(Path(name) / "robot.yaml", (Path(name) / "run",), (), how or How()))
+    return Task(
+        name, Asked(Path(name) / "robot.yaml", (Path(name) / "run",), (), how or DriveOptions())
+    )
 
 
 def test_who_kills_its_process_is_a_row_and_the_others_are_done(tmp_path: Path) -> None:
     (tmp_path / "kills.py").write_text(KILLS)
     tasks = [nowhere(f"robot_{number}") for number in range(3)]
-    tasks.insert(1, nowhere("killer", How(effects=(tmp_path / "kills.py",))))
+    tasks.insert(1, nowhere("killer", DriveOptions(effects=(tmp_path / "kills.py",))))
     rows = {row.robot: row.error for row in process_pool.here(tasks, 2)}
     assert rows.keys() == {"robot_0", "robot_1", "robot_2", "killer"}
     assert rows.pop("killer") == process_pool.DIED

@@ -65,7 +65,7 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     )
     runs = match_finely(given.runs, source.robot, how.leg, source.limits)
     kind = given.judging["kind"]
-    sigma_xy, sigma_yaw = sigmas_known(runs, kind, how.sigma_xy, how.sigma_yaw)
+    sigma_xy, sigma_yaw = sigmas_known(runs, kind, how.reference_sigma_xy, how.reference_sigma_yaw)
     found = calibrate(
         runs,
         source.robot,

@@ -13,7 +13,7 @@ from werrimbi_odom.cli.options import declare, positive
 
 if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
-    from werrimbi_odom.files.recordings import How, Recordings
+    from werrimbi_odom.files.recordings import DriveOptions, Recordings
     from werrimbi_odom.files.robot_file import RobotFile
 
 
@@ -139,21 +139,21 @@ def remark(source: RobotFile, *more: str) -> None:
         print(f"warning: {words}", file=sys.stderr)
 
 
-def how_of(arguments: argparse.Namespace) -> How:
+def how_of(arguments: argparse.Namespace) -> DriveOptions:
     """The options that say how drives are read and judged."""
-    from werrimbi_odom.files.recordings import How
+    from werrimbi_odom.files.recordings import DriveOptions
 
     topics = tuple(arguments.reference_topic or ())
-    return How(
-        kind=arguments.reference_kind,
+    return DriveOptions(
+        reference_kind=arguments.reference_kind,
         leg=arguments.leg,
-        sigma_xy=arguments.reference_sigma_xy,
-        sigma_yaw=arguments.reference_sigma_yaw,
+        reference_sigma_xy=arguments.reference_sigma_xy,
+        reference_sigma_yaw=arguments.reference_sigma_yaw,
         ticks_topic=arguments.ticks_topic,
         reference_topic=topics if len(topics) > 1 else next(iter(topics), None),
         effects=tuple(arguments.effects),
         references=tuple(arguments.reference),
-        force=arguments.force,
+        force_reference=arguments.force,
     )
 
 
