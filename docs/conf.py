@@ -4,24 +4,40 @@
 
 from __future__ import annotations
 
+import os
 import sys
 from pathlib import Path
 from xml.etree import ElementTree
 
-ROOT = Path(__file__).resolve().parents[1]
+
+def package_root() -> Path:
+    """Above this file; rosdoc2 runs a copy that lies elsewhere, but its command names the package.
+
+    Without it the Python reference would come out empty, and only a warning would tell.
+    """
+    begun_in = Path(os.environ.get("PWD", ""))  # Sphinx has gone to the copy's folder by now
+    named = [begun_in / word.rpartition("=")[2] for word in sys.argv[1:]]
+    for place in (*Path(__file__).resolve().parents, *named):
+        if (place / "package.xml").exists() and (place / "werrimbi_odom").is_dir():
+            return place.resolve()
+    raise FileNotFoundError("werrimbi_odom is not found; run rosdoc2 build --package-path FOLDER")
+
+
+ROOT = package_root()
 sys.path.insert(0, str(ROOT))
 
 project = "werrimbi_odom"
 author = "The werrimbi_odom authors"
 copyright = "2026, The werrimbi_odom authors"
-# rosdoc2 builds from a copy of docs/ alone, and knows the version itself.
-if (ROOT / "package.xml").exists():
-    release = ElementTree.parse(ROOT / "package.xml").findtext("version", "")
+release = ElementTree.parse(ROOT / "package.xml").findtext("version", "")
 
 extensions = ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.viewcode"]
 html_theme = "sphinx_rtd_theme"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
+
+# What rosdoc2 has sphinx-apidoc write: a page for every module, beside the reference of api.md.
+exclude_patterns = ["werrimbi_odom*.rst", "modules.rst"]
 
 # Links to a heading, page.md#the-heading, as on GitHub.
 myst_heading_anchors = 4

@@ -18,7 +18,7 @@ from pathlib import Path
 
 import numpy as np
 
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 
 ROOT = Path(__file__).parents[1]

@@ -7,11 +7,12 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 
 from werrimbi_odom.effects.library import LIBRARY
-from werrimbi_odom.effects.page import as_markdown
+from werrimbi_odom.effects.page import MEANING, STAGES, absent_at, anew, page_of
 from werrimbi_odom.model.effect import Effect
 
 BEGIN = "<!-- made by docs/make_effects.py; write elsewhere -->"
@@ -33,7 +34,35 @@ def _chapter(effects: Sequence[Effect]) -> str:
         for effect in effects
     ]
     table = ["| effect | acts on | what it is |", "| --- | --- | --- |", *rows, ""]
-    return "\n".join([*table, *(as_markdown(effect) for effect in effects)])
+    return "\n".join([*table, *(_page(effect) for effect in effects)])
+
+
+def _page(effect: Effect) -> str:
+    page = page_of(effect)
+    lines = [f"### `{effect.name}`", "", f"Acts {STAGES[effect.stage]}.", ""]
+    for paragraph in page.physics:
+        lines += [textwrap.fill(paragraph, 100), ""]
+    for name, text in page.sections.items():
+        if name == "Formula":
+            lines += ["```text", text, "```", ""]
+        else:
+            lines += [
+                textwrap.fill(f"**{name}** ({MEANING[name]}): {' '.join(text.split())}.", 100),
+                "",
+            ]
+    if effect.parameters:
+        lines += [
+            "| parameter | unit | absent at | typical | possible | what it is |",
+            "| --- | --- | --- | --- | --- | --- |",
+        ]
+        for name, item in effect.parameters.items():
+            low, high = item.bounds
+            lines.append(
+                f"| `{name}` | {item.unit or '1'} | {absent_at(effect, name)} | {item.typical:g} "
+                f"| {low:g} to {high:g} | {item.says}{anew(item)} |"
+            )
+        lines.append("")
+    return "\n".join(lines)
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ import os
 import sys
 from pathlib import Path
 
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.start_pose import start_of
 from werrimbi_odom.model.trajectory import trajectory

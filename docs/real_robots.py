@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration.any_driving import Calibration, calibrate

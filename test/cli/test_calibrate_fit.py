@@ -4,26 +4,20 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 import pytest
 
+from test.cli.commands import RECORDING, ROBOT, complaint, written_by
 from test.recorded_robots import ROBOTS, with_recordings
-from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.robot_file import read_robot_file
 
 ROOT = Path(__file__).parents[2]
-RECORDING = ROOT / "werrimbi_odom" / "recordings" / "square"
 
 
 def fit(tmp_path: Path, *arguments: str) -> dict[str, object]:
-    out, figures = tmp_path / "new.yaml", tmp_path / "figures.json"
-    words = ["calibrate", "fit", *arguments, "--out", str(out), "--json", str(figures)]
-    assert main(words) == 0
-    found = json.loads(figures.read_text())
-    assert isinstance(found, dict)
-    return found
+    words = ("calibrate", "fit", *arguments, "--out", tmp_path / "new.yaml")
+    return written_by(tmp_path / "figures.json", *words)
 
 
 def wrong_robot(tmp_path: Path) -> Path:
@@ -95,9 +89,6 @@ def test_a_run_without_a_reference_is_one_clear_line(
     run.mkdir()
     (run / "ticks.csv").write_text((RECORDING / "ticks.csv").read_text())
     out = tmp_path / "new.yaml"
-    robot = str(RECORDING / "robot.yaml")
-    assert main(["calibrate", "fit", "--robot", robot, str(run), "--out", str(out)]) == 2
-    said = capsys.readouterr().err.strip().splitlines()
-    assert len(said) == 1
-    assert "reference" in said[0]
+    told = complaint(capsys, "calibrate", "fit", "--robot", ROBOT, run, "--out", out)
+    assert "reference" in told
     assert not out.exists()

@@ -14,12 +14,11 @@ from typing import Any
 
 import pytest
 
+from test.cli.commands import RECORDING, ROBOT, complaint, written_by
 from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.main import main
 
 ROOT = Path(__file__).parents[2]
-RECORDING = ROOT / "werrimbi_odom" / "recordings" / "square"
-ROBOT = RECORDING / "robot.yaml"
 OPTIONS = {
     "optitrack_robot": ("--leg", "0.5"),
     "khepera_laser_to_the_side": ("--leg", "0.1", "--reference-kind", "incremental"),
@@ -39,15 +38,7 @@ LEGS = {
 
 
 def compared(tmp_path: Path, *words: object) -> dict[str, Any]:
-    file = tmp_path / "figures.json"
-    assert main(["compare", *map(str, words), "--json", str(file)]) == 0
-
-    def refuse(constant: str) -> None:
-        raise AssertionError(f"{constant} is no JSON")
-
-    found = json.loads(file.read_text(), parse_constant=refuse)
-    assert isinstance(found, dict)
-    return found
+    return written_by(tmp_path / "figures.json", "compare", *words)
 
 
 def wrong_base(tmp_path: Path) -> Path:
@@ -129,25 +120,16 @@ def test_every_recorded_robot(
     assert "explains these drives" not in capsys.readouterr().out
 
 
-def complaint(capsys: pytest.CaptureFixture[str], *words: object) -> str:
-    assert main(["compare", *map(str, words)]) == 2
-    said = capsys.readouterr()
-    assert said.out == ""
-    assert len(said.err.splitlines()) == 1
-    assert said.err.startswith("werrimbi compare: ")
-    return said.err
-
-
 def test_mistakes_are_told_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     robot = ("--robot", ROBOT)
-    told = complaint(capsys, *robot, RECORDING, "--leg", "0")
+    told = complaint(capsys, "compare", *robot, RECORDING, "--leg", "0")
     assert "--leg" in told
     assert "greater than zero" in told
-    assert "given twice" in complaint(capsys, *robot, RECORDING, f"{RECORDING}/.")
-    assert "there is no such run" in complaint(capsys, *robot, tmp_path / "nowhere")
-    told = complaint(capsys, *robot, RECORDING, "--json", RECORDING / "ticks.csv")
+    assert "given twice" in complaint(capsys, "compare", *robot, RECORDING, f"{RECORDING}/.")
+    assert "there is no such run" in complaint(capsys, "compare", *robot, tmp_path / "nowhere")
+    told = complaint(capsys, "compare", *robot, RECORDING, "--json", RECORDING / "ticks.csv")
     assert "would overwrite" in told
-    told = complaint(capsys, *robot, RECORDING, "--json", tmp_path)
+    told = complaint(capsys, "compare", *robot, RECORDING, "--json", tmp_path)
     assert "is a folder" in told
 
 
@@ -156,7 +138,7 @@ def test_a_folder_of_runs_names_them(tmp_path: Path, capsys: pytest.CaptureFixtu
         (tmp_path / "runs" / name).mkdir(parents=True)
         for file in ("ticks.csv", "reference.csv"):
             (tmp_path / "runs" / name / file).write_text((RECORDING / file).read_text())
-    told = complaint(capsys, "--robot", ROBOT, tmp_path / "runs")
+    told = complaint(capsys, "compare", "--robot", ROBOT, tmp_path / "runs")
     assert "is no run but a folder of 2 (first, second)" in told
 
 
@@ -165,7 +147,7 @@ def test_a_run_without_a_reference_is_named(
 ) -> None:
     (tmp_path / "blind").mkdir()
     (tmp_path / "blind" / "ticks.csv").write_text((RECORDING / "ticks.csv").read_text())
-    told = complaint(capsys, "--robot", ROBOT, tmp_path / "blind")
+    told = complaint(capsys, "compare", "--robot", ROBOT, tmp_path / "blind")
     assert "there is no reference to compare with" in told
 
 
@@ -203,7 +185,7 @@ def test_what_could_not_be_written_is_said_before_the_work(
     monkeypatch.setenv("PATH", "")  # no browser
     not_there = tmp_path / "a_drive_that_would_be_read_next"
     words = ("--robot", wrong_base(tmp_path), not_there, option, tmp_path / name)
-    assert said in complaint(capsys, *words)
+    assert said in complaint(capsys, "compare", *words)
 
 
 def test_held_poses_are_left_out_and_told(

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import json
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from io import StringIO
@@ -13,10 +12,8 @@ from typing import Any
 
 import pytest
 
-from werrimbi_odom.cli.main import main
+from test.cli.commands import RECORDING, ROBOT, complaint, written_by
 
-RECORDING = Path(__file__).parents[2] / "werrimbi_odom" / "recordings" / "square"
-ROBOT = RECORDING / "robot.yaml"
 TEXT = ROBOT.read_text()
 FILES = {
     "right": TEXT,
@@ -36,10 +33,6 @@ class Said:
         return " ".join(self.out.split())
 
 
-def refuse(constant: str) -> None:
-    raise AssertionError(f"{constant} is no JSON")
-
-
 @pytest.fixture(scope="module")
 def said(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Said]:
     """Each robot file diagnosed once."""
@@ -49,10 +42,9 @@ def said(tmp_path_factory: pytest.TempPathFactory) -> dict[str, Said]:
         folder = tmp_path_factory.mktemp("robot")
         (folder / "robot.yaml").write_text(text)
         file, out, err = folder / "figures.json", StringIO(), StringIO()
-        words = ["--robot", folder / "robot.yaml", RECORDING, "--leg", "0.5", "--json", file]
+        words = ["--robot", folder / "robot.yaml", RECORDING, "--leg", "0.5"]
         with redirect_stdout(out), redirect_stderr(err):
-            assert main(["diagnose", *map(str, words)]) == 0
-        figures = json.loads(file.read_text(), parse_constant=refuse)
+            figures = written_by(file, "diagnose", *words)
         found[name] = Said(figures, out.getvalue(), err.getvalue())
     return found
 
@@ -129,23 +121,14 @@ def test_half_a_base_is_called_a_mistake_of_set_up_before_anything_else(
     assert value["value"] == pytest.approx(2.0, abs=0.01)
 
 
-def complaint(capsys: pytest.CaptureFixture[str], *words: object) -> str:
-    assert main(["diagnose", *map(str, words)]) == 2
-    told = capsys.readouterr()
-    assert told.out == ""
-    assert len(told.err.splitlines()) == 1
-    assert told.err.startswith("werrimbi diagnose: ")
-    return told.err
-
-
 def test_mistakes_are_told_in_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     robot = ("--robot", ROBOT)
-    told = complaint(capsys, *robot, RECORDING, "--holdout", RECORDING)
+    told = complaint(capsys, "diagnose", *robot, RECORDING, "--holdout", RECORDING)
     assert "given twice" in told
-    assert "there is no such run" in complaint(capsys, *robot, tmp_path / "nowhere")
-    told = complaint(capsys, *robot, RECORDING, "--json", RECORDING / "ticks.csv")
+    assert "there is no such run" in complaint(capsys, "diagnose", *robot, tmp_path / "nowhere")
+    told = complaint(capsys, "diagnose", *robot, RECORDING, "--json", RECORDING / "ticks.csv")
     assert "would overwrite" in told
-    assert "required: --robot" in complaint(capsys, RECORDING)
+    assert "required: --robot" in complaint(capsys, "diagnose", RECORDING)
 
 
 def test_headings_in_degrees_are_told_with_the_mend(
@@ -156,7 +139,7 @@ def test_headings_in_degrees_are_told_with_the_mend(
     turned = [row.rsplit(",", 1) for row in rows]
     lines = [f"{rest},{float(yaw) * 180.0 / 3.141592653589793:.4f}" for rest, yaw in turned]
     (tmp_path / "reference.csv").write_text("\n".join([header, *lines]) + "\n")
-    told = complaint(capsys, "--robot", ROBOT, tmp_path)
+    told = complaint(capsys, "diagnose", "--robot", ROBOT, tmp_path)
     assert str(tmp_path) in told
     assert "degrees" in told
     assert "pi/180" in told

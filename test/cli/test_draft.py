@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -12,6 +11,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from test.cli.commands import complaint, written_by
 from test.cli.written_runs import PLAIN, written
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import load_file
@@ -52,8 +52,8 @@ def test_the_law_is_found_written_and_added(
     loaded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     out, figures = tmp_path / "package", tmp_path / "f.json"
-    assert main(["draft", *runs(loaded), "--out", str(out), "--json", str(figures)]) == 0
-    said, found = capsys.readouterr().out, json.loads(figures.read_text())
+    found = written_by(figures, "draft", *runs(loaded), "--out", out)
+    said = capsys.readouterr().out
     assert found["draft"]["variable"] == "load_kg"
     assert found["draft"]["form"] == "line"
     assert found["holdout"]["after"] < 0.5 * found["holdout"]["before"]
@@ -73,14 +73,13 @@ def test_a_package_is_not_written_over(
     loaded: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "mine.txt").write_text("mine")
-    assert main(["draft", *runs(loaded), "--out", str(tmp_path)]) == 2
-    assert "is not empty" in capsys.readouterr().err
+    assert "is not empty" in complaint(capsys, "draft", *runs(loaded), "--out", tmp_path)
 
 
 def test_where_nothing_is_missing_nothing_is_drafted(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = written(tmp_path, [PLAIN] * 4)
-    assert main(["draft", *runs(folder), "--out", str(tmp_path / "package")]) == 2
-    assert "the verdict is" in capsys.readouterr().err
+    told = complaint(capsys, "draft", *runs(folder), "--out", tmp_path / "package")
+    assert "the verdict is" in told
     assert not (tmp_path / "package").exists()

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 from dataclasses import replace
 from pathlib import Path
@@ -12,9 +11,9 @@ from pathlib import Path
 import pytest
 
 import werrimbi_odom as wo
+from test.cli.commands import complaint, written_by
 from test.cli.written_runs import PLAIN, ROBOT_FILE, write_run
 from test.inference.driven import run_of
-from werrimbi_odom.cli.main import main
 
 BEGAN = 1_700_000_000.0
 DAY = 86400.0
@@ -51,12 +50,8 @@ def months(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def told(folder: Path, *more: str, out: Path) -> dict[str, object]:
-    robot, drives = str(folder / "robot.yaml"), [str(each) for each in folder.glob("drive_*")]
-    words = ["history", "--robot", robot, *sorted(drives), "--json", str(out), *more]
-    assert main([*words, "--jobs", "1"]) == 0
-    found = json.loads(out.read_text())
-    assert isinstance(found, dict)
-    return found
+    robot, drives = folder / "robot.yaml", sorted(folder.glob("drive_*"))
+    return written_by(out, "history", "--robot", robot, *drives, *more, "--jobs", "1")
 
 
 def test_drives_are_told_by_their_dates_and_kept_by_their_content(
@@ -120,11 +115,9 @@ def test_without_stamps_the_files_own_dates_count_unless_they_were_copied(
 def test_diagnose_tells_the_same_change_before_its_verdict(
     months: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    out = tmp_path / "d.json"
-    drives = [str(each) for each in sorted(months.glob("drive_[0-9]"))]
-    robot = str(months / "robot.yaml")
-    assert main(["diagnose", "--robot", robot, *drives, "--json", str(out)]) == 0
-    (change,) = json.loads(out.read_text())["changes"]
+    drives, robot = sorted(months.glob("drive_[0-9]")), months / "robot.yaml"
+    found = written_by(tmp_path / "d.json", "diagnose", "--robot", robot, *drives)
+    (change,) = found["changes"]
     assert change["what"] == "right_wheel_radius_multiplier"
     assert change["from_run"] == f"drive_{(FIRST_NEW * 3) % DRIVES}"
     assert change["after"] - change["before"] == pytest.approx(0.006, abs=6e-4)
@@ -147,6 +140,5 @@ def test_drives_none_of_which_can_be_used_are_an_error(
 ) -> None:
     (tmp_path / "robot.yaml").write_text(ROBOT_FILE)
     (tmp_path / "empty").mkdir()
-    given = ["--robot", str(tmp_path / "robot.yaml"), str(tmp_path / "empty")]
-    assert main(["history", *given, "--cache", str(tmp_path / "kept")]) == 2
-    assert "no drive can be used" in capsys.readouterr().err
+    given = ("--robot", tmp_path / "robot.yaml", tmp_path / "empty", "--cache", tmp_path / "kept")
+    assert "no drive can be used" in complaint(capsys, "history", *given)

@@ -12,8 +12,9 @@ from pathlib import Path
 
 import pytest
 
+from test.cli.commands import RECORDING
+
 ROOT = Path(__file__).parents[2]
-RECORDING = ROOT / "werrimbi_odom" / "recordings" / "square"
 
 
 @pytest.fixture(scope="module")

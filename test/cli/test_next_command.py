@@ -11,9 +11,8 @@ from pathlib import Path
 
 import pytest
 
+from test.cli.commands import RECORDING
 from werrimbi_odom.cli.main import _parser, main
-
-RECORDING = Path(__file__).parents[2] / "werrimbi_odom" / "recordings" / "square"
 
 
 def pasted(command: str) -> list[str]:

@@ -13,9 +13,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from test.cli.commands import RECORDING
 from werrimbi_odom.cli.main import main
 
-RECORDING = Path(__file__).parents[2] / "werrimbi_odom" / "recordings" / "square"
 EFFECT = '''
 from werrimbi_odom.model.effect import Parameter, wheel_effect
 

@@ -4,14 +4,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
+from test.cli.commands import RECORDING
 from werrimbi_odom.cli import progress
 from werrimbi_odom.cli.main import main
-
-RECORDING = Path(__file__).parents[2] / "werrimbi_odom" / "recordings" / "square"
 
 
 def test_a_line_now_and_then_on_stderr(

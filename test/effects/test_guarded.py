@@ -10,12 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.cli.commands import RECORDING
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import LIBRARY, all_effects
-from werrimbi_odom.files.asked import Asked, How
-from werrimbi_odom.fleet.one import Task, row_of
+from werrimbi_odom.files.recordings import Asked, DriveOptions
+from werrimbi_odom.fleet.robot_task import Task, row_of
 
-RECORDING = Path(__file__).parents[2] / "werrimbi_odom" / "recordings" / "square"
 EFFECT = '''
 import sys
 import numpy as np
@@ -113,7 +113,7 @@ def test_no_verb_ends_as_if_all_were_well(
 @pytest.mark.parametrize("law", ["raise Dumb", "sys.exit(0)", "raise KeyboardInterrupt"])
 def test_in_a_fleet_it_is_a_row(tmp_path: Path, law: str) -> None:
     folder = place(tmp_path, law)
-    how = How(effects=(folder / "mine.py",))
+    how = DriveOptions(effects=(folder / "mine.py",))
     row = row_of(Task("robot_1", Asked(folder / "robot.yaml", (RECORDING,), (), how)))
     assert row.verdict == "error"
     assert "of_my_own" in row.error or "KeyboardInterrupt" in row.error

@@ -12,7 +12,7 @@ import pytest
 from test.effects.tracks import RADIUS, REST, TRACK, Plan, line, plan, track, turn
 from werrimbi_odom.effects import find
 from werrimbi_odom.model.effect import view_of, wiring_of
-from werrimbi_odom.model.view import View
+from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.wiring import Wiring
 
 TO_AND_FRO = plan(*line(1.0), *line(-1.0), *line(1.0), *line(-1.0))

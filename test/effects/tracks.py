@@ -10,8 +10,8 @@ import numpy as np
 
 from werrimbi_odom.model.driving import features
 from werrimbi_odom.model.effect import AppliedEffect, view_of
+from werrimbi_odom.model.effects_over_run import driven
 from werrimbi_odom.model.motion import WheelTravel, displacement
-from werrimbi_odom.model.passes import driven
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
 

@@ -27,7 +27,7 @@ with atheris.instrument_imports(include=["werrimbi_odom", "rosbags"]):
     import rosbags.typesys as typesys
 
     from werrimbi_odom.errors import InputError
-    from werrimbi_odom.files.reading import read_run
+    from werrimbi_odom.files.read_run import read_run
     from werrimbi_odom.files.robot_file import read_robot_file
 
 

@@ -44,11 +44,11 @@ class Messages:
     def __init__(self) -> None:
         from rosbags.typesys import Stores, get_types_from_msg, get_typestore
 
-        from werrimbi_odom.files.bag_types import ROS2_DEFINITIONS
+        from werrimbi_odom.files.bag_types import DEFINITIONS
 
         self.store = get_typestore(Stores.ROS2_JAZZY)
         self.noetic = get_typestore(Stores.ROS1_NOETIC)
-        for kind, text in ROS2_DEFINITIONS.items():
+        for kind, text in DEFINITIONS.items():
             for store in (self.store, self.noetic):
                 store.register(get_types_from_msg(text, kind))
 

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
 
 MS = 10**6
 WHEELS = ["left_wheel_joint", "right_wheel_joint"]

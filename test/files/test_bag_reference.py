@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
 
 MS = 10**6
 POSES = [(1.0, 2.0, 0.5), (1.5, -2.0, 3.0), (2.0, 0.0, -2.5)]

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.model.trajectory import trajectory
 
 MS = 10**6

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import Asked, How, read
 from werrimbi_odom.files.merged_reference import merged, with_one_scale
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.recordings import Asked, DriveOptions, read
 from werrimbi_odom.files.run import Reference
 
 MS = 10**6
@@ -125,7 +125,7 @@ def test_one_for_each_run_and_clocks_that_are_apart(tmp_path: Path, ros: Any, ro
 
     drive = ros.write(tmp_path / "drive", wheels(ros))
     room = ros.write(tmp_path / "room", poses(ros, begin=1_700_000_000_000))
-    how = How(references=(room,))
+    how = DriveOptions(references=(room,))
     with pytest.raises(InputError, match="1 times --reference for 2 runs: give it once for each"):
         read(Asked(source.path, (drive,), (drive,), how), all_effects(()))
     with pytest.raises(InputError) as caught:

@@ -18,14 +18,14 @@ from typing import Any
 import pytest
 
 from test.fleet.conftest import broken
-from test.fleet.test_spread import KILLS, nowhere
+from test.fleet.test_process_pool import KILLS, nowhere
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import Asked, How
+from werrimbi_odom.files.recordings import Asked, DriveOptions
 from werrimbi_odom.fleet import cluster as ours
 from werrimbi_odom.fleet.cluster import on_cluster
-from werrimbi_odom.fleet.code import EFFECTS, PACKAGE, code_here, doubts, refusal
-from werrimbi_odom.fleet.one import Task
+from werrimbi_odom.fleet.code_version import EFFECTS, PACKAGE, code_here, doubts, refusal
 from werrimbi_odom.fleet.parcel import packed, row_of_parcel
+from werrimbi_odom.fleet.robot_task import Task
 
 distributed = pytest.importorskip("distributed", reason="pip install werrimbi_odom[cluster]")
 
@@ -129,14 +129,17 @@ def test_what_must_be_the_same_and_what_should() -> None:
 
 def test_a_robot_that_kills_its_workers_is_a_row(cluster: Any, tmp_path: Path) -> None:
     (tmp_path / "kills.py").write_text(KILLS)
-    tasks = [nowhere("killer", How(effects=(tmp_path / "kills.py",)))]
+    tasks = [nowhere("killer", DriveOptions(effects=(tmp_path / "kills.py",)))]
     (row,) = on_cluster(tasks, cluster.scheduler_address)
     assert row.error == ours.DIED
 
 
 def test_a_scheduler_that_is_lost_ends_it_and_says_so(tmp_path: Path) -> None:
     (tmp_path / "sleeps.py").write_text("import time\ntime.sleep(600.0)\n")
-    tasks = [nowhere("robot_1"), nowhere("sleeper", How(effects=(tmp_path / "sleeps.py",)))]
+    tasks = [
+        nowhere("robot_1"),
+        nowhere("sleeper", DriveOptions(effects=(tmp_path / "sleeps.py",))),
+    ]
     made = distributed.LocalCluster(
         n_workers=1, threads_per_worker=1, processes=True, dashboard_address=None
     )

@@ -16,7 +16,7 @@ from pathlib import Path
 
 import pytest
 
-from test.fleet.test_spread import nowhere
+from test.fleet.test_process_pool import nowhere
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.fleet.cluster import on_cluster
 
@@ -25,7 +25,7 @@ distributed = pytest.importorskip("distributed", reason="pip install werrimbi_od
 ROOT = Path(__file__).parents[2]
 ASK = """
 import sys
-from test.fleet.test_spread import nowhere
+from test.fleet.test_process_pool import nowhere
 from werrimbi_odom.fleet.cluster import on_cluster
 for row in on_cluster([nowhere("robot_1"), nowhere("robot_2")], sys.argv[1], patience=60.0):
     print(row.robot, row.error)

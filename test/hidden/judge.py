@@ -21,7 +21,7 @@ from test.hidden.poorer import POORER
 from test.hidden.right_laws import RIGHT_LAWS
 from test.hidden.sets import HiddenSet, make, runs_of
 from test.hidden.work import Line, commit_now
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 
 

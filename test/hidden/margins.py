@@ -185,7 +185,7 @@ def gap(what: HiddenSet) -> Line:
 
     In units of minus two log-likelihood, as the diagnosis weighs them.
     """
-    from werrimbi_odom.files.reading import read_run
+    from werrimbi_odom.files.read_run import read_run
     from werrimbi_odom.files.robot_file import read_robot_file
     from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 

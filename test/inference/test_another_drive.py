@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.api.drives import collection_of, read_robot
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import How, Recordings
+from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.manoeuvres.told import Told, told_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
@@ -56,7 +56,9 @@ FILE = Path(__file__).parents[2] / "config" / "robot.yaml"
 
 def diagnosed(*runs: Run, holdout: tuple[Run, ...] = ()) -> Told:
     """By the robot above; the file stands for the one that was read."""
-    return told_of(Recordings(read_robot(FILE), collection_of(), runs, holdout, How(), ROBOT))
+    return told_of(
+        Recordings(read_robot(FILE), collection_of(), runs, holdout, DriveOptions(), ROBOT)
+    )
 
 
 def spoken(told: Told) -> str:

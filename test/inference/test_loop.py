@@ -16,7 +16,7 @@ from test.hidden.sets import HiddenSet, make, runs_of
 from test.inference.driven import runs_of as driven
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import Added, add_effect, add_effects

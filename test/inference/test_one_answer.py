@@ -19,7 +19,7 @@ from test.inference.test_gaps import parts, silent, without_ticks
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects.collection import all_effects, find
-from werrimbi_odom.files.asked import How, Recordings
+from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.adding.adding import add_effect
@@ -99,7 +99,9 @@ def test_every_verb_gives_the_same_figures(case: str) -> None:
     of_compare = [figures(each.main.all.figures) for each in compared]
     added = add_effect(find("track_width"), train, robot, kind, holdout=held)
     diagnosis = diagnose(train, robot, (), kind, holdout=held)
-    given = Recordings(ANY_FILE, all_effects(), tuple(train), tuple(held), How(kind=kind), robot)
+    given = Recordings(
+        ANY_FILE, all_effects(), tuple(train), tuple(held), DriveOptions(reference_kind=kind), robot
+    )
     look = opened(given).look(robot)
     for other in (
         [figures(side.figures("before")) for side in (added.train, added.holdout)],

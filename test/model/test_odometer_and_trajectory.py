@@ -17,14 +17,14 @@ from hypothesis import strategies as st
 
 from test.model.drives import ROBOT, Ticks, random_drive, square, then
 from test.model.records import Record, records
-from werrimbi_odom.model import course, cutting, recorded_counts
+from werrimbi_odom.model import course, pieces_recorded, recorded_counts
 from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.pieces import Piece
+from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.stretch import PieceTolerance
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 
 TOLERANCE = 1e-9
@@ -131,9 +131,9 @@ def rows_together(count: int | None) -> Iterator[None]:
     sizes = [
         (recorded_counts, "_STRETCH", count),
         (recorded_counts, "_BLOCK", 2 * count),
-        (cutting, "_FEW", count),
-        (cutting, "_MANY", 3 * count),
-        (cutting, "_SHORT", count),
+        (pieces_recorded, "_FEW", count),
+        (pieces_recorded, "_MANY", 3 * count),
+        (pieces_recorded, "_SHORT", count),
         (course, "_BLOCK", count),
     ]
     with ExitStack() as stack:

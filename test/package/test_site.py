@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import re
+import runpy
 import subprocess
 import sys
 from pathlib import Path
@@ -25,6 +26,24 @@ def test_the_python_reference_names_all_that_is_public() -> None:
     laws = re.findall(r"^from werrimbi_odom\.effects\.(\w+) import", library, re.M)
     assert laws
     assert {f"werrimbi_odom.effects.{name}" for name in laws} <= named
+
+
+@pytest.mark.parametrize("above", [True, False], ids=["make docs", "rosdoc2"])
+def test_the_site_knows_the_package_wherever_its_settings_are_copied_to(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, above: bool
+) -> None:
+    """rosdoc2 runs a copy of docs/, in a folder of its own: without the package no reference."""
+    (tmp_path / "conf.py").write_bytes((ROOT / "docs" / "conf.py").read_bytes())
+    place = ROOT / "docs" if above else tmp_path
+    monkeypatch.setenv("PWD", str(ROOT.parent))
+    monkeypatch.setattr(sys, "argv", ["rosdoc2", "build", "--package-path", ROOT.name])
+    monkeypatch.setattr(sys, "path", [part for part in sys.path if Path(part) != ROOT])
+    assert runpy.run_path(str(place / "conf.py"))["ROOT"] == ROOT
+    assert sys.path[0] == str(ROOT)
+    if not above:
+        monkeypatch.setattr(sys, "argv", ["sphinx-build"])
+        with pytest.raises(FileNotFoundError, match="--package-path"):
+            runpy.run_path(str(place / "conf.py"))
 
 
 @pytest.mark.evidence

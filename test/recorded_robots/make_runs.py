@@ -53,16 +53,23 @@ def main(arguments: Sequence[str] | None = None) -> int:
     given = parser.parse_args(arguments)
     clones = given.clones or given.out / "clones"
     clones.mkdir(parents=True, exist_ok=True)
-    failed = 0
+    failed: dict[str, str] = {}
     for robot in ROBOTS:
         try:
             count = make(robot, reader(robot.source, clones), given.out / "robots" / robot.folder)
         except subprocess.CalledProcessError as error:
-            failed += 1
-            words = error.stderr.decode(errors="replace").strip()
+            failed[robot.source.url] = robot.source.name.rpartition("/")[2]
+            words = " ".join(error.stderr.decode(errors="replace").split())
             print(f"{robot.folder}: not made: {robot.source.url}: {words}", file=sys.stderr)
         else:
             print(f"{robot.folder}: {count} drives ({robot.source.licence})")
+    if failed:
+        print(
+            "Without a network, clone these where there is one, bring them here, and run it again:",
+            *(f"git clone {url} {clones / name}" for url, name in failed.items()),
+            sep="\n  ",
+            file=sys.stderr,
+        )
     return 1 if failed else 0
 
 

@@ -76,6 +76,9 @@ def test_a_repository_that_cannot_be_had_is_said(
     assert [line.split(":")[0] for line in said if "not made" in line] == [
         robot.folder for robot in robots.ROBOTS
     ]
+    clones = [line.split()[-2:] for line in said if line.strip().startswith("git clone ")]
+    assert [url for url, _ in clones] == list(dict.fromkeys(r.source.url for r in robots.ROBOTS))
+    assert all(Path(place).parent == tmp_path / "clones" for _, place in clones)
 
 
 @pytest.mark.evidence

@@ -14,7 +14,7 @@ go = pytest.importorskip("plotly.graph_objects")
 
 from matplotlib.image import imread  # noqa: E402
 
-from werrimbi_odom.report.adding.figures import Step, error_falling_figure  # noqa: E402
+from werrimbi_odom.report.adding.figures import ErrorOfModel, error_falling_figure  # noqa: E402
 from werrimbi_odom.report.path_figure import PathDrawing, path_figure  # noqa: E402
 from werrimbi_odom.report.style import BLUE, GREEN, ORANGE  # noqa: E402
 from werrimbi_odom.report.without_browser import save_simple_png  # noqa: E402
@@ -30,7 +30,7 @@ def share(path: Path, colour: str) -> float:
 def test_bars_are_as_high_as_their_numbers(tmp_path: Path) -> None:
     found = []
     for after in (0.002, 0.004):
-        steps = [Step("as given", 0.004, 0.004), Step("+ castor", 0.002, after)]
+        steps = [ErrorOfModel("as given", 0.004, 0.004), ErrorOfModel("+ castor", 0.002, after)]
         assert save_simple_png(error_falling_figure(steps, 0.002), tmp_path / "bars.png")
         found.append(share(tmp_path / "bars.png", BLUE))
     assert found[1] / found[0] == pytest.approx(8.0 / 6.0, rel=0.03)

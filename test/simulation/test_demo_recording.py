@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
+from runpy import run_path
 
 import numpy as np
 import pytest
@@ -15,9 +16,10 @@ from ruamel.yaml import YAML
 import werrimbi_odom
 from werrimbi_odom.simulation import Nominal, TrueRobot, record, spin, write_robot_file
 from werrimbi_odom.simulation.bag import EPOCH, write_bag
-from werrimbi_odom.simulation.make_demo_recording import ROBOT, demo_recording
 
 SHIPPED = Path(werrimbi_odom.__file__).parent / "recordings"
+MADE = run_path(str(Path(__file__).parents[2] / "docs" / "make_demo_recording.py"))
+ROBOT, demo_recording = MADE["ROBOT"], MADE["demo_recording"]
 
 
 def table(path: Path) -> np.ndarray:

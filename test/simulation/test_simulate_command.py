@@ -12,8 +12,8 @@ import pytest
 from ruamel.yaml import YAML
 
 import werrimbi_odom.simulation
+from test.cli.commands import complaint
 from werrimbi_odom.cli import simulate
-from werrimbi_odom.cli.main import main
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.simulation import Nominal, TrueRobot, drives, moves, write_robot_file
@@ -90,16 +90,14 @@ def test_a_folder_with_something_in_it_is_left_alone(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     (tmp_path / "thesis.tex").write_text("all of it", encoding="utf-8")
-    assert main(["simulate", "--out", str(tmp_path)]) == 2
-    assert "not empty" in capsys.readouterr().err
+    assert "not empty" in complaint(capsys, "simulate", "--out", tmp_path)
     assert [f.name for f in tmp_path.iterdir()] == ["thesis.tex"]
 
 
 def test_a_file_is_left_alone(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "day"
     file.write_text("mine", encoding="utf-8")
-    assert main(["simulate", "--out", str(file)]) == 2
-    assert "is a file" in capsys.readouterr().err
+    assert "is a file" in complaint(capsys, "simulate", "--out", file)
     assert file.read_text(encoding="utf-8") == "mine"
 
 

@@ -17,8 +17,8 @@ from test.workbench.conftest import ROOT
 from test.workbench.session import written
 from werrimbi_odom.effects.collection import all_effects
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import How, Recordings
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.workbench.job import CancelledError, Job, Open
@@ -41,7 +41,7 @@ def day(tmp_path_factory: pytest.TempPathFactory) -> tuple[RobotFile, list[Run],
 def begun(source: RobotFile, runs: list[Run], holdout: list[Run]) -> Opening:
     job = Job(Open())
     job.start()
-    given = Recordings(source, all_effects([]), tuple(runs), tuple(holdout), How())
+    given = Recordings(source, all_effects([]), tuple(runs), tuple(holdout), DriveOptions())
     return Opening(job, given, Target(Path("new.yaml")))
 
 

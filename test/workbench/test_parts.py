@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from test.workbench.session import written
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
 from werrimbi_odom.workbench import drawings

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 from werrimbi_odom.api.calibrate_umbmark import before_after
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
 from werrimbi_odom.api.result import NewRobot, Result
-from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
 
 if TYPE_CHECKING:
@@ -65,7 +65,7 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     )
     runs = match_finely(given.runs, source.robot, how.leg, source.limits)
     kind = given.judging["kind"]
-    sigma_xy, sigma_yaw = sigmas_known(runs, kind, how.sigma_xy, how.sigma_yaw)
+    sigma_xy, sigma_yaw = sigmas_known(runs, kind, how.reference_sigma_xy, how.reference_sigma_yaw)
     found = calibrate(
         runs,
         source.robot,

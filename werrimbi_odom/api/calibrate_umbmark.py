@@ -154,7 +154,7 @@ def _from_table(path: Path, side: float) -> Squares:
 
 
 def _recorded(paths: Sequence[Path], source: RobotFile, robot: Robot, read: _Reading) -> Squares:
-    from werrimbi_odom.files.reading import read_run
+    from werrimbi_odom.files.read_run import read_run
     from werrimbi_odom.inference.calibration.recorded_square import (
         Record,
         recorded_square,

@@ -13,7 +13,7 @@ from werrimbi_odom.api.next_command import beside, next_command
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.api.verbs import Show, silent
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
 
 if TYPE_CHECKING:

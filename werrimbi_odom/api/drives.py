@@ -7,11 +7,11 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, TypedDict
+from typing import TYPE_CHECKING, Any, TypedDict
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import How, Recordings, gathered
-from werrimbi_odom.files.reading import read_run as read_one
+from werrimbi_odom.files.read_run import read_run as read_one
+from werrimbi_odom.files.recordings import DriveOptions, Recordings, gathered
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 
@@ -125,23 +125,17 @@ def recordings_of(
     return found
 
 
-def how_of(**options: Unpack[Options]) -> How:
+def how_of(**options: Unpack[Options]) -> DriveOptions:
     """How drives are read and judged, as the command line has it."""
     unknown = sorted(set(options) - set(Options.__annotations__))
     if unknown:
         raise TypeError(
             f"unknown option {unknown[0]}; there are {', '.join(Options.__annotations__)}"
         )
-    return How(
-        kind=options.get("reference_kind"),
-        leg=options.get("leg", 1.0),
-        sigma_xy=options.get("reference_sigma_xy"),
-        sigma_yaw=options.get("reference_sigma_yaw"),
-        ticks_topic=options.get("ticks_topic"),
-        reference_topic=options.get("reference_topic"),
-        effects=tuple(Path(file) for file in options.get("effects", ())),
-        force=options.get("force_reference", False),
-    )
+    given: dict[str, Any] = dict(options)
+    for name in ("effects", "references"):
+        given[name] = tuple(Path(each) for each in given.get(name, ()))
+    return DriveOptions(**given)
 
 
 def refuse_circles(given: Recordings) -> list[str]:
@@ -159,7 +153,7 @@ def refuse_circles(given: Recordings) -> list[str]:
         try:
             words = refuse_circle(run, given.source.robot, given.source.limits)
         except InputError as error:
-            if not given.how.force:
+            if not given.how.force_reference:
                 raise
             words = (
                 f"{str(error).replace(' (--force takes it all the same)', '')}: taken all the same"

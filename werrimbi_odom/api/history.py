@@ -23,8 +23,8 @@ import numpy as np
 from werrimbi_odom.api.drives import Drives, Options, collection_of, how_of, refuse_circles
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import How, gathered, refuse_twice
-from werrimbi_odom.files.content import code_mark, mark_of, written_at
+from werrimbi_odom.files.content_mark import code_mark, mark_of, written_at
+from werrimbi_odom.files.recordings import DriveOptions, gathered, refuse_twice
 from werrimbi_odom.files.replacing import replacing
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
@@ -42,7 +42,7 @@ class DriveTask:
 
     run: Path
     robot: Path
-    how: How
+    how: DriveOptions
     """With what holds the reference of this drive alone."""
     keep: Path | None
     """File in which what it tells is kept."""
@@ -91,7 +91,7 @@ def history(
 def history_of(
     robot: RobotFile,
     runs: Drives,
-    how: How,
+    how: DriveOptions,
     *,
     like: RobotFile | None = None,
     cache: str | Path | None = None,
@@ -132,7 +132,7 @@ def unusable_task(task: DriveTask, why: str) -> Unusable:
     return Unusable(task.run, " ".join(why.split()))
 
 
-def _looked_at(run: Run | Path, robot: RobotFile, how: How) -> Dated:
+def _looked_at(run: Run | Path, robot: RobotFile, how: DriveOptions) -> Dated:
     given = gathered(robot, _collection(how.effects), [run], (), how)
     for words in refuse_circles(given):
         warnings.warn(words, stacklevel=2)
@@ -141,7 +141,7 @@ def _looked_at(run: Run | Path, robot: RobotFile, how: How) -> Dated:
 
 
 def _tasks(
-    paths: Sequence[Path], robot: RobotFile, how: How, cache: str | Path | None
+    paths: Sequence[Path], robot: RobotFile, how: DriveOptions, cache: str | Path | None
 ) -> list[DriveTask]:
     references: Sequence[Path | None] = how.references or [None] * len(paths)
     if len(references) != len(paths):

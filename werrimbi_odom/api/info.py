@@ -15,11 +15,11 @@ from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.files.contents import Measured, Wheels
+    from werrimbi_odom.files.bag_contents import Measured, Wheels
     from werrimbi_odom.files.first_robot import FirstRobot
     from werrimbi_odom.files.robot_file import RobotFile
     from werrimbi_odom.files.run import Run
-    from werrimbi_odom.inference.recorded import Held, Info
+    from werrimbi_odom.inference.recording_info import Held, Info
 
 DESCRIPTION = "/robot_description"
 
@@ -71,7 +71,7 @@ def _look(
 ) -> Info:
     from werrimbi_odom.files.first_robot import FirstRobot, of_controller
     from werrimbi_odom.files.robot_file import read_robot_file
-    from werrimbi_odom.inference.recorded import Info
+    from werrimbi_odom.inference.recording_info import Info
 
     source, first = None, FirstRobot()
     if robot is not None:
@@ -98,8 +98,8 @@ def _held(
     ticks_topic: str | None,
     reference_topic: str | None,
 ) -> tuple[Held, FirstRobot]:
-    from werrimbi_odom.files.reading import bag_at
-    from werrimbi_odom.inference.recorded import Held
+    from werrimbi_odom.files.read_run import bag_at
+    from werrimbi_odom.inference.recording_info import Held
 
     bag = bag_at(path)
     if bag is None:
@@ -128,10 +128,10 @@ def _of_bag(
 ) -> tuple[Held, FirstRobot]:
     """What a bag holds, and what it says of the robot."""
     from werrimbi_odom.files.bag import opened_bag
-    from werrimbi_odom.files.contents import contents_of
+    from werrimbi_odom.files.bag_contents import contents_of
     from werrimbi_odom.files.first_robot import of_names, of_urdf, with_driver
     from werrimbi_odom.files.stamps import stamps_of
-    from werrimbi_odom.inference.recorded import Held
+    from werrimbi_odom.inference.recording_info import Held
 
     with opened_bag(bag) as opened:
         base = "" if source is None else str(source.values["base_frame_id"])
@@ -201,7 +201,7 @@ def _read(
     ticks_topic: str | None,
     reference_topic: str | None,
 ) -> Run:
-    from werrimbi_odom.files.reading import read_run
+    from werrimbi_odom.files.read_run import read_run
 
     return read_run(
         path,

@@ -8,7 +8,7 @@ import shlex
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from werrimbi_odom.files.asked import How, Recordings
+from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.run import Run
 
 
@@ -40,7 +40,7 @@ def next_command(
         For the middle of a sentence.
     """
     words = ["werrimbi", *verb, "--robot", str(robot or given.source.path), *_options(given.how)]
-    if given.how.force and any(run.circle for run in given.runs):
+    if given.how.force_reference and any(run.circle for run in given.runs):
         words.append("--force")
     for file in dict.fromkeys((*given.how.effects, *effects)):
         words += ["--effects", str(file)]
@@ -57,22 +57,23 @@ def beside(robot: Path, word: str) -> str:
     return str(robot.with_name(f"{robot.stem}_{word}{robot.suffix}"))
 
 
-def _options(how: How) -> Iterator[str]:
+def _options(how: DriveOptions) -> Iterator[str]:
     """Those that differ from their defaults."""
-    plain = How()
-    for option, value, default in (
-        ("leg", how.leg, plain.leg),
-        ("reference-kind", how.kind or "absolute", "absolute"),
-        ("ticks-topic", how.ticks_topic, plain.ticks_topic),
-        ("reference-topic", how.reference_topic, plain.reference_topic),
-        ("reference", how.references, plain.references),
-        ("reference-sigma-xy", how.sigma_xy, plain.sigma_xy),
-        ("reference-sigma-yaw", how.sigma_yaw, plain.sigma_yaw),
+    plain = DriveOptions(reference_kind="absolute")
+    for name in (
+        "leg",
+        "reference_kind",
+        "ticks_topic",
+        "reference_topic",
+        "references",
+        "reference_sigma_xy",
+        "reference_sigma_yaw",
     ):
-        if value == default:
+        value = getattr(how, name)
+        if value in (None, getattr(plain, name)):
             continue
         for each in value if isinstance(value, list | tuple) else [value]:
-            yield f"--{option}"
+            yield f"--{name.removesuffix('s').replace('_', '-')}"
             yield f"{each:g}" if isinstance(each, float) else str(each)
 
 

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from werrimbi_odom.model.pose import Floats, Pose
-    from werrimbi_odom.model.shown import Path as ShownPath
+    from werrimbi_odom.model.seen_by_reference import Path as ShownPath
     from werrimbi_odom.model.trajectory import Trajectory
     from werrimbi_odom.report.reckoning import Reckoning
 
@@ -74,10 +74,10 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     InputError
         When the run cannot be used; the message says why.
     """
-    from werrimbi_odom.files.learnt import with_learnt_phases
+    from werrimbi_odom.files.learned_phases import with_learnt_phases
     from werrimbi_odom.files.start_pose import start_of
     from werrimbi_odom.model.effect import view_of
-    from werrimbi_odom.model.shown import shown
+    from werrimbi_odom.model.seen_by_reference import shown
     from werrimbi_odom.report.reckoning import reckoning_of
     from werrimbi_odom.report.reckoning_document import document_of
 

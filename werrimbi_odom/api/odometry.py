@@ -66,7 +66,7 @@ def odometry(
     """
     from werrimbi_odom.files.robot_file import RobotFile
     from werrimbi_odom.model.encoder import EncoderLimits
-    from werrimbi_odom.model.stretch import PieceTolerance
+    from werrimbi_odom.model.pieces_online import PieceTolerance
     from werrimbi_odom.model.trajectory import trajectory
 
     time, of_left, of_right = (np.atleast_1d(np.asarray(part)) for part in (t, left, right))

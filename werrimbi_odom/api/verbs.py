@@ -11,7 +11,7 @@ from werrimbi_odom.api.drives import Drives, Options, recordings_of
 from werrimbi_odom.api.next_command import beside, next_command
 from werrimbi_odom.api.result import NewRobot, Result
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
 
 if TYPE_CHECKING:

@@ -5,8 +5,8 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
 
+from werrimbi_odom.cli.options import declare
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.cli.result_files import tell_written, write_asked
 
@@ -32,19 +32,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         holdout=True,
         force="write even an effect that does not help, and over an existing --out",
     )
-    parser.add_argument(
-        "--out", metavar="NEW", type=Path, required=True, help="robot file to write"
-    )
+    declare(parser, "--out")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read, fit, judge, write; 0 on success.
-
-    Raises
-    ------
-    InputError
-        When something cannot be used or written, or the effect does not lower the held-out error.
-    """
+    """Read, fit, judge, write; 0 on success."""
     from werrimbi_odom.api.next_command import next_command
     from werrimbi_odom.api.verbs import added, effects_of, refuse_unearned
     from werrimbi_odom.cli.progress import share_done

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.cli.examples import Formatter, epilog_of
+from werrimbi_odom.cli.options import declare
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings, remark
 from werrimbi_odom.cli.result_files import add_file_arguments, tell_written, write_asked
 
@@ -21,7 +22,7 @@ HELP = "better numbers for the robot file, with error bars"
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declare the three ways of calibrating and their options."""
     kinds = parser.add_subparsers(dest="kind", metavar="KIND", required=True)
-    for kind, (says, declare, _) in KINDS.items():
+    for kind, (says, add, _) in KINDS.items():
         below = kinds.add_parser(
             kind,
             help=says,
@@ -29,17 +30,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
             epilog=epilog_of(f"calibrate {kind}"),
             formatter_class=Formatter,
         )
-        declare(below)
+        add(below)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Calibrate; 0 on success.
-
-    Raises
-    ------
-    InputError
-        When something given cannot be used.
-    """
+    """Calibrate; 0 on success."""
     _, _, calibrate = KINDS[arguments.kind]
     result = calibrate(arguments)
     print(result.summary())
@@ -71,12 +66,8 @@ def _add_umbmark_arguments(parser: argparse.ArgumentParser) -> None:
         type=Path,
         help="squares driven with the new robot file: says what the calibration gained",
     )
-    parser.add_argument(
-        "--ticks-topic", metavar="T", help="topic of the ticks, in bags with several"
-    )
-    parser.add_argument(
-        "--reference-topic", metavar="T", help="topic of the reference, in bags with several"
-    )
+    for what in ("ticks", "reference"):
+        declare(parser, f"--{what}-topic", help=f"topic of the {what}, in bags with several")
     add_file_arguments(parser)
 
 
@@ -154,9 +145,7 @@ def _add_fit_arguments(parser: argparse.ArgumentParser) -> None:
         "left alone; when calibration is not what is missing, that is said."
     )
     add_recording_arguments(parser, holdout=True, force="overwrite --out if it exists")
-    parser.add_argument(
-        "--out", metavar="NEW", type=Path, required=True, help="robot file to write"
-    )
+    declare(parser, "--out")
 
 
 def _fit(arguments: argparse.Namespace) -> Result[Any]:

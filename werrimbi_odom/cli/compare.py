@@ -22,13 +22,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read, compare, tell; 0 on success.
-
-    Raises
-    ------
-    InputError
-        When robot file or runs cannot be used, or a file cannot be written.
-    """
+    """Read, compare, tell; 0 on success."""
     from werrimbi_odom.api.verbs import compared
     from werrimbi_odom.cli.progress import share_done
 

@@ -28,13 +28,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read, diagnose, tell; 0 on success.
-
-    Raises
-    ------
-    InputError
-        When robot file or runs cannot be used, or a file cannot be written.
-    """
+    """Read, diagnose, tell; 0 on success."""
     refuse_mixing(arguments)
     if arguments.fleet is not None:
         return run_fleet(arguments)

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator
 
     from werrimbi_odom.fleet.members import Member
-    from werrimbi_odom.fleet.one import Task
+    from werrimbi_odom.fleet.robot_task import Task
     from werrimbi_odom.report.fleet.rows import Fleet, Row
 
 _NARROW, _WIDE = 80, 140
@@ -84,9 +84,9 @@ def run_fleet(arguments: argparse.Namespace) -> int:
         On Ctrl-C; what is done by then is told and written.
     """
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.files.asked import Asked
+    from werrimbi_odom.files.recordings import Asked
     from werrimbi_odom.fleet.members import members_of
-    from werrimbi_odom.fleet.one import Task, failed
+    from werrimbi_odom.fleet.robot_task import Task, failed
 
     members = members_of(arguments.fleet)
     read_effects(arguments)  # a mistake in them is no robot's
@@ -123,7 +123,7 @@ def _spread(arguments: argparse.Namespace, tasks: Sequence[Task]) -> Generator[R
 
         yield from on_cluster(tasks, arguments.scheduler, _warn)
         return
-    from werrimbi_odom.fleet.spread import here, processors
+    from werrimbi_odom.fleet.process_pool import here, processors
 
     yield from here(tasks, arguments.jobs or processors())
 

@@ -9,11 +9,12 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from werrimbi_odom.cli.options import declare
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.cli.result_files import made_of, tell_written, write_json
 
 if TYPE_CHECKING:
-    from werrimbi_odom.files.asked import Recordings
+    from werrimbi_odom.files.recordings import Recordings
 
 HELP = "where no known effect explains the errors: write one from what they depend on"
 
@@ -29,19 +30,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         holdout=True,
         force="draft whatever the verdict is, and over an existing package",
     )
-    parser.add_argument(
-        "--out", metavar="DIR", type=Path, required=True, help="folder for the package"
-    )
+    declare(parser, "--out", metavar="DIR", help="folder for the package")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Diagnose, draft, try, write; 0 on success.
-
-    Raises
-    ------
-    InputError
-        When something cannot be used or written, or the verdict is not unknown.
-    """
+    """Diagnose, draft, try, write; 0 on success."""
     from werrimbi_odom.api.draft import drafted
     from werrimbi_odom.cli.progress import share_done
 

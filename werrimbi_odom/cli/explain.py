@@ -6,9 +6,9 @@ from __future__ import annotations
 
 import argparse
 import sys
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from werrimbi_odom.cli.options import declare
 from werrimbi_odom.cli.result_files import write_json
 
 if TYPE_CHECKING:
@@ -29,27 +29,15 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "formula, its parameters, its signature in the data, and how to check it on the robot."
     )
     parser.add_argument("effect", metavar="EFFECT", nargs="?", help="name of an effect")
-    parser.add_argument(
-        "--effects",
-        metavar="FILE",
-        type=Path,
-        action="append",
-        default=[],
-        help="Python file with effects of your own (it is executed); several times for several",
-    )
-    parser.add_argument(
-        "--json", metavar="FILE", type=Path, help="write what is printed to this file, for programs"
+    words = "Python file with effects of your own (it is executed); several times for several"
+    declare(parser, "--effects", help=words)
+    declare(
+        parser, "--json", metavar="FILE", help="write what is printed to this file, for programs"
     )
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Print one page, or the list of all; 0 on success.
-
-    Raises
-    ------
-    InputError
-        For an unknown name (the message offers the nearest) or a file that cannot be used.
-    """
+    """Print one page, or the list of all; 0 on success."""
     from werrimbi_odom.effects import all_effects
     from werrimbi_odom.effects.page import as_json
 

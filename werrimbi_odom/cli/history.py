@@ -56,13 +56,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Look at the drives, put them together, tell; 0 on success.
-
-    Raises
-    ------
-    InputError
-        When the robot file or all drives cannot be used, or a file cannot be written.
-    """
+    """Look at the drives, put them together, tell; 0 on success."""
     from werrimbi_odom.api.history import history_of
     from werrimbi_odom.cli.progress import share_done
     from werrimbi_odom.files.robot_file import read_robot_file
@@ -95,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _spread(tasks: Sequence[DriveTask], jobs: int) -> Iterator[Looked]:
     from werrimbi_odom.api.history import told_of_task, unusable_task
-    from werrimbi_odom.fleet.spread import processors, spread
+    from werrimbi_odom.fleet.process_pool import processors, spread
 
     jobs = jobs or processors()
     if jobs == 1 or len(tasks) < _FEW:

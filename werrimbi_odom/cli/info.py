@@ -5,7 +5,8 @@
 from __future__ import annotations
 
 import argparse
-from pathlib import Path
+
+from werrimbi_odom.cli.options import declare
 
 HELP = "what a recording holds and allows, and the command that comes next"
 
@@ -18,37 +19,20 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "can be told with it and what not. With --out it writes a first robot file, from the URDF "
         "in the bag or from a diff_drive_controller's parameters."
     )
-    parser.add_argument(
-        "runs", metavar="RUN", nargs="+", type=Path, help="recorded drives: run folders or bags"
-    )
-    parser.add_argument(
-        "--robot",
-        metavar="R",
-        type=Path,
-        help="robot file, or the parameter file of a diff_drive_controller",
-    )
-    parser.add_argument("--out", metavar="NEW", type=Path, help="first robot file to write")
-    parser.add_argument(
-        "--ticks-topic", metavar="T", help="topic of the wheels, where not what seems best"
-    )
-    parser.add_argument(
-        "--reference-topic", metavar="T", help="topic of the reference, where not what seems best"
-    )
-    parser.add_argument("--json", metavar="F", type=Path, help="write the numbers to this file")
-    parser.add_argument("--force", action="store_true", help="overwrite --out if it exists")
+    declare(parser, "runs")
+    words = "robot file, or the parameter file of a diff_drive_controller"
+    declare(parser, "--robot", required=False, help=words)
+    declare(parser, "--out", required=False, help="first robot file to write")
+    for what, topic in (("wheels", "--ticks-topic"), ("reference", "--reference-topic")):
+        declare(parser, topic, help=f"topic of the {what}, where not what seems best")
+    declare(parser, "--json", "--force")
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Look, tell; 0 on success.
-
-    Raises
-    ------
-    InputError
-        When a recording cannot be read at all, or a file cannot be written.
-    """
+    """Look, tell; 0 on success."""
     from werrimbi_odom.api.info import info
     from werrimbi_odom.cli.result_files import tell_written, write_json
-    from werrimbi_odom.files.asked import refuse_twice
+    from werrimbi_odom.files.recordings import refuse_twice
 
     refuse_twice(arguments.runs)
     result = info(

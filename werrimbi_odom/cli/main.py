@@ -31,7 +31,8 @@ VERBS = (
     "simulate",
     "explain",
 )
-"""Each a module beside this one with HELP, `add_arguments(parser)` and `run(arguments)`."""
+"""Each a module beside this one with HELP, `add_arguments(parser)` and `run(arguments)`, which
+gives 0 on success, and raises `InputError` for what a user can mend, with no file half written."""
 
 BAD_INPUT = 2
 INTERRUPTED = 130  # 128 + SIGINT, as shells say it

@@ -11,6 +11,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from werrimbi_odom.cli.options import declare
 from werrimbi_odom.cli.recordings import remark
 
 if TYPE_CHECKING:
@@ -28,17 +29,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "that could not be used repeats the latest estimate). An existing --out is replaced."
     )
     parser.add_argument("run", metavar="RUN", type=Path, help="run folder, or ROS 2 bag")
-    parser.add_argument("--robot", metavar="R", type=Path, required=True, help="robot file")
-    parser.add_argument("--out", metavar="CSV", type=Path, required=True, help="file to write")
-    parser.add_argument("--json", metavar="FILE", type=Path, help="write the numbers to this file")
-    parser.add_argument(
-        "--ticks-topic",
-        metavar="T",
-        help="topic of the ticks, in a bag with several; LEFT,RIGHT for one a wheel",
-    )
-    parser.add_argument(
+    declare(parser, "--robot")
+    declare(parser, "--out", metavar="CSV", help="file to write")
+    declare(parser, "--json", metavar="FILE")
+    declare(parser, "--ticks-topic")
+    declare(
+        parser,
         "--reference-topic",
-        metavar="T",
         help="topic of the reference, in a bag with several; T:CHILD_FRAME among transforms, "
         "`none` for no reference",
     )
@@ -48,24 +45,12 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="write what the reference is predicted to show (its lever arm, yaw offset, delays and "
         "mirror, as the robot file has them) instead of the axle's midpoint",
     )
-    parser.add_argument(
-        "--effects",
-        metavar="FILE",
-        action="append",
-        default=[],
-        type=Path,
-        help="file with effects of your own, which the robot file may name; may be given again",
-    )
+    words = "file with effects of your own, which the robot file may name; may be given again"
+    declare(parser, "--effects", help=words)
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read, reckon, write, tell; 0 on success.
-
-    Raises
-    ------
-    InputError
-        When robot file or run cannot be used, or a file cannot be written.
-    """
+    """Read, reckon, write, tell; 0 on success."""
     from werrimbi_odom.api.drives import read_robot, read_run
     from werrimbi_odom.api.odom import odom
     from werrimbi_odom.cli.progress import share_done

@@ -5,14 +5,15 @@
 from __future__ import annotations
 
 import argparse
-import math
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from werrimbi_odom.cli.options import declare, positive
+
 if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
-    from werrimbi_odom.files.asked import How, Recordings
+    from werrimbi_odom.files.recordings import DriveOptions, Recordings
     from werrimbi_odom.files.robot_file import RobotFile
 
 
@@ -36,13 +37,7 @@ def add_recording_arguments(
     force : str
         What --force means to the verb beside what it means to all.
     """
-    parser.add_argument(
-        "runs",
-        metavar="RUN",
-        nargs="+" if required else "*",
-        type=Path,
-        help="recorded drives: run folders or bags",
-    )
+    declare(parser, "runs", nargs="+" if required else "*")
     if holdout:
         parser.add_argument(
             "--holdout",
@@ -52,11 +47,11 @@ def add_recording_arguments(
             type=Path,
             help="drives to judge on, that take no part in the fit",
         )
-    parser.add_argument("--robot", metavar="R", type=Path, required=required, help="robot file")
+    declare(parser, "--robot", required=required)
     parser.add_argument(
         "--leg",
         metavar="M",
-        type=_positive,
+        type=positive,
         default=1.0,
         help="length of a leg [m], 1 if not given: drives are cut into legs, stretches of so much "
         "way (on the spot of a quarter turn), and each is judged by the pose at its end as seen "
@@ -73,23 +68,19 @@ def add_recording_arguments(
     parser.add_argument(
         "--reference-sigma-xy",
         metavar="M",
-        type=_positive,
+        type=positive,
         help="noise of the reference in x and in y [m], if known",
     )
     parser.add_argument(
         "--reference-sigma-yaw",
         metavar="RAD",
-        type=_positive,
+        type=positive,
         help="its noise in heading [rad], if known",
     )
-    parser.add_argument(
-        "--ticks-topic",
-        metavar="T",
-        help="topic of the ticks, in a bag with several; LEFT,RIGHT for one a wheel",
-    )
-    parser.add_argument(
+    declare(parser, "--ticks-topic")
+    declare(
+        parser,
         "--reference-topic",
-        metavar="T",
         action="append",
         help="topic of the reference, in a bag with several; /tf:PARENT:CHILD among transforms; "
         "the scans of a lidar are matched with those of the last metres. "
@@ -105,27 +96,9 @@ def add_recording_arguments(
         help="what holds the reference of a drive, where RUN does not: another bag, or a folder "
         "with reference.csv; once for each RUN, then for each of --holdout",
     )
-    parser.add_argument(
-        "--force",
-        action="store_true",
-        help=f"{force}{'; ' if force else ''}take a reference that is made from the wheels",
-    )
-    parser.add_argument(
-        "--effects",
-        metavar="FILE",
-        action="append",
-        default=[],
-        type=Path,
-        help="file with effects of your own, to try them; may be given again",
-    )
-    parser.add_argument("--json", metavar="F", type=Path, help="write the numbers to this file")
-    if report:
-        parser.add_argument(
-            "--report",
-            metavar="F",
-            type=Path,
-            help="write a page with plots (.html), or the plots (.pdf, .png)",
-        )
+    words = f"{force}{'; ' if force else ''}take a reference that is made from the wheels"
+    declare(parser, "--force", help=words)
+    declare(parser, "--effects", "--json", *(["--report"] if report else []))
 
 
 def read_recordings(arguments: argparse.Namespace) -> Recordings:
@@ -138,8 +111,8 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     """
     from werrimbi_odom.api.drives import refuse_circles
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.files.asked import Asked, read
     from werrimbi_odom.files.judgeable import words_about
+    from werrimbi_odom.files.recordings import Asked, read
 
     holdout = tuple(getattr(arguments, "holdout", None) or ())
     asked = Asked(arguments.robot, tuple(arguments.runs), holdout, how_of(arguments))
@@ -166,21 +139,21 @@ def remark(source: RobotFile, *more: str) -> None:
         print(f"warning: {words}", file=sys.stderr)
 
 
-def how_of(arguments: argparse.Namespace) -> How:
+def how_of(arguments: argparse.Namespace) -> DriveOptions:
     """The options that say how drives are read and judged."""
-    from werrimbi_odom.files.asked import How
+    from werrimbi_odom.files.recordings import DriveOptions
 
     topics = tuple(arguments.reference_topic or ())
-    return How(
-        kind=arguments.reference_kind,
+    return DriveOptions(
+        reference_kind=arguments.reference_kind,
         leg=arguments.leg,
-        sigma_xy=arguments.reference_sigma_xy,
-        sigma_yaw=arguments.reference_sigma_yaw,
+        reference_sigma_xy=arguments.reference_sigma_xy,
+        reference_sigma_yaw=arguments.reference_sigma_yaw,
         ticks_topic=arguments.ticks_topic,
         reference_topic=topics if len(topics) > 1 else next(iter(topics), None),
         effects=tuple(arguments.effects),
         references=tuple(arguments.reference),
-        force=arguments.force,
+        force_reference=arguments.force,
     )
 
 
@@ -198,13 +171,3 @@ def read_effects(arguments: argparse.Namespace) -> Collection:
     for warning in collection.warnings:
         print(f"warning: {warning}", file=sys.stderr)
     return collection
-
-
-def _positive(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not (math.isfinite(value) and value > 0.0):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number greater than zero")
-    return value

@@ -13,26 +13,16 @@ from datetime import datetime, timezone
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from werrimbi_odom.cli.options import declare
+
 if TYPE_CHECKING:
     from werrimbi_odom.api.result import Result
 
 
 def add_file_arguments(parser: argparse.ArgumentParser) -> None:
     """--robot, --out, --json, --report and --force of a calibration."""
-    parser.add_argument(
-        "--robot", metavar="R", type=Path, required=True, help="robot file to start from"
-    )
-    parser.add_argument(
-        "--out", metavar="NEW", type=Path, required=True, help="robot file to write"
-    )
-    parser.add_argument("--json", metavar="F", type=Path, help="write the numbers to this file")
-    parser.add_argument(
-        "--report",
-        metavar="F",
-        type=Path,
-        help="write a page with plots (.html), or the plots (.pdf, .png)",
-    )
-    parser.add_argument("--force", action="store_true", help="overwrite --out if it exists")
+    declare(parser, "--robot", help="robot file to start from")
+    declare(parser, "--out", "--json", "--report", "--force")
 
 
 def write_asked(arguments: argparse.Namespace, result: Result[Any]) -> list[Path]:

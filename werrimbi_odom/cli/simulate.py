@@ -69,13 +69,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Write the session; 0 on success.
-
-    Raises
-    ------
-    InputError
-        When an effect does not exist or the folder cannot be written.
-    """
+    """Write the session; 0 on success."""
     from werrimbi_odom import simulation
 
     if arguments.list:

@@ -10,11 +10,12 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from werrimbi_odom.cli.options import declare
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
 from werrimbi_odom.cli.result_files import write_json
 
 if TYPE_CHECKING:
-    from werrimbi_odom.files.asked import Recordings
+    from werrimbi_odom.files.recordings import Recordings
     from werrimbi_odom.workbench.job import Job
     from werrimbi_odom.workbench.opening import Opening
     from werrimbi_odom.workbench.tab import Shared
@@ -33,12 +34,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add_recording_arguments(
         parser, holdout=True, force="overwrite --out if it exists", report=False
     )
-    parser.add_argument(
-        "--out",
-        metavar="NEW",
-        type=Path,
-        help="robot file to save to; if not given, R_new.yaml beside R",
-    )
+    words = "robot file to save to; if not given, R_new.yaml beside R"
+    declare(parser, "--out", required=False, help=words)
     parser.add_argument(
         "--port", metavar="N", type=_port, default=0, help="a free one if not given, or 0"
     )
@@ -46,13 +43,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Read, compare, serve until interrupted; 0 then.
-
-    Raises
-    ------
-    InputError
-        When something cannot be used, or the port is taken.
-    """
+    """Read, compare, serve until interrupted; 0 then."""
     from werrimbi_odom.workbench.job import Job, Open
 
     job = Job(Open())

@@ -28,7 +28,7 @@ import numpy as np
 
 from werrimbi_odom.demo.pictures import save_and_tell
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.files.start_pose import start_pose

@@ -103,7 +103,7 @@ def numbers(effect: Effect, name: str) -> str:
     item = effect.parameters[name]
     low, high = item.bounds
     absent = absent_at(effect, name)
-    words = f"typical {item.typical:g}, possible {low:g} to {high:g}{_anew(item)}"
+    words = f"typical {item.typical:g}, possible {low:g} to {high:g}{anew(item)}"
     return words if absent == "any" else f"absent at {absent}, {words}"
 
 
@@ -140,36 +140,8 @@ def as_json(effect: Effect) -> dict[str, Any]:
     }
 
 
-def as_markdown(effect: Effect) -> str:
-    """The page for docs/effects.md."""
-    page = page_of(effect)
-    lines = [f"### `{effect.name}`", "", f"Acts {STAGES[effect.stage]}.", ""]
-    for paragraph in page.physics:
-        lines += [textwrap.fill(paragraph, 100), ""]
-    for name, text in page.sections.items():
-        if name == "Formula":
-            lines += ["```text", text, "```", ""]
-        else:
-            lines += [
-                textwrap.fill(f"**{name}** ({MEANING[name]}): {' '.join(text.split())}.", 100),
-                "",
-            ]
-    if effect.parameters:
-        lines += [
-            "| parameter | unit | absent at | typical | possible | what it is |",
-            "| --- | --- | --- | --- | --- | --- |",
-        ]
-        for name, item in effect.parameters.items():
-            low, high = item.bounds
-            lines.append(
-                f"| `{name}` | {item.unit or '1'} | {absent_at(effect, name)} | {item.typical:g} "
-                f"| {low:g} to {high:g} | {item.says}{_anew(item)} |"
-            )
-        lines.append("")
-    return "\n".join(lines)
-
-
-def _anew(item: Parameter) -> str:
+def anew(item: Parameter) -> str:
+    """That a parameter is another one in each run, where it is."""
     return ", anew in each run unless counters keep their zero" if item.per_run else ""
 
 

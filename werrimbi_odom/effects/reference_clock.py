@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 from werrimbi_odom.model.effect import Parameter, Sketch, reference_effect
-from werrimbi_odom.model.view import View
+from werrimbi_odom.model.reference_view import View
 
 
 @reference_effect(

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 from werrimbi_odom.effects.twins import turning_the_wrong_way
 from werrimbi_odom.model.effect import Sketch, reference_effect
-from werrimbi_odom.model.view import View
+from werrimbi_odom.model.reference_view import View
 
 
 @reference_effect(

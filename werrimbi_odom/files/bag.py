@@ -12,8 +12,8 @@ from pathlib import Path, PurePath
 from typing import Any, NamedTuple
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag_scan import Raw, raw_messages
 from werrimbi_odom.files.bag_types import Types
+from werrimbi_odom.files.unfinished_bag import Raw, raw_messages
 
 ROS1 = ".bag"
 SUFFIXES = (".mcap", ".db3", ROS1)

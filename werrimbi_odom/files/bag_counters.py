@@ -7,69 +7,62 @@ from __future__ import annotations
 from array import array
 from collections import Counter
 from pathlib import Path
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, left_out_words, stamp_of
-from werrimbi_odom.files.contents import INT32, Wheels
-from werrimbi_odom.files.pairing import Pairing
+from werrimbi_odom.files.bag_contents import INT32, Wheels
+from werrimbi_odom.files.counter_pairs import Pairing
+from werrimbi_odom.files.drivers import DRIVERS
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Ticks
 
 
-class Fields(NamedTuple):
-    """Where a message has its counters, and the width at which they wrap."""
+class _TwoCounts:
+    """Stamps, and what both counters showed."""
 
-    left: str
-    right: str
-    bits: int
+    def __init__(self, place: str, bits: int = 0) -> None:
+        self._place, self._bits = place, bits
+        self._time = array("d")
+        self._counts = array("q")
+
+    def _add(self, time: float, left: int, right: int) -> None:
+        self._time.append(time)
+        self._counts.extend((left, right))
+
+    def _ticks(self, why_none: str) -> Ticks:
+        if not self._time:
+            raise InputError(f"{self._place}: {why_none}")
+        left, right = np.array(self._counts, dtype=np.int64).reshape(-1, 2).T.copy()
+        sides = (_unwrapped(left, self._bits), _unwrapped(right, self._bits))
+        return Ticks(np.array(self._time), *sides)
 
 
-COUNTERS = {
-    "turtlebot3_msgs/msg/SensorState": Fields("left_encoder", "right_encoder", 32),
-    "kobuki_msgs/msg/SensorState": Fields("left_encoder", "right_encoder", 16),
-    "kobuki_ros_interfaces/msg/SensorState": Fields("left_encoder", "right_encoder", 16),
-    "irobot_create_msgs/msg/WheelTicks": Fields("ticks_left", "ticks_right", 32),
-}
-"""By message type."""
-
-
-class Counters:
+class CountersCollector(_TwoCounts):
     """Both counters of a driver, in a message with a stamp."""
 
     def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:
-        self._place = f"{path}: {source.name}"
-        self._fields = COUNTERS[source.kind]
-        self._bits = _width(robot_file, self._fields.bits)
-        self._time = array("d")
-        self._counts = array("q")
+        self._driver = DRIVERS[source.kind]
+        super().__init__(f"{path}: {source.name}", _width(robot_file, self._driver.bits))
 
     def take(self, message: Message) -> None:
         """Take a message."""
-        self._time.append(stamp_of(message))
-        for name in self._fields[:2]:
-            self._counts.append(int(getattr(message.content, name)))
+        sides = (self._driver.left, self._driver.right)
+        self._add(stamp_of(message), *(int(getattr(message.content, name)) for name in sides))
 
     def ticks(self) -> tuple[Ticks, list[str]]:
         """All of them."""
-        if not self._time:
-            raise InputError(f"{self._place}: it has no messages")
-        left, right = np.array(self._counts, dtype=np.int64).reshape(-1, 2).T.copy()
-        sides = (_unwrapped(left, self._bits), _unwrapped(right, self._bits))
         told = "counts as the driver gives them: so many a turn as the robot file says"
-        return Ticks(np.array(self._time), *sides), [told]
+        return self._ticks("it has no messages"), [told]
 
 
-class MultiArrays:
+class MultiArrays(_TwoCounts):
     """Two counters in one message without a stamp."""
 
     def __init__(self, path: Path, topic: str) -> None:
-        self._place = f"{path}: {topic}"
-        self._time = array("d")
-        self._counts = array("q")
+        super().__init__(f"{path}: {topic}")
         self._left_out: Counter[str] = Counter()
 
     def take(self, message: Message) -> None:
@@ -77,47 +70,36 @@ class MultiArrays:
         if len(message.content.data) != 2:
             self._left_out["not of two values, left and right"] += 1
             return
-        self._time.append(message.received / 1e9)
-        self._counts.extend(int(count) for count in message.content.data)
+        self._add(message.received / 1e9, *map(int, message.content.data))
 
     def ticks(self) -> tuple[Ticks, list[str]]:
         """All of them, and in words what was left out."""
-        if not self._time:
-            raise InputError(f"{self._place}: no message has two values, left and right")
-        left, right = np.array(self._counts, dtype=np.int64).reshape(-1, 2).T.copy()
-        return Ticks(np.array(self._time), left, right), left_out_words(self._left_out)
+        ticks = self._ticks("no message has two values, left and right")
+        return ticks, left_out_words(self._left_out)
 
 
-class Pairs:
+class Pairs(_TwoCounts):
     """A topic for each wheel, paired as the node does it; see `Pairing`."""
 
     def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:
-        self._place = f"{path}: {source.name}"
+        bits = _width(robot_file, 32 if source.kind == INT32 else 0)
+        super().__init__(f"{path}: {source.name}", bits)
         self._left = source.name.split(",")[0]
         window = float(robot_file.values["pairing_window"])  # type: ignore[arg-type]
         self._pairing = Pairing(int(1e9 * window))
-        self._bits = _width(robot_file, 32 if source.kind == INT32 else 0)
-        self._time = array("d")
-        self._counts = array("q")
 
     def take(self, message: Message) -> None:
         """Take a message."""
         side, count = int(message.topic != self._left), int(message.content.data)
         pair = self._pairing.take(side, count, message.received)
         if pair is not None:
-            self._time.append(message.received / 1e9)
-            self._counts.extend(pair)
+            self._add(message.received / 1e9, *pair)
 
     def ticks(self) -> tuple[Ticks, list[str]]:
         """All of them, and in words what was left out."""
-        if not self._time:
-            raise InputError(
-                f"{self._place}: no two counts within the pairing_window of the robot file"
-            )
-        left, right = np.array(self._counts, dtype=np.int64).reshape(-1, 2).T.copy()
-        sides = (_unwrapped(left, self._bits), _unwrapped(right, self._bits))
+        ticks = self._ticks("no two counts within the pairing_window of the robot file")
         left_out = Counter({"without a partner in time": self._pairing.unpaired})
-        return Ticks(np.array(self._time), *sides), left_out_words(left_out)
+        return ticks, left_out_words(left_out)
 
 
 def _width(robot_file: RobotFile, bits: int) -> int:

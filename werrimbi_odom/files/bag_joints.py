@@ -28,7 +28,7 @@ INTEGRATED = (
 UNTURNED = "the angles begin anew at each turn; they are unwrapped"
 
 
-class JointStates:
+class JointsCollector:
     """Wheels among the joints of a robot."""
 
     def __init__(self, path: Path, topic: str, robot_file: RobotFile) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, stamp_of
-from werrimbi_odom.files.contents import FIX, IMU, SCAN, Measured
+from werrimbi_odom.files.bag_contents import FIX, IMU, SCAN, Measured
 from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.local_plane import east_and_north
 from werrimbi_odom.files.robot_file import RobotFile

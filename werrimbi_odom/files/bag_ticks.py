@@ -10,15 +10,22 @@ from typing import Protocol
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, topic_in_words
-from werrimbi_odom.files.bag_counters import COUNTERS, Counters, MultiArrays, Pairs
-from werrimbi_odom.files.bag_joints import JointStates, wheel_names
+from werrimbi_odom.files.bag_contents import (
+    INT32,
+    INT64,
+    JOINT_STATE,
+    MULTI_ARRAY,
+    Contents,
+    Wheels,
+)
+from werrimbi_odom.files.bag_counters import CountersCollector, MultiArrays, Pairs
+from werrimbi_odom.files.bag_joints import JointsCollector, wheel_names
 from werrimbi_odom.files.bag_odometry import OdometryTurnedBack
-from werrimbi_odom.files.contents import INT32, INT64, JOINT_STATE, Contents, Wheels
+from werrimbi_odom.files.drivers import DRIVERS
 from werrimbi_odom.files.made_from_wheels import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Ticks
 
-MULTI_ARRAY = "std_msgs/msg/Int64MultiArray"
 KINDS = {
     "joint_state": JOINT_STATE,
     "int32_pair": INT32,
@@ -104,12 +111,12 @@ class TicksCollector(Protocol):
 def ticks_collector(path: Path, source: Wheels, robot_file: RobotFile) -> TicksCollector:
     """The collector for a kind of source."""
     if source.kind == JOINT_STATE:
-        return JointStates(path, source.name, robot_file)
+        return JointsCollector(path, source.name, robot_file)
     if source.kind == ODOMETRY:
         return OdometryTurnedBack(path, source.name, robot_file)
     robot_file.refuse_counts(f"{path}, {source.name}")
     if source.kind == MULTI_ARRAY:
         return MultiArrays(path, source.name)
-    if source.kind in COUNTERS:
-        return Counters(path, source, robot_file)
+    if source.kind in DRIVERS:
+        return CountersCollector(path, source, robot_file)
     return Pairs(path, source, robot_file)

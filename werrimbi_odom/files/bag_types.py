@@ -7,50 +7,13 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import Any
 
-ROS2_DEFINITIONS = {
-    "turtlebot3_msgs/msg/SensorState": """\
-std_msgs/Header header
-uint8 bumper
-float32 cliff
-float32 sonar
-float32 illumination
-uint8 led
-uint8 button
-bool torque
-int32 left_encoder
-int32 right_encoder
-float32 battery
-""",
-    "kobuki_ros_interfaces/msg/SensorState": """\
-std_msgs/Header header
-uint16 time_stamp
-uint8 bumper
-uint8 wheel_drop
-uint8 cliff
-uint16 left_encoder
-uint16 right_encoder
-int8 left_pwm
-int8 right_pwm
-uint8 buttons
-uint8 charger
-uint8 battery
-uint16[] bottom
-uint8[] current
-uint8 over_current
-uint16 digital_input
-uint16[] analog_input
-""",
-    "irobot_create_msgs/msg/WheelTicks": """\
-std_msgs/Header header
-int32 ticks_left
-int32 ticks_right
-""",
+from werrimbi_odom.files.drivers import DRIVERS
+
+DEFINITIONS = {
+    **{kind: driver.definition for kind, driver in DRIVERS.items()},
     "tf/msg/tfMessage": "geometry_msgs/TransformStamped[] transforms\n",
 }
 """As their packages have them; a sqlite3 bag before ROS 2 Iron holds no definitions."""
-ROS2_DEFINITIONS["kobuki_msgs/msg/SensorState"] = ROS2_DEFINITIONS[
-    "kobuki_ros_interfaces/msg/SensorState"
-]
 
 
 class Types:
@@ -79,7 +42,7 @@ class Types:
     def _register(self, kind: str) -> None:
         from rosbags.typesys import get_types_from_idl, get_types_from_msg
 
-        texts = (self._definitions.get(kind), ROS2_DEFINITIONS.get(kind))
+        texts = (self._definitions.get(kind), DEFINITIONS.get(kind))
         for text in filter(None, texts):
             with suppress(Exception):  # a definition that is broken raises anything
                 parse = get_types_from_idl if "module " in text else get_types_from_msg

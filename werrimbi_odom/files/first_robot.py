@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.drivers import DRIVERS
 from werrimbi_odom.model.pose import Floats
 
 SIDES = ("left", "right")
@@ -276,22 +277,13 @@ def _is_of(name: str, side: str) -> bool:
     )
 
 
-_DRIVERS = {
-    "turtlebot3_msgs/msg/SensorState": (4096.0, 0),
-    "kobuki_msgs/msg/SensorState": (2578.33, 16),
-    "kobuki_ros_interfaces/msg/SensorState": (2578.33, 16),
-    "irobot_create_msgs/msg/WheelTicks": (508.8, 0),
-}
-"""Counts a turn, and the width of the counters, of drivers that are sold with their robots."""
-
-
 def with_driver(first: FirstRobot, kind: str) -> FirstRobot:
     """What a driver's message says by its type."""
-    if kind not in _DRIVERS:
+    driver = DRIVERS.get(kind)
+    if driver is None:
         return first
-    ticks, bits = _DRIVERS[kind]
     told = {**(first.told or {}), "ticks": f"of every robot that sends {kind}"}
-    return replace(first, ticks=ticks, bits=bits, told=told)
+    return replace(first, ticks=driver.ticks, bits=driver.narrow, told=told)
 
 
 def with_steps(first: FirstRobot, angles: Sequence[Floats]) -> FirstRobot:

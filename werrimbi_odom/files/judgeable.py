@@ -9,7 +9,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.held import words_about_held
+from werrimbi_odom.files.repeated_poses import words_about_held
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.encoder import CLOCK_JUMP
 

@@ -12,8 +12,8 @@ from typing import Literal
 from werrimbi_odom.errors import InputError, nearest
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.stretch import PieceTolerance
 
 Kind = Literal["float", "integer", "boolean", "string", "strings"]
 Value = float | int | bool | str | tuple[str, ...]

@@ -49,8 +49,8 @@ from werrimbi_odom.files.yaml_effects import with_effects
 from werrimbi_odom.files.yaml_text import line_of, load, plain, read_text
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.stretch import PieceTolerance
 
 NODE = "odom_node"
 PARAMETER_KEY = "ros__parameters"

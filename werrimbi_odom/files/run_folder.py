@@ -11,8 +11,8 @@ import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import EXACT, Reference, Run, Ticks, counts_of
-from werrimbi_odom.files.table import Table, read_table
-from werrimbi_odom.files.text import readable
+from werrimbi_odom.files.small_text import readable
+from werrimbi_odom.files.table import CsvTable, read_table
 from werrimbi_odom.model.encoder import Counts
 from werrimbi_odom.model.pose import Floats
 
@@ -50,7 +50,7 @@ def read_run_folder(path: str | Path) -> Run:
     )
 
 
-def _cut(table: Table) -> tuple[str, ...]:
+def _cut(table: CsvTable) -> tuple[str, ...]:
     """That a file ends in mid-row, as where the power failed."""
     if not table.cut:
         return ()
@@ -64,7 +64,7 @@ def _ticks(path: Path) -> tuple[Ticks, tuple[str, ...]]:
     return Ticks(_times(table), left, right, channels), _cut(table)
 
 
-def _times(table: Table) -> Floats:
+def _times(table: CsvTable) -> Floats:
     """Stamps; a row without one cannot be placed, so that is an error."""
     times = table.column("t_s")
     if not (np.abs(times) < LATEST).all():
@@ -81,7 +81,7 @@ def _not_a_time(text: str) -> str:
     return "" if abs(value) < LATEST else f"{text!r} is not a time in seconds; is it in ns, or ms?"
 
 
-def _counts(table: Table, name: str) -> Counts:
+def _counts(table: CsvTable, name: str) -> Counts:
     """Counters; `nan` and `inf` stand for a reading that failed, and the model counts them."""
     values = table.column(name)
     if np.isnan(values).any():
@@ -118,7 +118,7 @@ def read_reference(path: Path) -> tuple[Reference, tuple[str, ...]]:
     return Reference(_times(table), x, y, yaw, *sigmas), _cut(table)
 
 
-def _measured(table: Table, name: str, minimum: float = -math.inf) -> Floats:
+def _measured(table: CsvTable, name: str, minimum: float = -math.inf) -> Floats:
     values = table.column(name)
     if np.isinf(values).any() or (values < minimum).any():
         table.refuse_where(name, lambda text: _not_measured(text, minimum))

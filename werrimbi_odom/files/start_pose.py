@@ -15,12 +15,12 @@ from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, Pose, between, compose
-from werrimbi_odom.model.shown import Path, axle_of, shown
+from werrimbi_odom.model.reference_view import View
+from werrimbi_odom.model.seen_by_reference import Path, axle_of, shown
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
-from werrimbi_odom.model.view import View
 
 
-class Start(NamedTuple):
+class StartPose(NamedTuple):
     """The pose at the first row of ticks, and in words where it comes from."""
 
     pose: Pose
@@ -35,7 +35,7 @@ def start_pose(run: Run, robot_file: RobotFile) -> Pose:
     return start_of(run, robot_file).pose
 
 
-def start_of(run: Run, robot_file: RobotFile) -> Start:
+def start_of(run: Run, robot_file: RobotFile) -> StartPose:
     """Where the axle is when the reference shows its first pose; the origin without a reference.
 
     Where the robot file says that the reference measures another point or axis, a mirrored frame or
@@ -67,11 +67,11 @@ def start_of(run: Run, robot_file: RobotFile) -> Start:
         first_pose = compose(start, Pose(view.ahead, view.left, view.yaw))
     elif min(view.delay, view.delay + view.heading_delay) < 0.0:
         start = _brought_back(run, robot_file, start, first_pose, right_handed)
-    return Start(start, told + _seen_how(view), _mirrored(first_pose, view))
+    return StartPose(start, told + _seen_how(view), _mirrored(first_pose, view))
 
 
-def _origin(told: str, view: View) -> Start:
-    return Start(Pose(), told, _mirrored(Pose(view.ahead, view.left, view.yaw), view))
+def _origin(told: str, view: View) -> StartPose:
+    return StartPose(Pose(), told, _mirrored(Pose(view.ahead, view.left, view.yaw), view))
 
 
 def _right_handed(reference: Reference, view: View) -> Reference:

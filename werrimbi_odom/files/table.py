@@ -34,7 +34,7 @@ _EMPTY = re.compile(r'(?<=,)[^\S\n]*(?:"")?[^\S\n]*(?=,|\n|\Z)|\A[^\S\n]*(?:"")?
 
 
 @dataclass(frozen=True)
-class Table:
+class CsvTable:
     """The columns of a CSV file; empty cells are NaN."""
 
     path: Path
@@ -77,7 +77,7 @@ class Table:
                 raise InputError(f"{self.path}, line {line}, column {name}: {complaint}")
 
 
-def read_table(path: Path, required: Sequence[str], filled: Sequence[str]) -> Table:
+def read_table(path: Path, required: Sequence[str], filled: Sequence[str]) -> CsvTable:
     """Read a CSV file of numbers whose first line names the columns, in any order.
 
     A last line without an end that is no whole row (the power failed as it was written) is left
@@ -106,7 +106,7 @@ def read_table(path: Path, required: Sequence[str], filled: Sequence[str]) -> Ta
         raise InputError(f"{path} cannot be read: {error.strerror}") from error
     except UnicodeDecodeError:
         raise _not_text(path) from None
-    return Table(path, names, values, cut)
+    return CsvTable(path, names, values, cut)
 
 
 def _refuse_too_large(path: Path) -> None:

@@ -13,9 +13,9 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.fleet.code import PACKAGE, code_here, doubts, refusal
-from werrimbi_odom.fleet.one import Task, bug, failed
+from werrimbi_odom.fleet.code_version import PACKAGE, code_here, doubts, refusal
 from werrimbi_odom.fleet.parcel import packed
+from werrimbi_odom.fleet.robot_task import Task, bug, failed
 from werrimbi_odom.report.fleet.rows import Row
 
 if TYPE_CHECKING:
@@ -137,7 +137,7 @@ def _work() -> Callable[[bytes, dict[str, str]], tuple[Any, str]]:
 
     def work(data: bytes, wanted: dict[str, str]) -> tuple[Any, str]:
         try:
-            from werrimbi_odom.fleet.code import code_here, refusal
+            from werrimbi_odom.fleet.code_version import code_here, refusal
             from werrimbi_odom.fleet.parcel import row_of_parcel
         except ImportError as error:
             return None, f"cannot import werrimbi_odom ({error})"
@@ -152,7 +152,7 @@ def _probe() -> Callable[[], dict[str, str]]:
 
     def probe() -> dict[str, str]:
         try:
-            from werrimbi_odom.fleet.code import code_here
+            from werrimbi_odom.fleet.code_version import code_here
 
             return dict(code_here())
         except ImportError as error:

@@ -3,7 +3,8 @@
 """Poses, their errors and the pieces along the steps of a whole run, in arrays.
 
 Two ways lead to the same figures: `march`, step by step as machine code, where there is some and
-the run is long enough for it to pay; and array operations here, after `cutting` has cut the run.
+the run is long enough for it to pay; and array operations here, for what
+`pieces_recorded` has cut.
 """
 
 from __future__ import annotations
@@ -24,14 +25,14 @@ from werrimbi_odom.model.covariance import (
     piece_covariance,
     plus,
 )
-from werrimbi_odom.model.cutting import Cut, cut
+from werrimbi_odom.model.effects_over_run import AfterEffects
 from werrimbi_odom.model.march import March, Marching, march, sums_of
 from werrimbi_odom.model.moments import PathMoments
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
-from werrimbi_odom.model.passes import Driven
+from werrimbi_odom.model.pieces_online import NOTHING, PieceRule
+from werrimbi_odom.model.pieces_recorded import Cut, cut
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.stretch import NOTHING, PieceRule
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece
 
 WORTH_COMPILING = 200_000
@@ -42,7 +43,7 @@ Lost = Mapping[int, WheelTravel[float]]
 """Variances of travel that no counter saw [m²], by the step before which it was lost."""
 
 
-class Course(NamedTuple):
+class PathInPieces(NamedTuple):
     """n steps, of m pieces."""
 
     poses: Floats
@@ -64,9 +65,9 @@ def course_of(
     rule: PieceRule,
     start: Pose,
     errors: Uncertainty[float],
-    steps: Driven,
+    steps: AfterEffects,
     lost: Lost,
-) -> Course:
+) -> PathInPieces:
     """Go along all steps from a start pose with its errors."""
     machine = machine_for(steps.travel.left.size) if errors.moments is None else None
     if machine is not None:
@@ -85,9 +86,9 @@ def _marched(
     rule: PieceRule,
     start: Pose,
     covariance: PoseCovariance[float],
-    steps: Driven,
+    steps: AfterEffects,
     lost: Lost,
-) -> Course:
+) -> PathInPieces:
     count = steps.travel.left.size
     poses, covariances = np.empty((3, count + 1)), np.empty((6, count + 1))
     poses[:, 0], covariances[:, 0] = start, covariance
@@ -123,7 +124,9 @@ def _marched(
         )
     if pieces:
         sums[:, pieces - 1] = sums_of(at.stretch)
-    return Course(poses, covariances, None, starts[:pieces].copy(), sums[:, :pieces].copy(), reset)
+    return PathInPieces(
+        poses, covariances, None, starts[:pieces].copy(), sums[:, :pieces].copy(), reset
+    )
 
 
 def _in_arrays(
@@ -131,9 +134,9 @@ def _in_arrays(
     rule: PieceRule,
     start: Pose,
     errors: Uncertainty[float],
-    steps: Driven,
+    steps: AfterEffects,
     lost: Lost,
-) -> Course:
+) -> PathInPieces:
     poses = _integrated(start, steps.motion)
     count = steps.travel.left.size
     broken = np.zeros(count, dtype=np.bool_)
@@ -150,7 +153,7 @@ def _in_arrays(
         place[step]: PoseCovariance(*(float(c[place[step]]) for c in starts.covariance))
         for step in lost
     }
-    return Course(poses, covariances, shift, pieces.start, sums, reset)
+    return PathInPieces(poses, covariances, shift, pieces.start, sums, reset)
 
 
 def _with_lost(

@@ -13,8 +13,8 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.drive import Drive, RawStep, Span
 from werrimbi_odom.model.drive_memory import DriveMemory
 from werrimbi_odom.model.drive_of_run import drive_of_run
+from werrimbi_odom.model.effects_over_run import after_effects
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, wheels_to_body
-from werrimbi_odom.model.passes import after_effects
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
 

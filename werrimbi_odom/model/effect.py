@@ -11,7 +11,7 @@ Laws that every effect keeps (`check_effect` holds them against it, a user's own
 values it is the exact identity; a step's result depends on that step's row alone; it changes none
 of its arguments; it is finite at the bounds; splitting a step changes nothing; a turn that depends
 on the heading does so gently; a drive comes out alike live, recorded and predicted. What it looks
-at is found by running it (`werrimbi_odom.model.passes`), and need not be declared.
+at is found by running it (`werrimbi_odom.model.effects_over_run`), and need not be declared.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from typing import Any, Literal
 from werrimbi_odom.model.declared import Parameter, Sketch, Twin
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
-from werrimbi_odom.model.view import View
+from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.wiring import Wiring
 
 __all__ = [

@@ -3,7 +3,8 @@
 """A recorded run, step by step in single numbers: the lines that `compiled` makes machine code of.
 
 It is what `Odometer` does at each message, by the same functions and so to the last bit. In plain
-Python it would take as long as the odometer; for that case `cutting` and `trajectory` have arrays.
+Python it would take as long as the odometer; for that case `pieces_recorded` and `trajectory` have
+arrays.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ from werrimbi_odom.model.covariance import (
     path_noise_of,
 )
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
+from werrimbi_odom.model.pieces_online import NOTHING, PieceRule, PieceSums, extended
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import WheelNoise
-from werrimbi_odom.model.stretch import NOTHING, PieceRule, Stretch, extended
 
 
 class Marching(NamedTuple):
@@ -37,7 +38,7 @@ class Marching(NamedTuple):
     """Of the pose there."""
     earlier: float
     """Travel u of the pieces before [m]."""
-    stretch: Stretch
+    stretch: PieceSums
 
 
 def march(
@@ -104,7 +105,7 @@ March = Callable[..., tuple[Marching, int]]
 """`march`, or machine code of it."""
 
 
-def sums_of(stretch: Stretch) -> tuple[float, float, float, float, float]:
+def sums_of(stretch: PieceSums) -> tuple[float, float, float, float, float]:
     """What a piece has come to: travel of the wheels, and motion along, sideways and in turn."""
     along, sideways, turn = stretch.motion
     return stretch.left, stretch.right, along, sideways, turn

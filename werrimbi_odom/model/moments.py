@@ -82,12 +82,14 @@ class PathMoments(NamedTuple):
         What a filter that is given the nominal pose must be told; contains the square of the
         mean shift.
         """
-        return _as_covariance(self, self.absolute, self.square)
-
-    def about_mean(self) -> PoseCovariance[Any]:
-        """Covariance proper: about the mean of the true pose, not about the nominal one."""
-        shift = self.error
-        return _as_covariance(self, self.absolute - abs(shift) ** 2, self.square - shift * shift)
+        return PoseCovariance(
+            0.5 * (self.absolute + _real(self.square)),
+            0.5 * _imag(self.square),
+            _real(self.with_heading),
+            0.5 * (self.absolute - _real(self.square)),
+            _imag(self.with_heading),
+            self.heading_variance,
+        )
 
 
 def from_covariance(covariance: PoseCovariance[float] = CERTAIN) -> PathMoments:
@@ -178,17 +180,6 @@ def chained(path: PathMoments, piece: PieceMoments, yaw: Real) -> PathMoments:
         + path.conjugate_with_spin
         + _conj(facing) * conjugate_q_spin,
         variance + piece.heading_variance,
-    )
-
-
-def _as_covariance(path: PathMoments, absolute: Real, square: Complex) -> PoseCovariance[Any]:
-    return PoseCovariance(
-        0.5 * (absolute + _real(square)),
-        0.5 * _imag(square),
-        _real(path.with_heading),
-        0.5 * (absolute - _real(square)),
-        _imag(path.with_heading),
-        path.heading_variance,
     )
 
 

@@ -19,9 +19,9 @@ from werrimbi_odom.model.encoder import Encoder, EncoderLimits, EncoderTally, Wh
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
 from werrimbi_odom.model.of_floats import of_floats
 from werrimbi_odom.model.pieces import OpenPiece, Piece
+from werrimbi_odom.model.pieces_online import PieceRule, PieceSums, PieceTolerance
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.stretch import PieceRule, PieceTolerance, Stretch
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known
 
 _displacement = of_floats(displacement)
@@ -64,7 +64,7 @@ class Estimate(NamedTuple):
     """Of the open piece."""
     errors_start: Uncertainty[float]
     """Of the pose there."""
-    stretch: Stretch
+    stretch: PieceSums
     """The open piece as far as it has been driven."""
 
     @property
@@ -287,7 +287,7 @@ def _noise_of(robot: Robot) -> tuple[object, ...]:
 
 
 def errors_along(
-    robot: Robot, start: Pose, errors: Uncertainty[float], stretch: Stretch, pose: Pose
+    robot: Robot, start: Pose, errors: Uncertainty[float], stretch: PieceSums, pose: Pose
 ) -> Uncertainty[float]:
     """Errors of a pose to which a stretch has led, from those of the pose at its start."""
     noise = _path_noise(robot.wheel_noise, stretch.left, stretch.right)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.model.driving import DrivenStep
-from werrimbi_odom.model.phases import Phase, Rows, Sample, Turning, learnable
+from werrimbi_odom.model.phases import HeadingRows, Phase, Sample, Turning, learnable
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -39,7 +39,7 @@ class PhaseLearner:
 
     def __init__(self, robot: Robot) -> None:
         self.effects = learnable(robot)
-        self._rows = Rows(self.effects)
+        self._rows = HeadingRows(self.effects)
         self._turning = Turning(robot, self.effects)
         self._nodes: deque[_Node] = deque(maxlen=self.MEMORY)
         self._waiting: deque[tuple[int, float, float]] = deque(maxlen=self.MEMORY)

@@ -25,9 +25,9 @@ import numpy as np
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.driving import features
 from werrimbi_odom.model.effect import AppliedEffect, wiring_of
+from werrimbi_odom.model.effects_over_run import after_effects
 from werrimbi_odom.model.encoder import Counts, EncoderLimits
 from werrimbi_odom.model.motion import Number, WheelTravel
-from werrimbi_odom.model.passes import after_effects
 from werrimbi_odom.model.pose import Floats, wrap
 from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
@@ -156,7 +156,7 @@ class Sample:
     """Turn and slopes so far, then both wheels' angles."""
 
 
-class Rows:
+class HeadingRows:
     """Rows of least squares from samples, one for each `STRIDE` of a wheel."""
 
     def __init__(self, effects: tuple[AppliedEffect, ...]) -> None:
@@ -226,7 +226,7 @@ def phases_of_run(
     effects = learnable(robot)
     left, right = wiring_of(robot.effects).wheels(left, right)
     steps = wheel_steps(robot, time, left, right, limits)
-    rows = Rows(effects)
+    rows = HeadingRows(effects)
     if steps.first_row < 0 or steps.time.size == 0:
         return rows.phases()
     taken = np.concatenate([[steps.first_row], steps.row])

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The pieces that a drive is cut into: lines, arcs and spins (`stretch` has where they end)."""
+"""The pieces that a drive is cut into: lines, arcs and spins; `pieces_online` ends them."""
 
 from __future__ import annotations
 
@@ -11,8 +11,8 @@ from typing import Literal
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.of_floats import of_floats
+from werrimbi_odom.model.pieces_online import PieceRule, PieceSums, extended
 from werrimbi_odom.model.pose import Pose
-from werrimbi_odom.model.stretch import PieceRule, Stretch, extended
 from werrimbi_odom.model.uncertainty import Uncertainty
 
 PieceKind = Literal["line", "arc", "spin"]
@@ -78,7 +78,7 @@ class OpenPiece:
     errors_start: Uncertainty[float]
     travelled: float = 0.0
     """Travel u of the earlier pieces, since the pose was last set [m]."""
-    stretch: Stretch = Stretch()  # noqa: RUF009 - an immutable value
+    stretch: PieceSums = PieceSums()  # noqa: RUF009 - an immutable value
 
     @property
     def travelled_after(self) -> float:

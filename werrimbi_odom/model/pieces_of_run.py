@@ -10,7 +10,7 @@ from typing import overload
 
 import numpy as np
 
-from werrimbi_odom.model.course import Course
+from werrimbi_odom.model.course import PathInPieces
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.pieces import Piece, kind_of
@@ -28,12 +28,12 @@ class PiecesOfRun(Sequence[Piece]):
     track : float
     time : ndarray, shape (n + 1,)
         Stamps before the first step and after each [s].
-    course : Course
+    course : PathInPieces
     """
 
     track: float
     time: Floats
-    course: Course
+    course: PathInPieces
 
     def __len__(self) -> int:
         return self.course.start.size

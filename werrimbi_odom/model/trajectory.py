@@ -15,15 +15,15 @@ from werrimbi_odom.model.covariance import CERTAIN, PoseCovariance
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driving import acts, features
 from werrimbi_odom.model.effect import wiring_of
+from werrimbi_odom.model.effects_over_run import AfterEffects, driven
 from werrimbi_odom.model.encoder import Counts, EncoderLimits, EncoderTally
 from werrimbi_odom.model.motion import WheelTravel, wheels_to_body
-from werrimbi_odom.model.passes import Driven, driven
 from werrimbi_odom.model.pieces import Piece
 from werrimbi_odom.model.pieces_of_run import PiecesOfRun
+from werrimbi_odom.model.pieces_online import PieceRule, PieceTolerance
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.recorded_counts import lost_travel, wheel_steps
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.stretch import PieceRule, PieceTolerance
 from werrimbi_odom.model.uncertainty import known
 
 
@@ -120,10 +120,10 @@ def _driven(
     first_counts: tuple[float, float],
     channels: Mapping[str, Span[Floats]],
     start: Pose,
-) -> Driven:
+) -> AfterEffects:
     """Travel and motion of the steps; nothing is worked out for effects that are not there."""
     if not acts(robot):
-        return Driven(raw, wheels_to_body(raw, robot.track))
+        return AfterEffects(raw, wheels_to_body(raw, robot.track))
     drive = features(robot, duration, raw, first_counts, channels)
     return driven(robot, raw, drive, start)
 

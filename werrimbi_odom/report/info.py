@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any
 
-from werrimbi_odom.files.contents import SCAN, Measured
+from werrimbi_odom.files.bag_contents import SCAN, Measured
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.spans import Driven
-from werrimbi_odom.inference.recorded import Held, Info, can_tell, measures_of
+from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of
 from werrimbi_odom.report.document import Document, Paragraph, paragraphs
 from werrimbi_odom.report.numbers import listed
 from werrimbi_odom.report.phrases import left_out_json, left_out_words

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 
 from werrimbi_odom.files.run import Reference, Run
-from werrimbi_odom.files.start_pose import Start
+from werrimbi_odom.files.start_pose import StartPose
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.pose import Floats, Pose, between, compose, wrap
-from werrimbi_odom.model.shown import Path as ShownPath
+from werrimbi_odom.model.seen_by_reference import Path as ShownPath
 from werrimbi_odom.model.trajectory import Trajectory
 from werrimbi_odom.report.numbers import counted
 
@@ -46,7 +46,7 @@ class Reckoning:
     """A run, dead reckoned, and everything that is told of it."""
 
     run: Run
-    start: Start
+    start: StartPose
     driven: Trajectory
     shown: ShownPath
     """What the reference is predicted to show of it."""
@@ -143,7 +143,7 @@ class Reckoning:
 
 
 def reckoning_of(
-    run: Run, start: Start, driven: Trajectory, shown: ShownPath, learnt: tuple[str, ...] = ()
+    run: Run, start: StartPose, driven: Trajectory, shown: ShownPath, learnt: tuple[str, ...] = ()
 ) -> Reckoning:
     """Work out the figures of a run that was dead reckoned from `start`.
 

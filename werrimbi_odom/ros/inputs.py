@@ -27,7 +27,7 @@ from sensor_msgs.msg import JointState
 from std_msgs.msg import Int32, Int64, Int64MultiArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.pairing import Pairing
+from werrimbi_odom.files.counter_pairs import Pairing
 from werrimbi_odom.files.parameters import Value, robot_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros.health import Health

@@ -23,8 +23,8 @@ from werrimbi_odom.files.other_names import is_of_diff_drive
 from werrimbi_odom.files.parameters import Value
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.stretch import PieceTolerance
 from werrimbi_odom.ros.inputs import robot_at_counters
 from werrimbi_odom.ros.rehearsal import rehearse
 

@@ -8,8 +8,8 @@ import math
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.odometer import Estimate, Odometer
+from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.stretch import PieceTolerance
 
 _TURNS = ((0.0, 0.0), (1.0, 1.0), (1.0, -1.0), (0.5, 2.0), (-1.0, -1.0), (100.0, 100.0))
 """Of the left and the right wheel, a second each: rest, line, spin, arc, reversal, a fast line."""

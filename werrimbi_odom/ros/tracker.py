@@ -15,10 +15,10 @@ from werrimbi_odom.model.driving import DrivenStep
 from werrimbi_odom.model.encoder import EncoderLimits, EncoderTally
 from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.pieces import Piece
+from werrimbi_odom.model.pieces_online import PieceTolerance
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.slip import Missed
-from werrimbi_odom.model.stretch import PieceTolerance
 from werrimbi_odom.ros.rehearsal import is_finite
 
 

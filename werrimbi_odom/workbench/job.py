@@ -21,7 +21,7 @@ from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
-    from werrimbi_odom.files.asked import Recordings
+    from werrimbi_odom.files.recordings import Recordings
     from werrimbi_odom.model.robot import Robot
 
 

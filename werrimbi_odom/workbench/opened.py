@@ -8,7 +8,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from werrimbi_odom.api.verbs import compared
-from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.judged_legs import Prepared
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of

@@ -12,7 +12,7 @@ from __future__ import annotations
 import asyncio
 from typing import Any
 
-from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.workbench.job import Job
 from werrimbi_odom.workbench.saving import Target
 from werrimbi_odom.workbench.tab import Shared

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 from werrimbi_odom.api.verbs import added as added_by
 from werrimbi_odom.api.verbs import diagnosed as diagnosis_of
-from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.diagnosis.response import before_after
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.inference.manoeuvres.told import Told

@@ -13,7 +13,7 @@ from werrimbi_odom.effects.contract.laws import LAWS
 from werrimbi_odom.effects.contract.rehearsal import Rehearsal
 from werrimbi_odom.effects.page import SECTIONS, page_of
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.model.view import View
+from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.wiring import Wiring
 
 _NEEDED = ("Formula", "Signature", "Ruler")

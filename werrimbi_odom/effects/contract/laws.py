@@ -13,8 +13,8 @@ from werrimbi_odom.effects.contract.demands import Values, corners, demand, sett
 from werrimbi_odom.effects.contract.rehearsal import TRACK, Rehearsal, rows, seal, sealed
 from werrimbi_odom.effects.contract.three_ways import drives_alike
 from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.effects_over_run import PLACE, watched
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
-from werrimbi_odom.model.passes import PLACE, watched
 from werrimbi_odom.model.pose import Floats
 
 Moved = WheelTravel[Floats] | BodyMotion[Floats]

@@ -4,7 +4,7 @@
 
 Live a step knows the pose that it begins at. A recorded run is done at once, and a predicted one
 from the poses that were measured: there the pose is told in further passes, to laws that look at
-it. What a law looks at is noted while it runs (`werrimbi_odom.model.passes`).
+it. What a law looks at is noted while it runs (`werrimbi_odom.model.effects_over_run`).
 """
 
 from __future__ import annotations
@@ -15,8 +15,14 @@ from werrimbi_odom.effects.contract.demands import demand, settings, told
 from werrimbi_odom.effects.contract.rehearsal import RADIUS, TRACK, Rehearsal
 from werrimbi_odom.model.driving import Driving, features
 from werrimbi_odom.model.effect import AppliedEffect, Effect
+from werrimbi_odom.model.effects_over_run import (
+    AfterEffects,
+    Headings,
+    Places,
+    driven,
+    driven_from_measured,
+)
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
-from werrimbi_odom.model.passes import Driven, Headings, Places, driven, driven_from_measured
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
 
@@ -54,11 +60,11 @@ def _measured(poses: Floats) -> tuple[Headings, Places]:
     """What is told in the passes where the `poses` (3, n) of some steps were measured."""
     first = np.arange(poses.shape[1]) // _EVERY * _EVERY
 
-    def headings(found: Driven) -> Floats:
+    def headings(found: AfterEffects) -> Floats:
         gone = np.cumsum(found.motion.turn) - found.motion.turn
         return np.asarray(poses[2, first] + gone - gone[first])
 
-    def places(found: Driven, heading: Floats) -> tuple[Floats, Floats]:
+    def places(found: AfterEffects, heading: Floats) -> tuple[Floats, Floats]:
         x, y = (np.cumsum(part) - part for part in displacement(found.motion, heading))
         return poses[0, first] + x - x[first], poses[1, first] + y - y[first]
 

@@ -37,7 +37,7 @@ from werrimbi_odom.inference.linear import ScoreTest, score_test_of_products
 from werrimbi_odom.inference.rules import FLOOR_CELL, NEIGHBOUR
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.model.view import View
+from werrimbi_odom.model.reference_view import View
 
 BATCH = 2_000_000
 """Numbers of legs times columns that go through the filter at once."""

@@ -10,8 +10,8 @@ import numpy as np
 
 from werrimbi_odom.inference.fitting.candidates import Candidate
 from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.effects_over_run import watched
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
-from werrimbi_odom.model.passes import watched
 from werrimbi_odom.model.pose import Floats
 
 

@@ -21,11 +21,11 @@ from werrimbi_odom.model.covariance import (
 )
 from werrimbi_odom.model.driving import acts
 from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.effects_over_run import AfterEffects, driven_from_measured
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
-from werrimbi_odom.model.passes import Driven, driven_from_measured
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.view import View
 
 
 @dataclass(frozen=True, slots=True)
@@ -161,10 +161,10 @@ def _path(
         return _from_motion(raw, wheels_to_body(raw, robot.track))
     drive = runs.drive(looked_at or robot)
 
-    def headings(found: Driven) -> Floats:
+    def headings(found: AfterEffects) -> Floats:
         return headings_of(_from_motion(*found), runs, view, start_yaws)
 
-    def places(found: Driven, heading: Floats) -> tuple[Floats, Floats]:
+    def places(found: AfterEffects, heading: Floats) -> tuple[Floats, Floats]:
         return places_of(_from_motion(*found), heading, runs, view)
 
     return _from_motion(*driven_from_measured(robot, raw, drive, headings, places))

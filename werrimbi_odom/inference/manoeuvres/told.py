@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
-from werrimbi_odom.files.asked import Recordings
+from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.changes.between import Moved, changes_between
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.evidence import Dependence

@@ -27,9 +27,9 @@ from werrimbi_odom.inference.set_up.robot import mount_of
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driving import features
 from werrimbi_odom.model.effect import after_wheel_effects, view_of, wiring_of
+from werrimbi_odom.model.effects_over_run import PLACE, watched
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.motion import WheelTravel
-from werrimbi_odom.model.passes import PLACE, watched
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot

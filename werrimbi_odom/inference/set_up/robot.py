@@ -14,8 +14,8 @@ from werrimbi_odom.inference.set_up.explanation import Setting
 from werrimbi_odom.inference.set_up.factors import is_ordinary
 from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding
 from werrimbi_odom.model.effect import AppliedEffect, view_of, wiring_of
+from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.view import View
 
 
 def with_findings(

@@ -11,19 +11,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from werrimbi_odom.inference.adding.added import Added
+from werrimbi_odom.report.legs_figure import clouds_of_legs
 from werrimbi_odom.report.style import (
     BLUE,
     GREEN,
     GREY,
     INK,
-    MARKS,
     ORANGE,
     PAPER,
     escaped,
     paled,
     plain,
-    small,
-    spread_and_extremes,
 )
 
 if TYPE_CHECKING:
@@ -31,7 +29,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, slots=True)
-class Step:
+class ErrorOfModel:
     """The error of one model on the way."""
 
     name: str
@@ -44,13 +42,13 @@ class Step:
     """m, of positions; rad, of headings where nothing else was measured."""
 
 
-def steps_of(added: Added) -> list[Step]:
+def steps_of(added: Added) -> list[ErrorOfModel]:
     """As given, calibrated alone, and with the effect."""
     names = [("as given", "before"), (f"+ {added.name.replace(',', ', ')}", "after")]
     if not added.is_calibration:
         names.insert(1, ("calibrated", "calibrated"))
     return [
-        Step(
+        ErrorOfModel(
             name,
             added.train.error(which),
             added.holdout.error(which),
@@ -60,7 +58,7 @@ def steps_of(added: Added) -> list[Step]:
     ]
 
 
-def error_falling_figure(steps: Sequence[Step], floor: float = float("nan")) -> go.Figure:
+def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float = float("nan")) -> go.Figure:
     """One pair of bars for each step; a line where the noise of the final model ends.
 
     Parameters
@@ -119,29 +117,11 @@ def error_falling_figure(steps: Sequence[Step], floor: float = float("nan")) -> 
 
 def held_out_legs_figure(added: Added) -> go.Figure:
     """Errors of the held-out legs along and sideways, as given and with the effect."""
-    import plotly.graph_objects as go
-
-    figure = go.Figure()
-    for name, legs, colour, symbol in (
-        ("as given", added.holdout.before, ORANGE, "x"),
-        (f"with {added.name.replace(',', ', ')}", added.holdout.after, BLUE, "circle"),
-    ):
-        error = 1e3 * legs.errors.error[~legs.outlier]
-        error = error[np.isfinite(error[:, :2]).all(axis=1)]
-        if error.size == 0:
-            continue
-        size = np.hypot(error[:, 0], error[:, 1])
-        drawn = error[spread_and_extremes(size, MARKS // 2)]
-        figure.add_scatter(
-            x=small(drawn[:, 0]),
-            y=small(drawn[:, 1]),
-            mode="markers",
-            name=f"{name}: median {np.median(size):.2f} mm",
-            marker={"color": paled(colour, 0.75), "symbol": symbol, "size": 8},
-            hovertemplate=(
-                f"{escaped(name)}<br>along %{{x:.2f}} mm<br>sideways %{{y:.2f}} mm<extra></extra>"
-            ),
+    clouds = [
+        (name, legs.errors.error[~legs.outlier], colour, symbol)
+        for name, legs, colour, symbol in (
+            ("as given", added.holdout.before, ORANGE, "x"),
+            (f"with {added.name.replace(',', ', ')}", added.holdout.after, BLUE, "circle"),
         )
-    figure.update_xaxes(title="error along [mm]")
-    figure.update_yaxes(title="error sideways [mm]", scaleanchor="x", scaleratio=1)
-    return plain(figure, height=560)
+    ]
+    return clouds_of_legs(clouds, digits=2, height=560)

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """The recorded drive that ships with the package: what it is, and the command that makes it.
 
-    python -m werrimbi_odom.simulation.make_demo_recording [FOLDER]
+    python docs/make_demo_recording.py [FOLDER]
 
 writes FOLDER/square (ticks.csv, reference.csv, robot.yaml) and FOLDER/square_bag (the same drive as
 a rosbag2); FOLDER is by default werrimbi_odom/recordings of this checkout, and is overwritten.
@@ -14,12 +14,17 @@ import shutil
 import sys
 from pathlib import Path
 
-from .bag import write_bag
-from .manoeuvres import chain, figure_eight, square
-from .recorder import record
-from .recording import Recording, write_run
-from .robot import TrueRobot
-from .robot_file import write_robot_file
+from werrimbi_odom.simulation import (
+    Recording,
+    TrueRobot,
+    chain,
+    figure_eight,
+    record,
+    square,
+    write_robot_file,
+    write_run,
+)
+from werrimbi_odom.simulation.bag import write_bag
 
 ROBOT = TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
 """True geometry, and the wheel noise that the paper measured on its robot."""
@@ -44,4 +49,10 @@ def make(folder: Path) -> None:
 
 
 if __name__ == "__main__":
-    make(Path(sys.argv[1] if len(sys.argv) > 1 else Path(__file__).parents[1] / "recordings"))
+    make(
+        Path(
+            sys.argv[1]
+            if len(sys.argv) > 1
+            else Path(__file__).parents[1] / "werrimbi_odom/recordings"
+        )
+    )

@@ -17,7 +17,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import IO, Any, NamedTuple
 
-from werrimbi_odom.files.bag_scan_sqlite import described, rows_of
+from werrimbi_odom.files.unfinished_sqlite import described, rows_of
 
 MCAP_MAGIC = b"\x89MCAP0\r\n"
 ROS1_MAGIC = b"#ROSBAG V2.0\n"

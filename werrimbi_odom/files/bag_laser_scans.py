@@ -10,7 +10,7 @@ import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, stamp_of
-from werrimbi_odom.files.contents import Measured
+from werrimbi_odom.files.bag_contents import Measured
 from werrimbi_odom.files.frames import Chain
 from werrimbi_odom.files.mounting import Mount, MountingCollector
 from werrimbi_odom.files.run import Reference

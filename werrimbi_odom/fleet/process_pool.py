@@ -16,7 +16,7 @@ from multiprocessing.connection import wait as wait_for
 from threading import Thread
 from typing import TypeVar
 
-from werrimbi_odom.fleet.one import Task, bug, failed, row_of
+from werrimbi_odom.fleet.robot_task import Task, bug, failed, row_of
 from werrimbi_odom.report.fleet.rows import Row
 
 Asked = TypeVar("Asked")

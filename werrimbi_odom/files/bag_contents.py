@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from werrimbi_odom.files.bag import Bag, Topic
+from werrimbi_odom.files.drivers import DRIVERS
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Chain, Edge, EdgeCollector, chains_to_base, frame
 from werrimbi_odom.files.made_from_wheels import ODOMETRY, is_asked_for, why_from_wheels
@@ -29,14 +30,7 @@ SCAN = "sensor_msgs/msg/LaserScan"
 FIX = "sensor_msgs/msg/NavSatFix"
 JOINT_STATE = "sensor_msgs/msg/JointState"
 INT32, INT64 = "std_msgs/msg/Int32", "std_msgs/msg/Int64"
-COUNTS = {
-    "std_msgs/msg/Int64MultiArray": "two counters in one message",
-    "turtlebot3_msgs/msg/SensorState": "TurtleBot3's counters",
-    "kobuki_msgs/msg/SensorState": "Kobuki's counters, of 16 bits",
-    "kobuki_ros_interfaces/msg/SensorState": "Kobuki's counters, of 16 bits",
-    "irobot_create_msgs/msg/WheelTicks": "the counters of a Create",
-}
-"""Messages that hold both wheels' counters."""
+MULTI_ARRAY = "std_msgs/msg/Int64MultiArray"
 POSES = {
     ODOMETRY: "poses",
     "geometry_msgs/msg/PoseStamped": "poses",
@@ -178,7 +172,7 @@ def _wheels(bag: Bag, firsts: dict[str, Any]) -> list[Wheels]:
             angles = len(getattr(first, "position", ())) > 0 or not joints
             gives: Gives = "positions" if angles else "velocities"
             found.append(Wheels(topic.name, topic.kind, topic.messages, gives, joints))
-        elif topic.kind in COUNTS:
+        elif topic.kind in (MULTI_ARRAY, *DRIVERS):
             found.append(Wheels(topic.name, topic.kind, topic.messages, "counts"))
         elif topic.kind in (INT32, INT64):
             mirrored = topic.name.replace("left", "right")

@@ -16,9 +16,9 @@ import pytest
 
 from test.fleet.conftest import broken
 from werrimbi_odom.cli.main import INTERRUPTED
-from werrimbi_odom.files.asked import Asked, How
-from werrimbi_odom.fleet import one, spread
-from werrimbi_odom.fleet.one import Task, row_of
+from werrimbi_odom.files.recordings import Asked, DriveOptions
+from werrimbi_odom.fleet import process_pool, robot_task
+from werrimbi_odom.fleet.robot_task import Task, row_of
 
 ROOT = Path(__file__).parents[2]
 KILLS = "import os, signal\nos.kill(os.getpid(), signal.SIGKILL)\n"
@@ -37,18 +37,20 @@ if times == 2:  # the command itself has read it, and the first robot
 """
 
 
-def nowhere(name: str, how: How | None = None) -> Task:
+def nowhere(name: str, how: DriveOptions | None = None) -> Task:
     """A robot of which nothing is there."""
-    return Task(name, Asked(Path(name) / "robot.yaml", (Path(name) / "run",), (), how or How()))
+    return Task(
+        name, Asked(Path(name) / "robot.yaml", (Path(name) / "run",), (), how or DriveOptions())
+    )
 
 
 def test_who_kills_its_process_is_a_row_and_the_others_are_done(tmp_path: Path) -> None:
     (tmp_path / "kills.py").write_text(KILLS)
     tasks = [nowhere(f"robot_{number}") for number in range(3)]
-    tasks.insert(1, nowhere("killer", How(effects=(tmp_path / "kills.py",))))
-    rows = {row.robot: row.error for row in spread.here(tasks, 2)}
+    tasks.insert(1, nowhere("killer", DriveOptions(effects=(tmp_path / "kills.py",))))
+    rows = {row.robot: row.error for row in process_pool.here(tasks, 2)}
     assert rows.keys() == {"robot_0", "robot_1", "robot_2", "killer"}
-    assert rows.pop("killer") == spread.DIED
+    assert rows.pop("killer") == process_pool.DIED
     assert all("robot.yaml" in error and "died" not in error for error in rows.values())
 
 
@@ -56,10 +58,10 @@ def test_a_bug_of_ours_is_a_row_that_says_so(monkeypatch: pytest.MonkeyPatch) ->
     def falls(*anything: object) -> None:
         raise KeyError("left\nwheel")
 
-    monkeypatch.setattr(one, "read", falls)
+    monkeypatch.setattr(robot_task, "read", falls)
     row = row_of(nowhere("robot_1"))
     assert row.error.startswith("this is a bug of werrimbi_odom, not of your files")
-    assert "KeyError: 'left\\nwheel' (test_spread.py, line " in row.error
+    assert "KeyError: 'left\\nwheel' (test_process_pool.py, line " in row.error
     assert row.verdict == "error"
 
 
@@ -67,7 +69,7 @@ def test_memory_that_is_too_small_is_no_bug(monkeypatch: pytest.MonkeyPatch) -> 
     def full(*anything: object) -> None:
         raise MemoryError
 
-    monkeypatch.setattr(one, "read", full)
+    monkeypatch.setattr(robot_task, "read", full)
     assert "more memory than there is" in row_of(nowhere("robot_1")).error
 
 
@@ -75,12 +77,12 @@ def test_sums_are_made_by_one_thread(tmp_path: Path) -> None:
     """Also in a process that has not loaded scipy yet, which brings a library of its own."""
     looks = (
         "from threadpoolctl import threadpool_info\n"
-        "from test.fleet.test_spread import nowhere\n"
-        "from werrimbi_odom.fleet import one\n"
+        "from test.fleet.test_process_pool import nowhere\n"
+        "from werrimbi_odom.fleet import robot_task\n"
         "def read(*anything):\n"
         "    print([pool['num_threads'] for pool in threadpool_info()])\n"
-        "one.read = read\n"
-        "one.row_of(nowhere('robot_1'))\n"
+        "robot_task.read = read\n"
+        "robot_task.row_of(nowhere('robot_1'))\n"
     )
     run = subprocess.run(
         [sys.executable, "-c", looks],

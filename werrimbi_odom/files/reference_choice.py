@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.contents import SCAN, Contents, Measured, Wheels
+from werrimbi_odom.files.bag_contents import SCAN, Contents, Measured, Wheels
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Chain, chain, frame, is_static
 from werrimbi_odom.files.made_from_wheels import is_odometry_frame

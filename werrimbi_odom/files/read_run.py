@@ -11,7 +11,7 @@ from typing import Any
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import SUFFIXES
-from werrimbi_odom.files.choosing import NONE
+from werrimbi_odom.files.reference_choice import NONE
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_bag import (

@@ -17,8 +17,8 @@ import numpy as np
 from werrimbi_odom.model.covariance import PoseCovariance, carried
 from werrimbi_odom.model.motion import sinc
 from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.trajectory import Trajectory
-from werrimbi_odom.model.view import View
 
 
 class Path(NamedTuple):

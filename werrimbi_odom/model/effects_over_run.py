@@ -36,7 +36,7 @@ _BLOCK = 256
 _SETTLED = 1e-13  # m, rad
 
 
-class Driven(NamedTuple):
+class AfterEffects(NamedTuple):
     """All steps of a run after the effects; arrays of shape (n,)."""
 
     travel: WheelTravel[Floats]
@@ -95,7 +95,9 @@ def after_effects(
     return travel, after_body_effects(robot.effects, motion, drive)
 
 
-def driven(robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], start: Pose) -> Driven:
+def driven(
+    robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], start: Pose
+) -> AfterEffects:
     """A whole run after the effects, the same as `driving.Driving` step by step.
 
     Parameters
@@ -108,20 +110,22 @@ def driven(robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], start: 
         Of the robot before the first step.
     """
     seen = watched(drive)
-    first = Driven(*after_effects(robot, raw, seen))
+    first = AfterEffects(*after_effects(robot, raw, seen))
     if not seen.asked & POSE:
         return first
     # Few effects turn the robot by its heading, so a second pass with the heading of the first is
     # mostly the answer.
     heading = np.cumsum(np.concatenate([[start.yaw], first.motion.turn[:-1]]))
     again = watched(drive.with_heading(heading, drive.heading.change))
-    second = Driven(*after_effects(robot, raw, again))
+    second = AfterEffects(*after_effects(robot, raw, again))
     if not again.asked & PLACE and np.array_equal(first.motion.turn, second.motion.turn):
         return second
     return _settled(robot, raw, drive, start)
 
 
-def _settled(robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], start: Pose) -> Driven:
+def _settled(
+    robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], start: Pose
+) -> AfterEffects:
     """The same where motion depends on the pose that it leads to, some hundred steps at a time.
 
     In each pass the poses come from the last pass's motion. A step depends on those before it
@@ -155,7 +159,7 @@ def _settled(robot: Robot, raw: WheelTravel[Floats], drive: Drive[Floats], start
             travel, motion = after_effects(robot, own, here)
         x, y, yaw = poses[:, -1].tolist()
         parts.append((travel, motion))
-    return Driven(
+    return AfterEffects(
         WheelTravel(
             *(np.concatenate(side) for side in zip(*(part[0] for part in parts), strict=True))
         ),
@@ -178,10 +182,10 @@ def _rows_of(drive: Drive[Floats], steps: slice) -> Drive[Floats]:
     return Drive(**{item.name: some(getattr(drive, item.name)) for item in fields(drive)})
 
 
-Headings = Callable[[Driven], Floats]
+Headings = Callable[[AfterEffects], Floats]
 """Heading at the start of each step [rad], from what the steps do."""
 
-Places = Callable[[Driven, Floats], tuple[Floats, Floats]]
+Places = Callable[[AfterEffects, Floats], tuple[Floats, Floats]]
 """Place at the start of each step [m], from what the steps do and the headings."""
 
 
@@ -191,7 +195,7 @@ def driven_from_measured(
     drive: Drive[Floats],
     headings: Headings,
     places: Places,
-) -> Driven:
+) -> AfterEffects:
     """The same where the pose is measured now and then, so that a run is not one long chain.
 
     Parameters
@@ -201,25 +205,25 @@ def driven_from_measured(
         only where an effect looks at them.
     """
     seen = watched(drive)
-    found = Driven(*after_effects(robot, raw, seen))
+    found = AfterEffects(*after_effects(robot, raw, seen))
     plain, placed = wheels_to_body(raw, robot.track), False
     if not seen.asked & POSE:
         return found
     for _ in range(_PASSES):
         if seen.asked & PLACE and not placed:
-            found, placed = Driven(raw, plain), True
+            found, placed = AfterEffects(raw, plain), True
         heading = headings(found)
         here = drive.with_heading(heading, drive.heading.change)
         if placed:
             here = here.with_place(*places(found, heading), displacement(plain, heading))
         seen = watched(here)
-        before, found = found, Driven(*after_effects(robot, raw, seen))
+        before, found = found, AfterEffects(*after_effects(robot, raw, seen))
         if _same(before, found, placed) and (placed or not seen.asked & PLACE):
             break
     return found
 
 
-def _same(before: Driven, after: Driven, placed: bool) -> bool:
+def _same(before: AfterEffects, after: AfterEffects, placed: bool) -> bool:
     """Whether another pass would find the same poses."""
     olds, parts = (each.motion if placed else (each.motion.turn,) for each in (before, after))
     return all(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from werrimbi_odom.files.contents import Contents, Measured, Wheels
+from werrimbi_odom.files.bag_contents import Contents, Measured, Wheels
 from werrimbi_odom.files.first_robot import FirstRobot
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.stamps import Stamps

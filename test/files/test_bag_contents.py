@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from werrimbi_odom.files.bag import opened_bag
-from werrimbi_odom.files.contents import Contents, contents_of
+from werrimbi_odom.files.bag_contents import Contents, contents_of
 from werrimbi_odom.files.made_from_wheels import why_from_wheels
 
 MS = 10**6

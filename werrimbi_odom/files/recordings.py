@@ -11,10 +11,10 @@ from typing import TypedDict
 
 from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.held import without_held_poses
 from werrimbi_odom.files.judgeable import refuse_unjudgeable
 from werrimbi_odom.files.merged_reference import with_one_scale
-from werrimbi_odom.files.reading import read_run
+from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.repeated_poses import without_held_poses
 from werrimbi_odom.files.replacing import place_of
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
@@ -28,16 +28,16 @@ _NAMED = 8  # runs of a folder that are named before "..."
 
 
 @dataclass(frozen=True, kw_only=True)
-class How:
-    """How drives are read and judged."""
+class DriveOptions:
+    """How drives are read and judged: from Python, on the command line, and sent to a worker."""
 
-    kind: ReferenceKind | None = None
+    reference_kind: ReferenceKind | None = None
     """What the reference's noise is like; None: as who reads the drives knows it, or absolute."""
     leg: float = 1.0
     """Length of a leg [m]."""
-    sigma_xy: float | None = None
+    reference_sigma_xy: float | None = None
     """Noise of the reference's position, if it is known [m]."""
-    sigma_yaw: float | None = None
+    reference_sigma_yaw: float | None = None
     """The same of its heading [rad]."""
     ticks_topic: str | None = None
     reference_topic: Topics = None
@@ -45,7 +45,7 @@ class How:
     """Files with effects of the user's own."""
     references: tuple[Path, ...] = ()
     """What holds the reference of each run and then of each held-out one; empty: they do."""
-    force: bool = False
+    force_reference: bool = False
     """Take a reference that is made from the wheels."""
 
 
@@ -69,7 +69,7 @@ class Asked:
     robot: Path
     runs: tuple[Path, ...]
     holdout: tuple[Path, ...] = ()
-    how: How = How()
+    how: DriveOptions = DriveOptions()
 
 
 @dataclass(frozen=True)
@@ -82,7 +82,7 @@ class Recordings:
     runs: tuple[Run, ...]
     holdout: tuple[Run, ...]
     """Runs to judge on alone; empty where none were given."""
-    how: How
+    how: DriveOptions
     fitted: Robot | None = None
     """The robot to judge, where it is another one than the file's: more was fitted since."""
 
@@ -96,11 +96,11 @@ class Recordings:
         """How a robot is judged on these runs."""
         how = self.how
         return Judging(
-            kind=how.kind or "absolute",
+            kind=how.reference_kind or "absolute",
             leg=how.leg,
             limits=self.source.limits,
-            sigma_xy=how.sigma_xy,
-            sigma_yaw=how.sigma_yaw,
+            sigma_xy=how.reference_sigma_xy,
+            sigma_yaw=how.reference_sigma_yaw,
         )
 
 
@@ -132,7 +132,7 @@ def gathered(
     collection: Collection,
     runs: Sequence[Run | Path],
     holdout: Sequence[Run | Path],
-    how: How,
+    how: DriveOptions,
     show: Callable[[float, str], None] = lambda share, words: None,
 ) -> Recordings:
     """Drives of a robot, those that are paths read.
@@ -162,9 +162,9 @@ def gathered(
         refuse_unjudgeable(run)
         found.append(run)
     found = _with_one_scale(found, len(runs))
-    if how.kind is None:
-        how = replace(how, kind=_kind_of(found))
-    if how.kind != "incremental":
+    if how.reference_kind is None:
+        how = replace(how, reference_kind=_kind_of(found))
+    if how.reference_kind != "incremental":
         found = [without_held_poses(run, source.robot) for run in found]
     count = len(runs)
     return Recordings(source, collection, tuple(found[:count]), tuple(found[count:]), how)
@@ -185,7 +185,7 @@ def _kind_of(runs: Sequence[Run]) -> ReferenceKind:
     return next((kind for kind in known if kind in kinds), "absolute")
 
 
-def _read(path: Path, source: RobotFile, how: How, reference: Path | None) -> Run:
+def _read(path: Path, source: RobotFile, how: DriveOptions, reference: Path | None) -> Run:
     if path.is_dir() and not any((path / name).exists() for name in (TICKS, BAG)):
         within = sorted(
             {found.parent.name for name in (TICKS, BAG) for found in path.glob(f"*/{name}")}
@@ -202,7 +202,7 @@ def _read(path: Path, source: RobotFile, how: How, reference: Path | None) -> Ru
         ticks_topic=how.ticks_topic,
         reference_topic=how.reference_topic,
         reference=reference,
-        force=how.force,
+        force=how.force_reference,
     )
 
 

@@ -22,7 +22,7 @@ MOST = 10_000
 """Topics that a recording is believed to have."""
 
 
-class Row(NamedTuple):
+class MessageRow(NamedTuple):
     """A row of the table of messages."""
 
     topic: int
@@ -57,7 +57,7 @@ def described(file: Path) -> tuple[dict[int, tuple[str, str]], dict[str, str]]:
         database.close()
 
 
-def rows_of(file: Path) -> Iterator[Row]:
+def rows_of(file: Path) -> Iterator[MessageRow]:
     """Messages in the order in which they were written; those that are cut off are left out."""
     with file.open("rb") as stream, mmap.mmap(stream.fileno(), 0, access=mmap.ACCESS_READ) as held:
         pages = _Pages(held)
@@ -86,7 +86,7 @@ class _Pages:
                 if place < min(start + self._size, len(self._held)) - 8:
                     yield self._number(self._number(place)[1])[0], place
 
-    def row(self, place: int) -> Row | None:
+    def row(self, place: int) -> MessageRow | None:
         """A row of four columns: its number, the topic's, a time, and bytes; None for others."""
         length, at = self._number(place)
         payload = self._payload(length, self._number(at)[1])
@@ -107,7 +107,7 @@ class _Pages:
             numbers.append(int.from_bytes(payload[at : at + width], "big", signed=True))
             at += width
             numbers[-1] = {8: 0, 9: 1}.get(kind, numbers[-1])
-        return Row(numbers[0], numbers[1], payload[at : at + (kinds[3] - 12) // 2])
+        return MessageRow(numbers[0], numbers[1], payload[at : at + (kinds[3] - 12) // 2])
 
     def _payload(self, length: int, at: int) -> bytes | None:
         """A row's bytes, those on pages of their own among them; None where some are missing."""

@@ -96,7 +96,7 @@ def off_arc(rule: PieceRule, u: Number, share: Number, miss_x: Number, miss_y: N
     return miss_x * miss_x + miss_y * miss_y - allowed * allowed
 
 
-class Stretch(NamedTuple):
+class PieceSums(NamedTuple):
     """A piece as far as it has been driven: sums since its start, and what bounds its going on."""
 
     left: float = 0.0
@@ -123,7 +123,7 @@ class Stretch(NamedTuple):
         return abs(self.left) + abs(self.right)
 
 
-NOTHING = Stretch()
+NOTHING = PieceSums()
 """A stretch before its first step."""
 
 
@@ -131,11 +131,11 @@ def extended(
     rule: PieceRule,
     start: Pose,
     earlier: float,
-    stretch: Stretch,
+    stretch: PieceSums,
     travel: WheelTravel[float],
     motion: BodyMotion[float],
     pose: Pose,
-) -> tuple[bool, Stretch]:
+) -> tuple[bool, PieceSums]:
     """Whether a stretch goes on with a step that ends at `pose`; and the longer, or the same, one.
 
     Parameters
@@ -175,7 +175,7 @@ def extended(
         dx, dy = along_chord(whole, chord)
         if off_arc(rule, u, share, pose.x - start.x - dx, pose.y - start.y - dy) > 0.0:
             return False, stretch
-    return True, Stretch(
+    return True, PieceSums(
         left, right, whole, chord, left_low, left_high, right_low, right_high, low, high, False
     )
 
