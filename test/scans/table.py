@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The table of docs/scans.md, printed and written there: `python -m test.scans.table` (a minute)."""
+"""The table of docs/scans.md, written there: `python -m test.scans.table` (two minutes)."""
 
 from __future__ import annotations
 

@@ -36,12 +36,13 @@ from werrimbi_odom.inference.rules import (
     EDGE_LEGS,
     INSTEAD_FITTED,
     REFITTED,
+    RIVAL,
     SAME_BY_RUN,
     SCORE_FLOOR,
     SHORTLISTED,
     WORTH_A_FIT,
 )
-from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.effect import Effect, always_twins
 from werrimbi_odom.model.robot import Robot
 
 
@@ -203,10 +204,22 @@ def search_round(
     return Round(
         before,
         tuple(ordered),
-        tuple(tried),
+        tuple(sensor_first(tried) if runs.own_axes else tried),
         dependences(runs, point, kind, turned),
         len(looked_at),
     )
+
+
+def sensor_first(tried: Sequence[Fitted]) -> Sequence[Fitted]:
+    """Fits, cheapest first; where that is of the robot, and what is the same on any drive is of the
+    sensor, this comes first: a lidar that was screwed on by hand is askew more often than an axle.
+    """
+    effects = [fit.point.model.robot.effects[-1].effect for fit in tried]
+    for fit, effect in zip(tried[1:], effects[1:], strict=True):
+        near = fit.total - tried[0].total < RIVAL * tried[0].scatter
+        if effect.stage == "reference" and near and always_twins(effect, effects[0]):
+            return [fit, *(other for other in tried if other is not fit)]
+    return tried
 
 
 def best_of_each(found: Sequence[Score]) -> list[Score]:
