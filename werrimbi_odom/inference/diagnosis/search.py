@@ -211,8 +211,9 @@ def search_round(
 
 
 def sensor_first(tried: Sequence[Fitted]) -> Sequence[Fitted]:
-    """Fits, cheapest first; where that is of the robot, and what is the same on any drive is of the
-    sensor, this comes first: a lidar that was screwed on by hand is askew more often than an axle.
+    """Fits, cheapest first; but of two that are one on any drive what is of the sensor.
+
+    A lidar that was screwed on by hand is askew more often than an axle.
     """
     effects = [fit.point.model.robot.effects[-1].effect for fit in tried]
     for fit, effect in zip(tried[1:], effects[1:], strict=True):
