@@ -135,7 +135,8 @@ def as_in_the_field(
         Of this drive, and of what is the robot's in all its drives (the gyro's bias and scale).
     hidden : sequence of Peculiarity
         What the drive was recorded with. Those of counters show in the wheels' angles; those of a
-        reference in the localiser, and in the gyro as far as they delay a heading.
+        reference in the localiser, in the gyro as far as they delay a heading, and in the lidar as
+        far as it can sit elsewhere than its transform says, and be late as a whole.
     """
     sensors = sensors or FieldSensors()
     rng = np.random.default_rng([seed, 77])
@@ -178,8 +179,17 @@ def as_in_the_field(
     }
     odometry = _dead_reckoned(left, right, robot)
     room = around(path.x_m, path.y_m, robot_seed)
-    scans = scanned(path, room, sensors.lidar, seed)
+    scans = scanned(path, room, _as_it_sits(sensors.lidar, exact.mount), seed)
+    scans = replace(scans, time=scans.time + exact.delay)
     return FieldDrive(recording.name, wheels, imu, localiser, odometry, sensors.lidar, scans, truth)
+
+
+def _as_it_sits(lidar: Lidar, beside: Pose) -> Lidar:
+    """A lidar of which its transform tells a base that is `beside` the robot's."""
+    cos, sin = math.cos(beside.yaw), math.sin(beside.yaw)
+    x, y, yaw = lidar.mount
+    there = Pose(beside.x + cos * x - sin * y, beside.y + sin * x + cos * y, beside.yaw + yaw)
+    return replace(lidar, mount=there)
 
 
 def _counted(
