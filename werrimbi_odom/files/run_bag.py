@@ -177,7 +177,8 @@ def _put_together(
             circle = f"{named.name}: {named.why}; independent references in the bag: {told}"
     if len(references) == 2:
         names = " and ".join(each.source.name for each in chosen)
-        whole, told = merged(f"{held.path}: {names}", *references, cuts)
+        first, second = references
+        whole, told = merged(f"{held.path}: {names}", first, second, cuts)
         return FoundReference(whole, (*notes, told), circle, damage, cuts)
     only = references[0] if references else None
     return FoundReference(only, tuple(notes), circle, damage, cuts)
