@@ -15,6 +15,7 @@ from test.scans.table import CASES, ROOMS, row
 def test_the_covariance_of_matches_is_consistent_in_every_room(name: str) -> None:
     seen = row(name)
     assert 0.8 < seen.nees < 1.5
+    assert 0.8 < seen.nees_of_legs < 1.5
     assert seen.none < 0.05 * seen.scans
     if "15 mm" not in name and "corridor" not in name:  # those of an ordinary lidar, in rooms
         assert max(seen.leg) < 2.5
