@@ -101,8 +101,13 @@ def rms(errors: Floats) -> tuple[float, float]:
 def seen(path: TruePath, room: Room, lidar: Lidar, seed: int = 0) -> tuple[Sweeps, list[Sweep]]:
     """What a lidar saw, as the matcher takes it."""
     sweeps = scanned(path, room, lidar, seed)
-    angles = lidar.increment * np.arange(lidar.beams)
-    return sweeps, [
+    return sweeps, taken(sweeps, lidar)
+
+
+def taken(sweeps: Sweeps, lidar: Lidar) -> list[Sweep]:
+    """Scans as the matcher takes them."""
+    angles = lidar.increment * np.arange(lidar.beams, dtype=np.float64)
+    return [
         sweep_of(time, ranges, angles, lidar.beam_interval, lidar.nearest, lidar.farthest)
         for time, ranges in zip(sweeps.time, sweeps.ranges, strict=True)
     ]
@@ -110,7 +115,12 @@ def seen(path: TruePath, room: Room, lidar: Lidar, seed: int = 0) -> tuple[Sweep
 
 def matched(path: TruePath, room: Room, lidar: Lidar, seed: int = 0) -> Matched:
     """The path by scans of a drive in a room."""
-    sweeps, given = seen(path, room, lidar, seed)
+    return of_sweeps(scanned(path, room, lidar, seed), lidar)
+
+
+def of_sweeps(sweeps: Sweeps, lidar: Lidar) -> Matched:
+    """The path by scans."""
+    given = taken(sweeps, lidar)
     matcher = ScanMatcher()
     for sweep in given:
         matcher.take(sweep)

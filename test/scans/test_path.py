@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from test.scans.drives import ahead, in_circles, matched, rms, seen
+from test.scans.drives import ahead, in_circles, matched, of_sweeps, rms, seen
 from werrimbi_odom.scans.path import ScanMatcher
 from werrimbi_odom.scans.sweep import sweep_of
 from werrimbi_odom.simulation import rooms
@@ -84,6 +84,28 @@ def test_a_path_is_cut_where_the_robot_is_carried_and_never_bridged() -> None:
     position, heading = rms(found.legs()[0])
     assert position < 3.0
     assert heading < 2.5
+
+
+def test_a_door_that_opens_and_a_pane_of_glass_cost_little() -> None:
+    """2 m of a wall: a door that opens after 6 s; a pane that three beams of ten see, the others
+    see the next room."""
+    lidar, path = Lidar(), in_circles(12.0)
+    closed = Room(np.vstack([rooms.living_room().walls, [[-3.0, -1.0, -3.0, 1.0]]]))
+    walls = np.array([wall for wall in closed.walls if not (wall[[0, 2]] == -3.0).all()])
+    sides = [[-3.0, -2.5, -3.0, -1.0], [-3.0, 1.0, -3.0, 2.5], [-5.5, -2.5, -5.5, 2.5]]
+    opened = Room(np.vstack([walls, sides]))
+    (shut, _), (through, _) = (seen(path, room, lidar) for room in (closed, opened))
+    shown = np.random.default_rng(1).random(shut.ranges.shape) < 0.3
+    for ranges in (
+        np.where(shut.time[:, None] < 6.0, shut.ranges, through.ranges),
+        np.where(shown, shut.ranges, through.ranges),
+    ):
+        found = of_sweeps(replace(shut, ranges=ranges), lidar)
+        assert found.path.cuts == []
+        assert found.path.time.size > 0.95 * found.path.scans
+        position, heading = rms(found.legs()[0])
+        assert position < 3.0
+        assert heading < 2.5
 
 
 def test_a_hole_in_the_stamps_is_a_cut() -> None:
