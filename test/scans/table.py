@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -100,9 +101,14 @@ def main() -> None:
     for name in CASES:
         lines.append(line(name))
         print(lines[-1], flush=True)
-    before, old = DOCS.read_text(encoding="utf-8").split(HEAD)
+    put_in(DOCS, lines)
+
+
+def put_in(page: Path, lines: Sequence[str]) -> None:
+    """Put a table in the place of the one with the same head."""
+    before, old = page.read_text(encoding="utf-8").split(lines[0])
     after = old.partition("\n\n")[2]
-    DOCS.write_text(before + "\n".join(lines) + "\n\n" + after, encoding="utf-8")
+    page.write_text(before + "\n".join(lines) + "\n\n" + after, encoding="utf-8")
 
 
 if __name__ == "__main__":

@@ -87,8 +87,7 @@ def test_a_path_is_cut_where_the_robot_is_carried_and_never_bridged() -> None:
 
 
 def test_a_door_that_opens_and_a_pane_of_glass_cost_little() -> None:
-    """2 m of a wall: a door that opens after 6 s; a pane that three beams of ten see, the others
-    see the next room."""
+    """2 m of a wall are a door that opens, or a pane that three beams of ten see."""
     lidar, path = Lidar(), in_circles(12.0)
     closed = Room(np.vstack([rooms.living_room().walls, [[-3.0, -1.0, -3.0, 1.0]]]))
     walls = np.array([wall for wall in closed.walls if not (wall[[0, 2]] == -3.0).all()])
