@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
-from werrimbi_odom.inference.diagnosis.support import support_of
-from werrimbi_odom.inference.diagnosis.variables import ON_THE_FLOOR
 from werrimbi_odom.inference.fitting.candidates import (
     Score,
     candidates,
@@ -174,11 +172,6 @@ def search_round(
     held = {applied.name for applied in point.model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     looked_at = candidates(effects, held, channels, len(runs.runs))
-    if runs.own_axes:
-        drive = runs.drive(point.model.robot)
-        looked_at = tuple(
-            each for each in looked_at if not ON_THE_FLOOR & support_of(each, drive).inputs
-        )
     turned = (*CALIBRATION, *before.knobs)
     found = scores(runs, point, kind, turned, looked_at)
     ordered = best_of_each(found)
