@@ -267,15 +267,11 @@ def not_shown(told: Told) -> list[str]:
         )
     needing = [sight.effect for sight in hidden if sight.needs_more]
     if needing:
-        runs = told.diagnosis.runs
+        runs, better = told.diagnosis.runs, "positions and headings does (motion capture, scans)"
         if runs.own_axes:
-            better = "one that measures finely, in axes of the floor, does (motion capture)"
+            better = "finely, in axes of the floor, does (motion capture)"
         elif np.isfinite(runs.start).all(axis=1).any():
-            better = "one that measures more finely, and more often, does (motion capture)"
-        else:
-            better = (
-                "one that measures positions and headings does (motion capture, a scan matcher)"
-            )
+            better = "more finely, and more often, does (motion capture)"
         lines.append(
             f"No drive shows {listed(needing)} with such a reference; one that measures {better}."
         )
