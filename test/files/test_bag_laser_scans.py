@@ -171,6 +171,31 @@ def test_a_leg_never_spans_a_cut(tmp_path: Path, ros: Any, robot: Any) -> None:
     assert cut.gap[spans].all()
 
 
+def test_a_gyros_headings_are_laid_upon_each_piece(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """The scans of 2 s are missing; the gyro drifts by 3 degrees a second all the time."""
+    seen, kept = sweeps(), (sweeps().time < 4.0) | (sweeps().time > 6.0)
+    held = entries(ros, Sweeps(seen.time[kept], seen.ranges[kept], seen.truth[kept]))
+    rate = 0.05 + np.gradient(path().yaw_rad, path().t_s)
+    held += [
+        ("/imu", at(t), ros.imu(at(t), turning))
+        for t, turning in zip(path().t_s[::2].tolist(), rate[::2].tolist(), strict=True)
+    ]
+    bag = ros.write(tmp_path / "run", sorted(held, key=lambda each: each[1]))
+    run = read_run(bag, robot(), reference_topic=("/scan", "/imu"))
+    assert len(run.taken_out) == 1
+    assert "in pieces" in run.damage[0]
+    assert "in each of its 2 pieces by itself" in run.notes[-1]
+    assert run.reference is not None
+    time = run.reference.time - EPOCH - 1.0
+    apart = run.reference.yaw - np.interp(time, path().t_s, path().yaw_rad)
+    for piece in (time < 5.0, time > 5.0):
+        assert piece.sum() > 20
+        assert np.ptp(np.unwrap(apart[piece])) < 4e-3  # the gyro's; the scans' alone scatter more
+    both = read_run(bag, robot(), reference_topic="/scan").reference
+    assert both is not None
+    np.testing.assert_array_equal(both.x, run.reference.x)
+
+
 def test_scans_are_taken_where_they_are_asked_for(tmp_path: Path, ros: Any, robot: Any) -> None:
     """A bag with a gyro is read as ever; who wants the scans says so."""
     held = entries(ros, sweeps())

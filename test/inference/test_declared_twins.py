@@ -105,6 +105,24 @@ def test_a_users_effect_brings_its_twin_and_its_sketch(
     assert "hang a plumb line" in shown
 
 
+@pytest.mark.parametrize(
+    ("lidar", "first"), [(True, "reference_yaw_offset"), (False, "sideways_drift")]
+)
+def test_a_lidar_is_askew_rather_than_the_robots_axle(lidar: bool, first: str) -> None:
+    """To any reference the two are one; of motion capture the cheaper one leads, by a hair."""
+    truth = replace(ROBOT, effects=(find("sideways_drift").using(angle=0.1),))
+    effects = [find(name) for name in ("lateral_slip", "sideways_drift", "reference_yaw_offset")]
+    runs = [
+        replace(run, reference=replace(run.reference, own_axes=lidar))
+        for run in runs_of(truth, (1,), 60)
+        if run.reference is not None
+    ]
+    found = diagnose(runs, ROBOT, effects)
+    assert found.verdict == "ambiguous"
+    assert (found.effect, found.rivals[0]) == (first, first)
+    assert set(found.rivals) == {"sideways_drift", "reference_yaw_offset"}
+
+
 def named(*names: str) -> list[Effect]:
     return [find(name) for name in names]
 

@@ -21,6 +21,9 @@ from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
 from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
+from werrimbi_odom.inference.manoeuvres.told import Told
+from werrimbi_odom.report.diagnosis.phrases import not_shown
 
 TRUE = WhiteNoiseRobot()
 ROBOT = TRUE.entered(0.05)
@@ -152,3 +155,8 @@ def test_axes_that_begin_anew_have_no_common_direction() -> None:
     found = diagnose(anew[:2], ROBOT, LIBRARY, holdout=anew[2:])
     assert "floor_slope" not in [item.effect for item in found.ranking]
     assert {"heading", "position"}.isdisjoint(cell.variable.name for cell in found.depends_on)
+    limits = {limit.effect: limit for limit in detection_limits(found, LIBRARY)}
+    assert limits["floor_slope"].minimum_detectable == np.inf
+    assert limits["lateral_slip"].minimum_detectable < 1.0
+    said = " ".join(not_shown(Told(found, None, tuple(limits.values()))))
+    assert "floor_slope with such a reference; one that measures finely, in axes of the" in said

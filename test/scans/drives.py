@@ -52,22 +52,27 @@ class Matched:
     def steps(self) -> tuple[Floats, Floats]:
         """Errors of steps from pose to pose (k, 3), and the NEES of each over 3."""
         rows = np.flatnonzero(np.diff(self.path.piece) == 0)
-        errors = self._errors(rows, rows + 1)
-        both = self.path.covariances[rows] + self.path.covariances[rows + 1]
-        turned = np.array([_axes(yaw) for yaw in self.path.poses[rows + 1, 2]])
-        covariances = turned @ both @ turned.transpose(0, 2, 1)
-        nees = np.einsum(
-            "ni,ni->n", errors, np.linalg.solve(covariances, errors[..., None])[..., 0]
-        )
-        return errors, nees / 3.0
+        return self._between(rows, rows + 1)
 
-    def legs(self, length: float = 1.0) -> Floats:
-        """Errors of legs of a length [m], of which none spans a cut, (k, 3)."""
+    def legs(self, length: float = 1.0) -> tuple[Floats, Floats]:
+        """The same of legs of a length [m], of which none spans a cut."""
         way = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(self.truth[:, :2], axis=0).T))])
         ends = np.searchsorted(way, way + length)
         rows = np.flatnonzero(ends < way.size)
         rows = rows[self.path.piece[rows] == self.path.piece[ends[rows]]]
-        return self._errors(rows, ends[rows])
+        return self._between(rows, ends[rows])
+
+    def _between(self, begin: np.ndarray, end: np.ndarray) -> tuple[Floats, Floats]:
+        errors = self._errors(begin, end)
+        # An error of the heading at the beginning moves the end aside.
+        carried = np.tile(np.eye(3), (begin.size, 1, 1))
+        way = self.path.poses[end] - self.path.poses[begin]
+        carried[:, 0, 2], carried[:, 1, 2] = -way[:, 1], way[:, 0]
+        first, last = self.path.covariances[begin], self.path.covariances[end]
+        both = carried @ first @ carried.transpose(0, 2, 1) + last
+        turned = np.array([_axes(yaw) for yaw in self.path.poses[end, 2]]).reshape(-1, 3, 3)
+        whitened = np.linalg.solve(turned @ both @ turned.transpose(0, 2, 1), errors[..., None])
+        return errors, np.einsum("ni,ni->n", errors, whitened[..., 0]) / 3.0
 
     def _errors(self, begin: np.ndarray, end: np.ndarray) -> Floats:
         true, found = self.truth, self.path.poses
@@ -96,8 +101,13 @@ def rms(errors: Floats) -> tuple[float, float]:
 def seen(path: TruePath, room: Room, lidar: Lidar, seed: int = 0) -> tuple[Sweeps, list[Sweep]]:
     """What a lidar saw, as the matcher takes it."""
     sweeps = scanned(path, room, lidar, seed)
-    angles = lidar.increment * np.arange(lidar.beams)
-    return sweeps, [
+    return sweeps, taken(sweeps, lidar)
+
+
+def taken(sweeps: Sweeps, lidar: Lidar) -> list[Sweep]:
+    """Scans as the matcher takes them."""
+    angles = lidar.increment * np.arange(lidar.beams, dtype=np.float64)
+    return [
         sweep_of(time, ranges, angles, lidar.beam_interval, lidar.nearest, lidar.farthest)
         for time, ranges in zip(sweeps.time, sweeps.ranges, strict=True)
     ]
@@ -105,7 +115,12 @@ def seen(path: TruePath, room: Room, lidar: Lidar, seed: int = 0) -> tuple[Sweep
 
 def matched(path: TruePath, room: Room, lidar: Lidar, seed: int = 0) -> Matched:
     """The path by scans of a drive in a room."""
-    sweeps, given = seen(path, room, lidar, seed)
+    return of_sweeps(scanned(path, room, lidar, seed), lidar)
+
+
+def of_sweeps(sweeps: Sweeps, lidar: Lidar) -> Matched:
+    """The path by scans."""
+    given = taken(sweeps, lidar)
     matcher = ScanMatcher()
     for sweep in given:
         matcher.take(sweep)

@@ -15,13 +15,13 @@ from rosbags.highlevel import AnyReader
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.simulation import (
     FieldDrive,
+    Pose,
     Recording,
     TrueRobot,
     as_in_the_field,
     free,
     hide,
     record,
-    seen_in_the_field,
     write_field_bag,
 )
 from werrimbi_odom.simulation.bag import EPOCH
@@ -132,13 +132,35 @@ def test_a_localiser_is_read_as_a_chain_of_transforms(tmp_path: Path) -> None:
     assert np.hypot(first[1] - true.x_m[0], first[2] - true.y_m[0]) < 0.2
 
 
-def test_what_is_made_in_records_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert seen_in_the_field(hide("track_width", seed=1).peculiarity)
-    assert not seen_in_the_field(hide("left_missed_ticks", seed=1).peculiarity)
-    code = main(
-        ["simulate", "--like", "field", "--hide", "encoder_skew", "--out", str(tmp_path / "x")]
-    )
-    assert code == 2
-    assert "encoder_skew" in capsys.readouterr().err
+def test_what_is_made_in_records_is_hidden_too() -> None:
+    """Counts that are lost at speed, and stamps of gyro and localiser that are late."""
+    odd = [hide("left_missed_ticks", 0.05, seed=1).peculiarity]
+    odd.append(hide("reference_delay", 0.1, seed=1).peculiarity)
+    drive = as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6, hidden=odd)
+    lost = seen().wheels[-1, 2:] - drive.wheels[-1, 2:]
+    assert lost[0] > 1.0
+    assert lost[1] == 0.0
+    # What was seen at t is stamped 0.1 s later: five samples of the gyro, one of the localiser.
+    for now, late, rows in ((seen().imu, drive.imu, 5), (seen().localiser, drive.localiser, 1)):
+        apart = [np.abs(np.sin(now[:-k, -1] - late[k:, -1])).mean() for k in range(1, 10)]
+        assert 1 + int(np.argmin(apart)) == rows
+
+
+def test_a_lidar_that_is_not_where_its_transform_says() -> None:
+    """What the transform makes of its pose is a base that is beside the robot's, and late."""
+    odd = [hide("reference_lever_arm", 0.05, seed=1).peculiarity]
+    odd.append(hide("reference_yaw_offset", 0.3, seed=1).peculiarity)
+    odd.append(hide("reference_delay", 0.1, seed=1).peculiarity)
+    drive = as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6, hidden=odd)
+    np.testing.assert_allclose(drive.scans.time - seen().scans.time, 0.1)
+    believed = [pose_of(each.scans.truth, drive.lidar.mount) for each in (seen(), drive)]
+    apart = believed[1][0] - believed[0][0]
+    assert np.abs(apart) == pytest.approx(0.05)
+    turned = believed[1][1] - believed[0][1]
+    assert np.abs(turned) == pytest.approx(0.3)
+
+
+def pose_of(lidar: np.ndarray, mount: Pose) -> tuple[np.ndarray, np.ndarray]:
+    """Of the base, by poses (n, 3) of its lidar: place and heading."""
+    yaw = lidar[:, 2] - mount.yaw
+    return lidar[:, 0] + 1j * lidar[:, 1] - (mount.x + 1j * mount.y) * np.exp(1j * yaw), yaw

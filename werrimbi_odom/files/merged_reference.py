@@ -30,13 +30,18 @@ SCALE_TOLD, SCALE_MOST = 4.0, 0.1
 """Standard deviations beyond which a gyro's scale is told, and the most that a gyro's is off."""
 
 
-def merged(place: str, first: Reference, second: Reference) -> tuple[Reference, str]:
+def merged(
+    place: str, first: Reference, second: Reference, cuts: Sequence[tuple[float, float]] = ()
+) -> tuple[Reference, str]:
     """Positions of what has them, with the headings of what has nothing else.
 
     Parameters
     ----------
     place
         Where they are, for errors.
+    cuts
+        From the last pose of a piece to the first of the next [s], where the one with positions is
+        in pieces: the heading is laid upon each by itself, and drifts alike in all.
 
     Returns
     -------
@@ -74,16 +79,21 @@ def merged(place: str, first: Reference, second: Reference) -> tuple[Reference, 
         )
     at = np.interp(poses.time, time, yaw)
     since = poses.time - poses.time[both][0]
-    columns = np.stack([np.ones(at.size), since, at], axis=-1)
-    angle, drift = _laid(columns[both, :2], poses.yaw[both] - at[both])
-    laid = np.where(inside, at + angle + drift * since, np.nan)
+    piece = np.searchsorted([end for _, end in cuts], poses.time, side="right")
+    pieces = (piece[:, None] == np.arange(len(cuts) + 1)).astype(np.float64)
+    columns = np.column_stack([pieces, since])
+    apart = poses.yaw - at
+    told = _laid(pieces[both], columns[both], apart[both])
+    drift = told[-1]
+    laid = np.where(inside, at + columns @ told, np.nan)
     degrees = np.degrees(60.0 * drift)
-    told = (
-        "headings are those of the one without positions, turned onto the other's and freed of a "
-        f"steady drift of {degrees:+.2g}° a minute"
+    each = f", in each of its {len(cuts) + 1} pieces by itself," if cuts else ""
+    words = (
+        f"headings are those of the one without positions, turned onto the other's{each} and freed "
+        f"of a steady drift of {degrees:+.2g}° a minute"
     )
-    gyro = _gyro_turn(columns, poses.yaw - at, both)
-    return replace(poses, yaw=laid, sigma_yaw=None, gyro=gyro), told
+    gyro = _gyro_turn(pieces[both], columns, at, apart, both)
+    return replace(poses, yaw=laid, sigma_yaw=None, gyro=gyro), words
 
 
 def with_one_scale(references: Sequence[Reference], of: Sequence[Reference]) -> list[Reference]:
@@ -115,27 +125,34 @@ def with_one_scale(references: Sequence[Reference], of: Sequence[Reference]) -> 
     ]
 
 
-def _gyro_turn(columns: Floats, apart: Floats, both: NDArray[np.bool_]) -> GyroTurn:
+def _gyro_turn(
+    pieces: Floats, columns: Floats, gyro: Floats, apart: Floats, both: NDArray[np.bool_]
+) -> GyroTurn:
     """What the gyro turned, and by how much the other turned more, (m,)."""
-    clear = np.linalg.lstsq(columns[both, :2], columns[both, 2], rcond=None)[0]
-    turned = columns[:, 2] - columns[:, :2] @ clear
-    angle, drift, more = _laid(np.column_stack([columns[both, :2], turned[both]]), apart[both])
-    left = np.unwrap(apart[both]) - angle - drift * columns[both, 1] - more * turned[both]
+    clear = np.linalg.lstsq(columns[both], gyro[both], rcond=None)[0]
+    turned = gyro - columns @ clear
+    free = np.column_stack([columns[both], turned[both]])
+    told = _laid(pieces, free, apart[both])
+    left = np.unwrap(apart[both]) - free @ told
     noise = _MEDIAN_TO_SIGMA * float(np.median(np.abs(left - np.median(left))))
     # A localiser errs alike for a while: as many headings tell as there are such whiles.
-    count = max(float(np.ptp(columns[both, 1])) / LASTING, 1.0)
+    count = max(float(np.ptp(columns[both, -1])) / LASTING, 1.0)
     spread = max(float(np.std(turned[both])), 1e-9)
-    return GyroTurn(turned, 1.0 + more, max(noise, 1e-6) / spread / np.sqrt(count))
+    return GyroTurn(turned, 1.0 + told[-1], max(noise, 1e-6) / spread / np.sqrt(count))
 
 
-def _laid(columns: Floats, apart: Floats) -> Floats:
-    """What to take of each column to explain angles; jumps do not count (Huber)."""
+def _laid(pieces: Floats, columns: Floats, apart: Floats) -> Floats:
+    """What to take of each column to explain angles; jumps do not count (Huber).
+
+    The first columns are `pieces`: 1 in a piece, else 0.
+    """
     from scipy.optimize import least_squares
 
     apart = np.unwrap(apart)
-    spread = max(float(np.median(np.abs(apart - np.median(apart)))), 1e-6)
     begin = np.zeros(columns.shape[1])
-    begin[0] = float(np.median(apart))
+    for number, here in enumerate(pieces.T > 0.0):
+        begin[number] = float(np.median(apart[here])) if here.any() else 0.0
+    spread = max(float(np.median(np.abs(apart - columns @ begin))), 1e-6)
     found = least_squares(
         lambda values: columns @ values - apart,
         begin,

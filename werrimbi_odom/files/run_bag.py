@@ -177,13 +177,9 @@ def _put_together(
             circle = f"{named.name}: {named.why}; independent references in the bag: {told}"
     if len(references) == 2:
         names = " and ".join(each.source.name for each in chosen)
-        if cuts:
-            raise InputError(
-                f"{held.path}: {names}: the path by scans is in {len(cuts) + 1} pieces, whose "
-                "headings have nothing to do with each other; judge one after the other"
-            )
-        whole, told = merged(f"{held.path}: {names}", *references)
-        return FoundReference(whole, (*notes, told), circle)
+        first, second = references
+        whole, told = merged(f"{held.path}: {names}", first, second, cuts)
+        return FoundReference(whole, (*notes, told), circle, damage, cuts)
     only = references[0] if references else None
     return FoundReference(only, tuple(notes), circle, damage, cuts)
 

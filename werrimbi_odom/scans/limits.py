@@ -36,12 +36,11 @@ FEWEST_POSES = 20
 """Poses of an unbroken piece, below which it is left out: two seconds hold no leg."""
 
 FLOOR = 2e-4
-"""Least standard deviation of a match [m, rad]: walls are not straighter. Without it the mean NEES
-of matches is 0.9 to 1.3 in simulated rooms with six lidars (docs/scans.md), so it only keeps a
-covariance from being none; what a real lidar errs beside its echoes' noise is read off each drive
-(`path.common_noise`)."""
+"""Least standard deviation of a match [m, rad]: walls are not straighter. No simulated room comes
+below it but a corridor's heading by 681 beams (docs/scans.md); what a real lidar errs beside its
+echoes' noise is read off each drive (`path.common_noise`)."""
 
 COMMON = 1.5
 """By how much more than the matches state (ratio of variances) poses must scatter about their own
-course for a noise that is common to all echoes of a scan: without one it is 1.0 to 1.4 in simulated
+course for a noise that is common to all echoes of a scan: without one it is 0.9 to 1.4 in simulated
 rooms, for no course is a parabola; with a real LD08, whose turns begin anywhere, 5 to 15."""

@@ -48,10 +48,11 @@ class Tracker:
             self._map.take(self.pose, points, spacing)
             return "" if self._map.elements is not None else "few"
         found = match(points, self._map.elements, moved(self.pose, motion))
-        covariance = _covariance(found)
-        flag = _flag(found, covariance, motion_between(self.pose, found.pose), duration)
+        flag = _flag(found, motion_between(self.pose, found.pose), duration)
         if not flag:
-            self.pose, self.covariance = found.pose, covariance + FLOOR**2 * np.eye(3)
+            self.pose, self.covariance = found.pose, found.covariance.copy()
+            least = np.maximum(np.diagonal(found.covariance), FLOOR**2)
+            np.fill_diagonal(self.covariance, least)
             self._map.take(self.pose, points, spacing)
         return flag
 
@@ -67,19 +68,13 @@ def motion_between(one: Floats, other: Floats) -> Floats:
     return np.array([x, y, wrap(yaw)])
 
 
-def _covariance(found: Match) -> Floats:
-    """Infinite where one of the three is not held at all."""
-    information = found.information
-    if found.points < FEWEST_POINTS or np.linalg.det(information) < 1e-9:
-        return np.full((3, 3), np.inf)
-    return np.asarray(found.noise**2 * np.linalg.inv(information))
-
-
-def _flag(found: Match, covariance: Floats, motion: Floats, duration: float) -> Flag:
+def _flag(found: Match, motion: Floats, duration: float) -> Flag:
     if found.points < FEWEST_POINTS:
         return "few"
-    if not np.isfinite(covariance).all():
+    if np.linalg.det(found.information) < 1e-9 or not np.isfinite(found.covariance).all():
         return "weak"
+    # By where the lines lie alone: what few echoes scatter says little of a direction.
+    covariance = found.noise**2 * np.linalg.inv(found.information)
     held = np.linalg.eigvalsh(covariance[:2, :2])
     sigmas = np.sqrt([held[1], covariance[2, 2]])
     if held[0] < WEAK * held[1] or sigmas.max() > LARGEST_SIGMA:

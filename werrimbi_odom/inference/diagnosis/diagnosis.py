@@ -31,7 +31,7 @@ from werrimbi_odom.inference.diagnosis.search import (
     search_round,
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.diagnosis.support import Support, support_of
+from werrimbi_odom.inference.diagnosis.support import Support, askable, support_of
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, chance, told
 from werrimbi_odom.inference.fitting.candidates import Score
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
@@ -88,6 +88,7 @@ def diagnose(
     begun = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
     judge, set_up = begun.judge, begun.set_up
     laid = together(match_finely(judge.fitted_on, set_up.robot, leg, limits))
+    effects = askable(effects, laid, set_up.robot)
     sigma = sigmas_known(laid.runs, kind, sigma_xy, sigma_yaw)
     show(0.1, "calibration")
     fit = first_fit(laid, set_up.robot, kind, sigma)

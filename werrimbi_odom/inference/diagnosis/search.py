@@ -13,8 +13,6 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
-from werrimbi_odom.inference.diagnosis.support import support_of
-from werrimbi_odom.inference.diagnosis.variables import ON_THE_FLOOR
 from werrimbi_odom.inference.fitting.candidates import (
     Score,
     candidates,
@@ -36,12 +34,13 @@ from werrimbi_odom.inference.rules import (
     EDGE_LEGS,
     INSTEAD_FITTED,
     REFITTED,
+    RIVAL,
     SAME_BY_RUN,
     SCORE_FLOOR,
     SHORTLISTED,
     WORTH_A_FIT,
 )
-from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.model.effect import Effect, always_twins
 from werrimbi_odom.model.robot import Robot
 
 
@@ -173,11 +172,6 @@ def search_round(
     held = {applied.name for applied in point.model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     looked_at = candidates(effects, held, channels, len(runs.runs))
-    if runs.own_axes:
-        drive = runs.drive(point.model.robot)
-        looked_at = tuple(
-            each for each in looked_at if not ON_THE_FLOOR & support_of(each, drive).inputs
-        )
     turned = (*CALIBRATION, *before.knobs)
     found = scores(runs, point, kind, turned, looked_at)
     ordered = best_of_each(found)
@@ -203,10 +197,23 @@ def search_round(
     return Round(
         before,
         tuple(ordered),
-        tuple(tried),
+        tuple(sensor_first(tried) if runs.own_axes else tried),
         dependences(runs, point, kind, turned),
         len(looked_at),
     )
+
+
+def sensor_first(tried: Sequence[Fitted]) -> Sequence[Fitted]:
+    """Fits, cheapest first; but of two that are one on any drive what is of the sensor.
+
+    A lidar that was screwed on by hand is askew more often than an axle.
+    """
+    effects = [fit.point.model.robot.effects[-1].effect for fit in tried]
+    for fit, effect in zip(tried[1:], effects[1:], strict=True):
+        near = fit.total - tried[0].total < RIVAL * tried[0].scatter
+        if effect.stage == "reference" and near and always_twins(effect, effects[0]):
+            return [fit, *(other for other in tried if other is not fit)]
+    return tried
 
 
 def best_of_each(found: Sequence[Score]) -> list[Score]:

@@ -4,15 +4,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.inference.diagnosis.variables import ON_THE_FLOOR
 from werrimbi_odom.inference.fitting.candidates import Candidate
+from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.effects_over_run import watched
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
 
 
 class Support(NamedTuple):
@@ -42,6 +47,22 @@ def support_of(candidate: Candidate, drive: Drive[Floats]) -> Support:
             names = ("along", "sideways", "heading")
             outputs |= {name for name, is_so in zip(names, changed, strict=True) if is_so}
     return Support(frozenset(seen.asked), frozenset(outputs))
+
+
+def askable(effects: Sequence[Effect], runs: Together, robot: Robot) -> tuple[Effect, ...]:
+    """Those that such a reference can show: a slope of the floor wants axes that stay where it is.
+
+    Of effects that look at a channel nothing is known here.
+    """
+    if not runs.own_axes:
+        return tuple(effects)
+    drive = runs.drive(robot)
+    return tuple(each for each in effects if each.channels or not _on_the_floor(each, drive))
+
+
+def _on_the_floor(effect: Effect, drive: Drive[Floats]) -> bool:
+    shape = {name: item.typical for name, item in effect.parameters.items() if item.tries}
+    return not ON_THE_FLOOR.isdisjoint(support_of(Candidate(effect, shape), drive).inputs)
 
 
 _OF_WHEELS = {

@@ -26,6 +26,7 @@ from werrimbi_odom.inference.calibration_sizes import base_name, name_of_base
 from werrimbi_odom.inference.chances import noncentrality
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.support import askable
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, OF_THE_MEASUREMENT, Candidate
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import STEP
@@ -81,14 +82,24 @@ def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[D
         and set(effect.channels) <= measured
         and base_name(effect) is None
     ]
+    asked = {each.name for each in askable(effects, diagnosis.runs, robot)}
+    never = [_never(item.effect) for item in candidates if item.name not in asked]
+    candidates = [item for item in candidates if item.name in asked]
     seen = _seen(Experiment(diagnosis.runs, final.point, diagnosis.kind), candidates, final, tried)
     hidden = [item for item in candidates if seen[item.name].hidden]
     if not hidden:
-        return tuple(seen.values())
+        return (*seen.values(), *never)
     shown = _shown_by(diagnosis, hidden, better=False)
     lost = [item for item in hidden if item.name not in shown]
     better = _shown_by(diagnosis, lost, better=True) if lost else {}
-    return tuple(_with_remedy(item, shown, better) for item in seen.values())
+    return (*(_with_remedy(item, shown, better) for item in seen.values()), *never)
+
+
+def _never(effect: Effect) -> DetectionLimit:
+    """What no drive shows with a reference whose axes begin anew."""
+    name, item = next((name, item) for name, item in effect.parameters.items() if not item.tries)
+    limit = DetectionLimit(effect.name, name, item.unit, item.null, math.inf, item.scale)
+    return replace(limit, needs_more=True)
 
 
 def _typical(effect: Effect) -> Candidate:

@@ -267,13 +267,14 @@ def not_shown(told: Told) -> list[str]:
         )
     needing = [sight.effect for sight in hidden if sight.needs_more]
     if needing:
-        poses = bool(np.isfinite(told.diagnosis.runs.start).all(axis=1).any())
-        better = (
-            "one that measures more finely, and more often, does (motion capture)"
-            if poses
-            else "one that measures positions and headings does (motion capture, a scan matcher)"
+        runs, better = told.diagnosis.runs, "positions and headings does (motion capture, scans)"
+        if runs.own_axes:
+            better = "finely, in axes of the floor, does (motion capture)"
+        elif np.isfinite(runs.start).all(axis=1).any():
+            better = "more finely, and more often, does (motion capture)"
+        lines.append(
+            f"No drive shows {listed(needing)} with such a reference; one that measures {better}."
         )
-        lines.append(f"No drive shows {listed(needing)} with such a reference; {better}.")
     return lines
 
 

@@ -232,6 +232,11 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
                 f"- Less of it is explained by this: {dependence_words(others[0])}. What goes with "
                 "the one may go with the other because of how it was driven."
             )
+    if diagnosis.runs.own_axes:
+        lines.append(
+            "What lies on the floor, as a slope or a carpet, was not asked for: axes of matched "
+            "scans begin anew with each drive. Motion capture or a localiser's map shows it."
+        )
     judged_ones = [item for item in diagnosis.ranking if item.holdout is not None]
     best = min(judged_ones, key=lambda item: _after(item.holdout), default=None)
     if best is not None and best.holdout is not None and best.holdout.after < best.holdout.before:

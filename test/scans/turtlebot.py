@@ -1,0 +1,165 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A simulated TurtleBot3 with nothing but its lidar: what is found by /scan, and by the truth.
+
+python -m test.scans.turtlebot        (a minute; writes the table of docs/scans.md)
+"""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+
+import werrimbi_odom as wo
+from test.scans.table import DOCS, put_in
+from werrimbi_odom.simulation import (
+    FieldDrive,
+    Manoeuvre,
+    Nominal,
+    Pose,
+    TrueRobot,
+    free,
+    record,
+    write_field_bag,
+    write_robot_file,
+)
+from werrimbi_odom.simulation.lidar import Lidar, scanned
+from werrimbi_odom.simulation.rooms import around
+
+SCALE, RATIO = 0.9955, 1.0215
+LEFT = 2.0 * 0.033 * SCALE / (1.0 + RATIO)
+ROBOT = TrueRobot(
+    wheel_separation=1.05 * 0.16,
+    left_wheel_radius=LEFT,
+    right_wheel_radius=RATIO * LEFT,
+    left_ticks_per_revolution=4096.0,
+    right_ticks_per_revolution=4096.0,
+    left_wheel_noise=2e-4,
+    right_wheel_noise=2e-4,
+    mass=1.0,
+    nominal=Nominal(0.16, 0.033),
+)
+LIDAR = Lidar(mount=Pose(-0.032, 0.0, 0.03))
+WRONG = (
+    "unequal_wheel_radii",
+    "reference_lever_arm",
+    "track_width",
+    "reference_yaw_offset",
+    "wheel_radius_scale",
+)
+TRUE = {
+    "unequal_wheel_radii.ratio": RATIO,
+    "track_width.multiplier": 1.05,
+    "wheel_radius_scale.multiplier": SCALE,
+    "reference_lever_arm.x": -0.032,
+    "reference_lever_arm.y": 0.0,
+    "reference_yaw_offset.angle": 0.03,
+}
+WITHIN = dict(zip(TRUE, (0.001, 0.002, 0.001, 0.001, 0.001, 0.001), strict=True))
+"""What twenty metres should give, and ten do."""
+
+
+class Recorded(NamedTuple):
+    """One drive, in two ways."""
+
+    bag: Path
+    """Wheels and scans, as anybody records them; no transform tells where the lidar sits."""
+    run: Path
+    """Wheels, and where the lidar truly was, to 0.5 mm and 0.5 mrad."""
+
+
+def recorded(manoeuvre: Manoeuvre, seed: int, folder: Path) -> Recorded:
+    """A drive of nobody's hands, in a room of its own."""
+    path = record(ROBOT, manoeuvre, seed=seed, start=Pose(0.0, 0.0, 0.0)).true_path
+    at = np.arange(0.01, path.t_s[-1], 0.05)
+    step = 2.0 * math.pi / 4096.0
+    left, right = (
+        np.floor(np.interp(at, path.t_s, angle) / step)
+        for angle in (path.left_angle_rad, path.right_angle_rad)
+    )
+    nothing = np.column_stack([at, at, np.zeros(at.size)])
+    sweeps = scanned(path, around(path.x_m, path.y_m, seed), LIDAR, seed)
+    drive = FieldDrive(
+        folder.name,
+        np.column_stack([at, at, step * left, step * right]),
+        nothing,
+        np.column_stack([at, at, np.zeros((at.size, 3))]),
+        np.zeros((at.size, 3)),
+        LIDAR,
+        sweeps,
+    )
+    run = folder.with_name(f"{folder.name}_true")
+    run.mkdir()
+    noise = 5e-4 * np.random.default_rng(seed).standard_normal(sweeps.truth.shape)
+    middle = sweeps.time + 0.5 * (LIDAR.beams - 1) * LIDAR.beam_interval
+    for name, head, columns in (
+        ("ticks", "t_s,left_ticks,right_ticks", (at, left, right)),
+        ("reference", "t_s,x_m,y_m,yaw_rad", (middle, *(sweeps.truth + noise).T)),
+    ):
+        table = np.column_stack(columns)
+        np.savetxt(run / f"{name}.csv", table, "%.7g", ",", header=head, comments="")
+    return Recorded(write_field_bag(drive, ROBOT, folder, mounting=False), run)
+
+
+def found(folder: Path) -> tuple[dict[str, Any], dict[str, Any]]:
+    """What `add` makes of all that is wrong, by scans and by the truth: 10 m, and 10 m held out."""
+    robot = wo.read_robot(write_robot_file(ROBOT, folder / "robot.yaml"))
+    drives = [
+        recorded(free(80.0, seed=3 + n, speed=0.25, yaw_rate=0.8), 10 + n, folder / f"drive_{n}")
+        for n in range(2)
+    ]
+    (fitted, true), (apart, true_apart) = drives
+    every = ",".join(WRONG)
+    by_scans = wo.add(
+        every,
+        robot,
+        [fitted],
+        holdout=[apart],
+        force=True,
+        ticks_topic="/joint_states",
+        reference_topic="/scan",
+    )
+    by_truth = wo.add(every, robot, [true], holdout=[true_apart], force=True)
+    return by_scans.to_dict(), by_truth.to_dict()
+
+
+SHOWN = {
+    "track_width.multiplier": ("wheel base", 1.0, 4),
+    "unequal_wheel_radii.ratio": ("right radius over left", 1.0, 5),
+    "wheel_radius_scale.multiplier": ("both radii", 1.0, 4),
+    "reference_lever_arm.x": ("lidar ahead, mm", 1e3, 1),
+    "reference_lever_arm.y": ("lidar to the left, mm", 1e3, 1),
+    "reference_yaw_offset.angle": ("lidar askew, mrad", 1e3, 1),
+}
+"""By parameter: its words, the unit, and digits."""
+HEAD = "| | true | found by scans | by its true motion (0.5 mm, 0.5 mrad) |"
+
+
+def table(folder: Path) -> list[str]:
+    """The lines of the docs."""
+    both = found(folder)
+    lines = [HEAD, "| --- | --- | --- | --- |"]
+    for name, (says, unit, digits) in SHOWN.items():
+        cells = [_cell(each["parameters"][name], unit, digits) for each in both]
+        lines.append(f"| {says} | {unit * TRUE[name]:g} | {' | '.join(cells)} |")
+    errors = [
+        f"{1e3 * each['holdout']['before']:.1f} mm, then {1e3 * each['holdout']['after']:.1f} mm"
+        for each in both
+    ]
+    return [*lines, f"| error of held-out legs of 1 m | | {' | '.join(errors)} |"]
+
+
+def _cell(told: dict[str, float | None], unit: float, digits: int) -> str:
+    value, std = (unit * (told[key] or 0.0) for key in ("value", "std"))
+    return f"{value:.{digits}f} ± {std:.{digits}f}" if std else f"{value:g}, as given"
+
+
+if __name__ == "__main__":
+    with tempfile.TemporaryDirectory() as place:
+        lines = table(Path(place))
+    print("\n".join(lines))
+    put_in(DOCS, lines)
