@@ -67,6 +67,8 @@ class Fitted:
     """By effect, how much the cost would rise without it."""
     covariance: Floats
     """Of the values of the design's columns."""
+    moves: Floats
+    """Of the design's columns, for a unit of each number that was free; (p, q)."""
     design: Design
     held: tuple[str, ...]
     """Shared directions (of `CALIBRATED`, or knobs) that the runs do not determine: as given."""
@@ -163,6 +165,7 @@ def fitted(
         tuple(knob.name for knob in result.at_bound if knob.name not in MULTIPLIERS),
         importance,
         covariance,
+        ways.matrix,
         design,
         ways.held,
     )
