@@ -11,7 +11,7 @@ import numpy as np
 
 from werrimbi_odom.inference.adding.start import Drives
 from werrimbi_odom.inference.calibration_sizes import with_sizes_in_multipliers
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.selection import Fitted, grain_of
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, spread_over_sizes
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, START_YAW, Model, own_of, shared_of
@@ -56,7 +56,8 @@ def with_spread(
 ) -> Fitted:
     """The fit with covariances of what is told that count all that was chosen by the same drives.
 
-    Which sizes differ from the file's (`spread_over_sizes`), and the noise (`Precision.widening`).
+    Which sizes differ from the file's (`spread_over_sizes`), and the noise (`Precision.widening`);
+    and the edge of a threshold is no finer than its law (`grain_of`).
     """
     columns = [knob.name for knob, run in fit.design.columns]
     spread = spread_over_sizes(fit, given, wanted, sizes)
@@ -69,7 +70,8 @@ def with_spread(
     wide = np.ones(len(columns))
     wide[told] = precision.widening(noises, [columns[index] for index in told])
     covariance = fit.covariance.copy()
-    covariance[np.ix_(told, told)] = (spread * np.outer(wide, wide))[np.ix_(told, told)]
+    spread = spread * np.outer(wide, wide) + np.diag(grain_of(fit.design, fit.point.model.robot))
+    covariance[np.ix_(told, told)] = spread[np.ix_(told, told)]
     return replace(fit, covariance=covariance)
 
 
