@@ -23,6 +23,7 @@ ABOVE = Parameter(
     bounds=(0.01, 20.0),
     says="speed of the rim beyond which they are lost",
     tries=(0.05, 0.1, 0.15, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0, 4.0, 8.0),
+    grain=RAMP,
 )
 
 

@@ -10,11 +10,12 @@ The base goes by a third name where it is an effect's own parameter (`Parameter.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, changed
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -63,6 +64,17 @@ def sizes_of(robot: Robot) -> Sizes:
             ratio = applied.values["ratio"]
             left, right = left * 2.0 / (1.0 + ratio), right * 2.0 * ratio / (1.0 + ratio)
     return Sizes(base, left, right)
+
+
+def with_sizes_in_multipliers(robot: Robot, given: Robot) -> Robot:
+    """The robot with the calibration effects that the given file does not hold as multipliers."""
+    held = {item.name for item in given.effects}
+    moved = [item for item in robot.effects if item.name in LOGARITHMS and item.name not in held]
+    if not moved:
+        return robot
+    effects = tuple(item for item in robot.effects if item not in moved)
+    sizes = sizes_of(replace(robot, effects=tuple(moved)))
+    return changed(replace(robot, effects=effects), dict(zip(MULTIPLIERS, sizes, strict=True)))
 
 
 def base_name(effect: Effect) -> str | None:

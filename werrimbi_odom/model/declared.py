@@ -35,6 +35,9 @@ class Parameter:
     as_base : bool
         It is the robot file's `wheel_separation_multiplier` by another name: a fit turns that, and
         what it finds is told and written as this.
+    grain : float
+        Given for a threshold: the share of its value over which the law lets it set in, because
+        speeds and the like are not counted finely enough for an edge. A fit knows no more of it.
     """
 
     unit: str
@@ -45,6 +48,7 @@ class Parameter:
     per_run: bool = False
     tries: tuple[float, ...] = ()
     as_base: bool = False
+    grain: float = 0.0
 
     @property
     def scale(self) -> float:

@@ -18,6 +18,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, Side
 from werrimbi_odom.inference.adding.fits import Show, fits_of
+from werrimbi_odom.inference.adding.known import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.start import (
     Drives,
     drives_of,
@@ -44,14 +45,13 @@ from werrimbi_odom.inference.diagnosis.pairs import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, sizes_needed, with_sizes
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     MULTIPLIERS,
     NUISANCES,
     Model,
 )
-from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
+from werrimbi_odom.inference.fitting.noise import NoiseEstimate, with_noise
 from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.rules import STRANGE_NOISE, VERY_SURE
 from werrimbi_odom.inference.set_up.mistakes import SetUp
@@ -145,21 +145,23 @@ def add_effects(
     drives = drives_of(judge.train, begun, kind, limits, sigma)
     fits = fits_of(effects, drives, begun, robot, also, show)
     fit = fits.all
-    sizes = sizes_needed(fit, robot, _calibrations_wanted(effects, set_up))
+    wanted = _calibrations_wanted(effects, set_up)
+    sizes = sizes_needed(fit, robot, wanted)
     fit = with_sizes(drives.laid, kind, fit, robot, sizes)
     show(0.75, "judging")
     train, kept = _judged(judge, fits.none, fit)
     alone = {name: _at_home(judge, each, kept) for name, each in fits.without.items()}
     question = Question(tuple(effects), drives, fits, fit, robot, also, kept, alone, set_up)
     chances, objections = question.chances, question.objections
-    noises, remaining, misfit, sane = _noise(drives, fit, sigma)
+    noises, remaining, misfit, sane = _noise(drives, as_written(drives, fit, robot))
     explained = misfit is None and sane
     model = fit.point.model
     per_run = tuple(sorted(set(model.own[0]) - set(NUISANCES))) if model.own else ()
     written = fit
     if not holdout:
         show(0.9, "all runs")
-        written = _on_all(judge, drives, fit, robot, runs, limits, sizes)
+        drives, written = _on_all(judge, drives, fit, robot, runs, limits, sizes)
+    known = with_spread(drives, written, robot, wanted, sizes, noises)
     final = to_write(written.point.model, robot)
     final = _with_noise_of(final, robot)
     if explained:
@@ -176,11 +178,11 @@ def add_effects(
     )
     return Added(
         effects=tuple(effects),
-        fitted={effect.name: parameters_of(effect, written, robot) for effect in effects},
+        fitted={effect.name: parameters_of(effect, known, robot) for effect in effects},
         also=tuple(name for name in also if name not in chances),
         given=robot,
         robot=final,
-        multiplier_stds={name: std_of(written, name) or None for name in MULTIPLIERS},
+        multiplier_stds={name: std_of(known, name) or None for name in MULTIPLIERS},
         train=train,
         holdout=kept,
         without={name: sides.before for name, sides in alone.items()},
@@ -264,12 +266,10 @@ def _legs(prepared: Prepared, model: Model) -> Legs:
 
 
 def _noise(
-    drives: Drives, fit: Fitted, sigma: tuple[float | None, float | None]
+    drives: Drives, fit: Fitted
 ) -> tuple[dict[str, NoiseEstimate], tuple[Dependence, ...], Misfit | None, bool]:
     """Noise of the wheels, what the errors still depend on, as diagnose tells it; sane wheels."""
-    held = (sigma[0] is not None, sigma[1] is not None)
-    costs = Costs(drives.laid, fit.point, drives.kind)
-    noises = noise_estimates(costs, fit.point.variances, held)
+    noises = noises_of(drives, fit)
     found = dependences(drives.laid, fit.point, drives.kind, (*CALIBRATION, *fit.knobs))
     remaining = tuple(cell for cell in found if cell.p_value < VERY_SURE)
     wheels = [noises[name] for name in WHEEL_NOISES]
@@ -296,10 +296,10 @@ def _on_all(
     runs: Sequence[Run],
     limits: EncoderLimits | None,
     sizes: Sizes,
-) -> Fitted:
+) -> tuple[Drives, Fitted]:
     """The same model fitted on all runs, those put aside among them."""
     if len(runs) < 2:
-        return fit  # of a single run the last part was put aside; the rest is what there is
+        return drives, fit  # of a single run the last part was put aside; the rest is what there is
     both = [
         drives,
         drives_of(judge.holdout, fit.point.model.robot, judge.kind, limits, drives.sigma),
@@ -310,6 +310,5 @@ def _on_all(
     home = judge.at_home(fit.point.model)
     own = (*fit.point.model.own, *home.model.own)
     point = replace(fit.point, model=Model(fit.point.model.robot, own), excluded=jumped)
-    return with_sizes(
-        every.laid, every.kind, every.fit(point, fit.names, fit.knobs, given), given, sizes
-    )
+    again = every.fit(point, fit.names, fit.knobs, given)
+    return every, with_sizes(every.laid, every.kind, again, given, sizes)

@@ -4,31 +4,24 @@
 
 from __future__ import annotations
 
-import math
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.chances import NORMAL_95, student_quantile
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.fitting.costs import Costs
-from werrimbi_odom.inference.fitting.design import slopes_of, spread_out, unexpected
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, MULTIPLIERS, START_YAW, Knob
-from werrimbi_odom.inference.fitting.likelihood import Variances, relative_errors
-from werrimbi_odom.inference.fitting.noise import (
-    NoiseEstimate,
-    noise_estimates,
-    with_noise,
-    with_noises,
-)
+from werrimbi_odom.inference.fitting.knobs import CALIBRATION, MULTIPLIERS, START_YAW
+from werrimbi_odom.inference.fitting.likelihood import relative_errors
+from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
+from werrimbi_odom.inference.fitting.precision import Precision
 from werrimbi_odom.inference.fitting.prediction import predict
-from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
-from werrimbi_odom.inference.rules import LEAST_KNOWN, STRANGE_NOISE, SURE
+from werrimbi_odom.inference.rules import STRANGE_NOISE, SURE
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -100,7 +93,8 @@ def calibrate(
     knobs = (*CALIBRATION, *begin.model.nuisance_knobs)
     fit = fit_model(runs, begin, kind, knobs, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
     held = (sigma_xy is not None, sigma_yaw is not None)
-    precision = _precision(runs, fit, kind, knobs)
+    local = [knob for knob in knobs if knob.name != START_YAW]
+    precision = Precision.of(together(runs), fit.point, kind, local, fit.ways.matrix)
     noises = noise_estimates(
         Costs(runs, fit.point, kind), fit.point.variances, held, precision.information
     )
@@ -108,9 +102,8 @@ def calibrate(
     found = dependences(together(runs), fit.point, kind, turned)
     misfit = tuple(item for item in found if item.p_value < SURE)
     strange = _strange(fit, noises)
-    covariance = precision.averaged(noises)
-    spread = np.sqrt(np.diag(covariance))
     names = [knob.name for knob in fit.free]
+    spread = np.sqrt(np.diag(fit.covariance)) * precision.widening(noises, names)
     multipliers = {}
     for name in MULTIPLIERS:
         determined = name in names
@@ -121,93 +114,24 @@ def calibrate(
             float(spread[names.index(name)]) if honest else None,
             determined,
         )
-    outer = np.outer(spread, spread)
     wheels = {
         name: noises[name]
         for name in ("left_wheel_noise", "right_wheel_noise")
         if noises[name].determined and noises[name].value <= STRANGE_NOISE
     }
     changes = {name: item.value for name, item in multipliers.items() if item.determined}
-    outer = np.outer(spread, spread)
+    usual = np.sqrt(np.diag(fit.covariance))
     return Calibration(
         robot=with_noise(fit.robot, wheels),
         multipliers=multipliers,
         noises=noises,
         changes=changes | {name: item.value for name, item in wheels.items()},
-        correlation=covariance / np.where(outer > 0.0, outer, 1.0),
+        correlation=fit.covariance / np.outer(usual, usual),
         misfit=misfit,
         strange=strange,
         excluded=fit.point.excluded,
         fit=fit,
     )
-
-
-@dataclass(frozen=True, slots=True)
-class _Precision:
-    """How well a fit's numbers are known, as a function of the noise."""
-
-    runs: Together
-    fit: ModelFit
-    kind: ReferenceKind
-    local: tuple[Knob, ...]
-    slopes: Floats
-
-    def _marks(self, variances: Variances) -> tuple[Floats, list[int]]:
-        """Whitened derivatives in all that was fitted, and which columns are shared knobs."""
-        point = replace(self.fit.point, variances=variances)
-        found = unexpected(self.runs, point, self.kind)
-        marks = found.marks(self.slopes)
-        design = spread_out(self.runs, point.model, found.whitened(), marks, self.local)
-        names = [knob.name for knob in self.fit.free]
-        where = [
-            number
-            for number, (knob, run) in enumerate(design.columns)
-            if run < 0 and knob.name in names
-        ]
-        return design.flat()[1], where
-
-    def information(self, variances: Variances) -> float:
-        """Logarithm of its determinant."""
-        marks = self._marks(variances)[0] @ self.fit.ways.matrix
-        return float(np.linalg.slogdet(marks.T @ marks)[1])
-
-    def covariance(self, variances: Variances) -> Floats:
-        """Of the fitted multipliers."""
-        marks, where = self._marks(variances)
-        return self.fit.ways.covariance(marks)[np.ix_(where, where)]
-
-    def averaged(self, noises: Mapping[str, NoiseEstimate]) -> Floats:
-        """The same over what the noise may be, and widened so that 1.96 of it hold 95 %.
-
-        A fit takes its noise for known. Here the covariance is averaged over the log-normal law of
-        each noise (law of total variance, three points by Gauss and Hermite), and standard
-        deviations are widened by Student's t, with the degrees of freedom by which the noise tells
-        each of them (Satterthwaite, Biometrics 2, 1946).
-        """
-        given = self.fit.point.variances
-        centre = with_noises(given, {name: item.value for name, item in noises.items()})
-        middle = self.covariance(centre)
-        found, scatter = middle, np.zeros(middle.shape[0])
-        for name, noise in noises.items():
-            step = math.sqrt(3.0) * min(noise.std / noise.value, LEAST_KNOWN)
-            if step > 0.0:
-                values = [noise.value * math.exp(sign * step) for sign in (1.0, -1.0)]
-                sides = [self.covariance(with_noises(centre, {name: value})) for value in values]
-                found = found + (sides[0] + sides[1] - 2.0 * middle) / 6.0
-                more, less = (np.log(np.diag(side)) for side in sides)
-                scatter += (more - less) ** 2 / 12.0  # variance of the logarithm of a variance
-        # That of an estimate of n degrees of freedom is 2 / n; below three t has no deviation.
-        freedom = 2.0 / np.clip(scatter, 1e-6, 0.6)
-        wide = np.array([student_quantile(0.975, degrees) for degrees in freedom]) / NORMAL_95
-        return np.asarray(found * np.outer(wide, wide))
-
-
-def _precision(
-    runs: Sequence[MatchedRun], fit: ModelFit, kind: ReferenceKind, knobs: Sequence[Knob]
-) -> _Precision:
-    laid = together(runs)
-    local = tuple(knob for knob in knobs if knob.name != START_YAW)
-    return _Precision(laid, fit, kind, local, slopes_of(laid, fit.point.model, local))
 
 
 def _strange(fit: ModelFit, noises: dict[str, NoiseEstimate]) -> tuple[str, ...]:

@@ -67,6 +67,8 @@ class Fitted:
     """By effect, how much the cost would rise without it."""
     covariance: Floats
     """Of the values of the design's columns."""
+    moves: Floats
+    """Of the design's columns, for a unit of each number that was free; (p, q)."""
     design: Design
     held: tuple[str, ...]
     """Shared directions (of `CALIBRATED`, or knobs) that the runs do not determine: as given."""
@@ -133,7 +135,7 @@ def fitted(
         ),
         key=lambda item: item[0],
     )
-    covariance = covariance_of(design, ways)
+    covariance = covariance_of(design, ways) + np.diag(grain_of(design, result.robot))
     total, rise, kept = weighed[0]
     rises = {chosen: item for _, item, chosen in weighed}
     importance = {name: rise_without(name, design, covariance, result.point) for name in names}
@@ -163,6 +165,7 @@ def fitted(
         tuple(knob.name for knob in result.at_bound if knob.name not in MULTIPLIERS),
         importance,
         covariance,
+        ways.matrix,
         design,
         ways.held,
     )
@@ -199,6 +202,20 @@ def covariance_of(design: Design, ways: Directions) -> Floats:
     untold = ~ways.matrix.any(axis=1)
     covariance[untold, untold] = 1e12
     return np.asarray(covariance)
+
+
+def grain_of(design: Design, robot: Robot) -> Floats:
+    """Variances (p,) of what laws leave open of their own thresholds (`Parameter.grain`).
+
+    Where in the stretch over which it sets in the robot's own edge lies is anybody's guess: evenly.
+    """
+    declared = {
+        f"{item.name}.{name}": item.effect.parameters[name].grain * float(np.mean(value))
+        for item in robot.effects
+        for name, value in item.values.items()
+    }
+    widths = np.array([declared.get(knob.name, 0.0) for knob, _ in design.columns])
+    return np.asarray(widths**2 / 12.0)
 
 
 def rise_without(name: str, design: Design, covariance: Floats, point: Point) -> float:

@@ -164,8 +164,8 @@ def best_sizes(diagnosis: Diagnosis) -> Mapping[str, tuple[float, float | None]]
     given, final = diagnosis.given, diagnosis.final
     if mistakes(diagnosis):
         return {name: (getattr(given, name), None) for name in MULTIPLIERS}
-    needed = sizes_needed(final, given, set(diagnosis.found) & set(CALIBRATED))
-    return dict(sizes_at(final, given, needed))
+    wanted = set(diagnosis.found) & set(CALIBRATED)
+    return dict(sizes_at(final, given, wanted, sizes_needed(final, given, wanted)))
 
 
 def one_wheel(diagnosis: Diagnosis) -> str | None:
@@ -176,11 +176,7 @@ def one_wheel(diagnosis: Diagnosis) -> str | None:
     found = set(diagnosis.found) & set(CALIBRATED)
     if mistakes(diagnosis) or not {"unequal_wheel_radii", "wheel_radius_scale"} <= found:
         return None
-    sizes = sizes_at(
-        diagnosis.final,
-        diagnosis.given,
-        sizes_needed(diagnosis.final, diagnosis.given, found),
-    )
+    sizes = best_sizes(diagnosis)
     left, right = (
         abs(math.log(sizes[name][0] / getattr(diagnosis.given, name))) for name in MULTIPLIERS[1:]
     )

@@ -1,0 +1,96 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""How well a fit's numbers are known, as a function of the noise that it found with them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.chances import NORMAL_95, student_quantile
+from werrimbi_odom.inference.fitting.design import Design, Point, slopes_of, spread_out, unexpected
+from werrimbi_odom.inference.fitting.knobs import Knob
+from werrimbi_odom.inference.fitting.likelihood import Variances
+from werrimbi_odom.inference.fitting.noise import NoiseEstimate, with_noises
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.linear import covariance_of
+from werrimbi_odom.inference.rules import LEAST_KNOWN
+from werrimbi_odom.model.pose import Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Precision:
+    """What whitened derivatives say of the numbers that were free, at any noise."""
+
+    runs: Together
+    point: Point
+    kind: ReferenceKind
+    local: tuple[Knob, ...]
+    """Columns of `slopes`."""
+    slopes: Floats
+    moves: Floats
+    """Of the design's columns, for a unit of each number that was free, (p, q)."""
+
+    @classmethod
+    def of(
+        cls,
+        runs: Together,
+        point: Point,
+        kind: ReferenceKind,
+        local: Sequence[Knob],
+        moves: Floats,
+    ) -> Precision:
+        """Of a fit that ended at a point; start headings are no local knobs."""
+        knobs = tuple(local)
+        return cls(runs, point, kind, knobs, slopes_of(runs, point.model, knobs), moves)
+
+    def _design(self, variances: Variances) -> Design:
+        point = replace(self.point, variances=variances)
+        found = unexpected(self.runs, point, self.kind)
+        marks = found.marks(self.slopes)
+        return spread_out(self.runs, point.model, found.whitened(), marks, self.local)
+
+    def information(self, variances: Variances) -> float:
+        """Logarithm of the determinant of the information on what was free."""
+        marks = self._design(variances).flat()[1] @ self.moves
+        return float(np.linalg.slogdet(marks.T @ marks)[1])
+
+    def _variances_of(self, names: Sequence[str], variances: Variances) -> Floats:
+        """Of shared knobs."""
+        design = self._design(variances)
+        columns = [knob.name for knob, _ in design.columns]
+        rows = self.moves[[columns.index(name) for name in names]]
+        inside = covariance_of(design.flat()[1] @ self.moves)
+        return np.asarray(np.einsum("pi,ij,pj->p", rows, inside, rows))
+
+    def widening(self, noises: Mapping[str, NoiseEstimate], names: Sequence[str]) -> Floats:
+        """By how much to widen standard deviations of shared knobs so that 1.96 of them hold 95 %.
+
+        A fit takes its noise for known. Here variances are averaged over the log-normal law of each
+        noise (law of total variance, three points by Gauss and Hermite), and standard deviations
+        are widened by Student's t, with the degrees of freedom by which the noise tells each of
+        them (Satterthwaite, Biometrics 2, 1946).
+        """
+        given = self.point.variances
+        centre = with_noises(given, {name: item.value for name, item in noises.items()})
+        fitted = self._variances_of(names, given)
+        middle = self._variances_of(names, centre)
+        found, scatter = middle, np.zeros(len(names))
+        for name, noise in noises.items():
+            step = math.sqrt(3.0) * min(noise.std / noise.value, LEAST_KNOWN)
+            if step > 0.0:
+                values = [noise.value * math.exp(sign * step) for sign in (1.0, -1.0)]
+                more, less = (
+                    self._variances_of(names, with_noises(centre, {name: value}))
+                    for value in values
+                )
+                found = found + (more + less - 2.0 * middle) / 6.0
+                scatter += np.log(more / less) ** 2 / 12.0  # of the logarithm of a variance
+        # That of an estimate of n degrees of freedom is 2 / n; below three t has no deviation.
+        freedom = 2.0 / np.clip(scatter, 1e-6, 0.6)
+        wide = np.array([student_quantile(0.975, degrees) for degrees in freedom]) / NORMAL_95
+        return np.asarray(wide * np.sqrt(found / fitted))
