@@ -21,7 +21,6 @@ from werrimbi_odom.simulation import (
     free,
     hide,
     record,
-    seen_in_the_field,
     write_field_bag,
 )
 from werrimbi_odom.simulation.bag import EPOCH
@@ -132,13 +131,15 @@ def test_a_localiser_is_read_as_a_chain_of_transforms(tmp_path: Path) -> None:
     assert np.hypot(first[1] - true.x_m[0], first[2] - true.y_m[0]) < 0.2
 
 
-def test_what_is_made_in_records_is_refused(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    assert seen_in_the_field(hide("track_width", seed=1).peculiarity)
-    assert not seen_in_the_field(hide("left_missed_ticks", seed=1).peculiarity)
-    code = main(
-        ["simulate", "--like", "field", "--hide", "encoder_skew", "--out", str(tmp_path / "x")]
-    )
-    assert code == 2
-    assert "encoder_skew" in capsys.readouterr().err
+def test_what_is_made_in_records_is_hidden_too() -> None:
+    """Counts that are lost at speed, and stamps of gyro and localiser that are late."""
+    odd = [hide("left_missed_ticks", 0.05, seed=1).peculiarity]
+    odd.append(hide("reference_delay", 0.1, seed=1).peculiarity)
+    drive = as_in_the_field(recorded(), ROBOT, seed=5, robot_seed=6, hidden=odd)
+    lost = seen().wheels[-1, 2:] - drive.wheels[-1, 2:]
+    assert lost[0] > 1.0
+    assert lost[1] == 0.0
+    # What was seen at t is stamped 0.1 s later: five samples of the gyro, one of the localiser.
+    for now, late, rows in ((seen().imu, drive.imu, 5), (seen().localiser, drive.localiser, 1)):
+        apart = [np.abs(np.sin(now[:-k, -1] - late[k:, -1])).mean() for k in range(1, 10)]
+        assert 1 + int(np.argmin(apart)) == rows

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, TypeVar
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
-    from werrimbi_odom.simulation import Hidden, Recording, TrueRobot
+    from werrimbi_odom.simulation import Hidden, Peculiarity, Recording, TrueRobot
 
 Item = TypeVar("Item")
 
@@ -93,13 +93,6 @@ def run(arguments: argparse.Namespace) -> int:
         counters_keep_zero=arguments.counters_keep_zero,
     )
     odd = [each.peculiarity for each in hidden]
-    if arguments.like == "field":
-        unseen = [each.entry.name for each in hidden if not _seen(each)]
-        if unseen:
-            raise InputError(
-                f"--like field cannot hide {', '.join(unseen)}: it is made in the records of "
-                "counters or motion capture, which are not recorded so"
-            )
     seen: dict[str, dict[str, object]] = {}
     with _new_folder(arguments.out) as folder:
         written = robot
@@ -110,7 +103,9 @@ def run(arguments: argparse.Namespace) -> int:
         try:
             for name, recording in _with_progress(runs, len(simulation.drives(arguments.seed))):
                 if arguments.like == "field":
-                    seen[name] = _in_the_field(recording, written, arguments.seed, folder / name)
+                    seen[name] = _in_the_field(
+                        recording, written, odd, arguments.seed, folder / name
+                    )
                 else:
                     simulation.write_run(recording, folder / name)
         except (simulation.UnstableError, ValueError) as error:
@@ -125,20 +120,20 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _seen(hidden: Hidden) -> bool:
-    from werrimbi_odom.simulation import seen_in_the_field
-
-    return seen_in_the_field(hidden.peculiarity)
-
-
 def _in_the_field(
-    recording: Recording, robot: TrueRobot, seed: int, folder: Path
+    recording: Recording,
+    robot: TrueRobot,
+    odd: Sequence[Peculiarity],
+    seed: int,
+    folder: Path,
 ) -> dict[str, object]:
     """Write a drive as a bag; what of it nobody told the robot."""
     from werrimbi_odom import simulation
 
     number = zlib.crc32(folder.name.encode() + folder.parent.name.encode())
-    drive = simulation.as_in_the_field(recording, robot, seed=1000 * seed + number, robot_seed=seed)
+    drive = simulation.as_in_the_field(
+        recording, robot, seed=1000 * seed + number, robot_seed=seed, hidden=odd
+    )
     simulation.write_field_bag(drive, robot, folder)
     return drive.truth
 

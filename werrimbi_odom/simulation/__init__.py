@@ -17,7 +17,7 @@ find).
 """
 
 from .engine import Pose, TruePath, UnstableError
-from .field import FieldDrive, FieldSensors, as_in_the_field, seen_in_the_field
+from .field import FieldDrive, FieldSensors, as_in_the_field
 from .field_bag import write_field_bag
 from .hidden import (
     CATALOGUE,
@@ -78,7 +78,6 @@ __all__ = [
     "out_and_back",
     "pivots",
     "record",
-    "seen_in_the_field",
     "session",
     "spin",
     "spins",

@@ -22,7 +22,7 @@ from .lidar import Lidar, Sweeps, scanned
 from .recording import Recording
 from .robot import TrueRobot
 from .rooms import around
-from .sensors import count, sampling_times
+from .sensors import ReferenceSensor, count, sampling_times
 
 Floats = NDArray[np.float64]
 
@@ -125,6 +125,7 @@ def as_in_the_field(
     seed: int,
     robot_seed: int = 0,
     sensors: FieldSensors | None = None,
+    hidden: Sequence[Peculiarity] = (),
 ) -> FieldDrive:
     """See a drive with ordinary sensors, after somebody has held and carried the robot in it.
 
@@ -132,6 +133,9 @@ def as_in_the_field(
     ----------
     seed, robot_seed : int
         Of this drive, and of what is the robot's in all its drives (the gyro's bias and scale).
+    hidden : sequence of Peculiarity
+        What the drive was recorded with. Those of counters show in the wheels' angles; those of a
+        reference in the localiser, and in the gyro as far as they delay a heading.
     """
     sensors = sensors or FieldSensors()
     rng = np.random.default_rng([seed, 77])
@@ -141,29 +145,35 @@ def as_in_the_field(
     end = float(path.t_s[-1])
 
     at = sampling_times(sensors.wheels_hz, end, rng)
-    zeros = rng.integers(-100_000, 100_000, 2)
-    sides = (
-        (path.left_angle_rad, robot.left_ticks_per_revolution),
-        (path.right_angle_rad, robot.right_ticks_per_revolution),
-    )
+    counted = _counted(recording, path, robot, at, rng.integers(-100_000, 100_000, 2))
+    for number, odd in enumerate(hidden):
+        counted = odd.recording(counted, robot, np.random.default_rng([seed, 79, number]))
     left, right = (
-        np.asarray(count(path.t_s, angle, at, ticks, int(zero)) * (2.0 * math.pi / ticks), float)
-        for (angle, ticks), zero in zip(sides, zeros, strict=True)
+        np.asarray(ticks * (2.0 * math.pi / turn), float)
+        for ticks, turn in (
+            (counted.left_ticks, robot.left_ticks_per_revolution),
+            (counted.right_ticks, robot.right_ticks_per_revolution),
+        )
     )
     wheels = np.column_stack([*_stamped(at, sensors, rng), left, right])
 
     at = sampling_times(sensors.imu_hz, end, rng)
-    rate = np.interp(at, path.t_s, np.gradient(path.yaw_rad, path.t_s))
+    exact = ReferenceSensor(sigma_xy=0.0, sigma_yaw=0.0)
+    for odd in hidden:
+        exact = odd.reference(exact)
+    felt = at - exact.delay - exact.heading_delay
+    rate = np.interp(felt, path.t_s, np.gradient(path.yaw_rad, path.t_s))
     rate = gyro.scale * rate + gyro.bias + gyro.noise * rng.standard_normal(at.size)
     imu = np.column_stack([*_stamped(at, sensors, rng), rate])
 
     at = sampling_times(sensors.localiser_hz, end, rng)
-    poses, jumped = _localised(path, at, sensors, rng)
+    errors, jumped = _wandering(at.size, sensors, rng)
+    poses = np.column_stack(exact.measure(path, at, rng)) + errors
     localiser = np.column_stack([*_stamped(at, sensors, rng), poses])
     truth: dict[str, object] = {
         "held": [_by_the_bag(held)],
         "carried": [_by_the_bag(carried)],
-        "localiser_jumps": _by_the_bag(jumped),
+        "localiser_jumps": _by_the_bag(at[jumped].tolist()),
         "gyro": {"bias_rad_per_s": gyro.bias, "scale": gyro.scale},
     }
     odometry = _dead_reckoned(left, right, robot)
@@ -172,14 +182,17 @@ def as_in_the_field(
     return FieldDrive(recording.name, wheels, imu, localiser, odometry, sensors.lidar, scans, truth)
 
 
-def seen_in_the_field(odd: Peculiarity) -> bool:
-    """Whether a peculiarity is on the robot or its floor, so that this way of seeing shows it.
-
-    One that is made in the records of counters, or of motion capture, is not.
-    """
-    return (
-        type(odd).recording is Peculiarity.recording
-        and type(odd).reference is Peculiarity.reference
+def _counted(
+    recording: Recording, path: TruePath, robot: TrueRobot, at: Floats, zeros: NDArray[np.int64]
+) -> Recording:
+    """The same recording along another path, its counters read at other times."""
+    sides = (
+        (path.left_angle_rad, robot.left_ticks_per_revolution, zeros[0]),
+        (path.right_angle_rad, robot.right_ticks_per_revolution, zeros[1]),
+    )
+    left, right = (count(path.t_s, angle, at, ticks, int(zero)) for angle, ticks, zero in sides)
+    return replace(
+        recording, true_path=path, t_s=at, left_ticks=left, right_ticks=right, channels={}
     )
 
 
@@ -261,25 +274,22 @@ def _somewhere(where: NDArray[np.bool_], part: Sequence[float], rng: np.random.G
     return first + int(rng.choice(rows) if rows.size else (last - first) // 2)
 
 
-def _localised(
-    path: TruePath, at: Floats, sensors: FieldSensors, rng: np.random.Generator
-) -> tuple[Floats, list[float]]:
-    """Poses in the map, (k, 3), with an error that wanders, and when it jumped [s]."""
+def _wandering(
+    count: int, sensors: FieldSensors, rng: np.random.Generator
+) -> tuple[Floats, NDArray[np.intp]]:
+    """Errors of a localiser's poses, (k, 3) [m, m, rad], and the rows at which it jumps."""
     sizes = np.array([sensors.wander_xy, sensors.wander_xy, sensors.wander_yaw])
     kept = math.exp(-1.0 / (sensors.localiser_hz * sensors.wander_time))
-    steps = rng.standard_normal((at.size, 3)) * sizes * math.sqrt(1.0 - kept * kept)
-    rows = np.sort(rng.choice(np.arange(at.size // 10, at.size), sensors.jumps, replace=False))
+    steps = rng.standard_normal((count, 3)) * sizes * math.sqrt(1.0 - kept * kept)
+    rows = np.sort(rng.choice(np.arange(count // 10, count), sensors.jumps, replace=False))
     jump = np.array([sensors.jump_xy, sensors.jump_xy, sensors.jump_yaw])
     error, errors = sizes * rng.standard_normal(3), []
-    for row in range(at.size):
+    for row in range(count):
         error = kept * error + steps[row]
         if row in rows:
             error = jump * rng.standard_normal(3)  # it has found itself anew, or lost itself
         errors.append(error)
-    true = np.column_stack(
-        [np.interp(at, path.t_s, each) for each in (path.x_m, path.y_m, path.yaw_rad)]
-    )
-    return true + np.array(errors), [float(at[row]) for row in rows]
+    return np.array(errors), rows
 
 
 def _dead_reckoned(left: Floats, right: Floats, robot: TrueRobot) -> Floats:
