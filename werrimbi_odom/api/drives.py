@@ -41,6 +41,9 @@ class Options(TypedDict, total=False):
     """Topic of the ticks, of bags that are still to be read."""
     reference_topic: str | Sequence[str] | None
     """The same of the reference."""
+    references: Sequence[str | Path]
+    """What holds the reference of each drive, then of each held-out one, where the drives themselves
+    do not: other bags, or folders with reference.csv."""
     effects: Sequence[str | Path]
     """Files with effects of your own, which the robot file may name."""
     force_reference: bool
@@ -139,6 +142,7 @@ def how_of(**options: Unpack[Options]) -> How:
         sigma_yaw=options.get("reference_sigma_yaw"),
         ticks_topic=options.get("ticks_topic"),
         reference_topic=options.get("reference_topic"),
+        references=tuple(Path(place) for place in options.get("references", ())),
         effects=tuple(Path(file) for file in options.get("effects", ())),
         force=options.get("force_reference", False),
     )
