@@ -76,6 +76,27 @@ def test_odometry_of_lists_has_a_covariance(drives: Path) -> None:
         wo.odometry(robot, [0.0, 0.1], [0], [0])
 
 
+def test_references_that_lie_elsewhere(drives: Path, tmp_path: Path) -> None:
+    """Counters in one folder and what was measured in another are the same drives."""
+    robot, apart = wo.read_robot(drives / "robot.yaml"), []
+    for run in runs(drives):
+        for name in ("ticks", "reference"):
+            folder = tmp_path / name / run.name
+            folder.mkdir(parents=True)
+            (folder / f"{name}.csv").symlink_to(run / f"{name}.csv")
+        apart.append(tmp_path / "ticks" / run.name)
+    references = sorted((tmp_path / "reference").iterdir())
+    found = wo.compare(robot, apart, references=references).to_dict()
+    assert found["legs"] == wo.compare(robot, runs(drives)).to_dict()["legs"]
+    with pytest.raises(wo.InputError, match="2 times"):
+        wo.compare(robot, apart, references=references[:2])
+    out = [tmp_path / name for name in ("apart.csv", "whole.csv")]
+    common = ["odom", "--robot", str(robot.path), "--out"]
+    assert main([*common, str(out[0]), str(apart[0]), "--reference", str(references[0])]) == 0
+    assert main([*common, str(out[1]), str(runs(drives)[0])]) == 0
+    assert out[0].read_text() == out[1].read_text()
+
+
 def test_odometry_is_that_of_the_command(drives: Path, tmp_path: Path) -> None:
     path = runs(drives)[0]
     out = tmp_path / "odom.csv"

@@ -4,7 +4,7 @@
 
     python -m test.hidden [PART...] [--all] [--only WORD] [--workers N] [--start SEED]
 
-Parts: make, judge, survive, coverage, smallest, gaps, margins, table; all of them if none is given.
+Parts: make, judge, field, survive, coverage, smallest, gaps, margins, table; all if none is given.
 It can be stopped at any time: what was made and judged stays, and the next call goes on from there.
 Other code begins anew, on sets that nobody has seen: seeds are drawn from the code's digest.
 """
@@ -18,7 +18,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from test.hidden import coverage, history, judge, margins, plan, smallest, survive, table
+from test.hidden import (
+    coverage,
+    field,
+    field_table,
+    history,
+    judge,
+    margins,
+    plan,
+    smallest,
+    survive,
+    table,
+)
 from test.hidden.judged import Judged, judgement
 from test.hidden.page import draw, page
 from test.hidden.plan import ALL, SAMPLE, Sizes
@@ -26,7 +37,7 @@ from test.hidden.sets import ROOT, HiddenSet, make_all
 from test.hidden.tables import Table, show
 from test.hidden.work import Line, done, kept, mark, results_of
 
-PARTS = ("make", "judge", "survive", "coverage", "smallest", "gaps", "margins", "table")
+PARTS = ("make", "judge", "field", "survive", "coverage", "smallest", "gaps", "margins", "table")
 
 
 @dataclass(frozen=True)
@@ -42,14 +53,19 @@ class Extent:
     """Sets."""
     margins: int
     """Sets for each number."""
+    field: tuple[int, int, int]
+    """Sets of an effect, with nothing hidden, and effects, as people record them."""
 
 
-EVERYTHING = Extent(ALL, survive=100, smallest=8, gaps=200, margins=24)
-PART_OF_IT = Extent(SAMPLE, survive=12, smallest=1, gaps=40, margins=3)
+EVERYTHING = Extent(
+    ALL, survive=100, smallest=8, gaps=200, margins=24, field=(4, 12, len(plan.EFFECTS))
+)
+PART_OF_IT = Extent(SAMPLE, survive=12, smallest=1, gaps=40, margins=3, field=(1, 2, 8))
 
 SECONDS = {
     "make": 6.5,
     "judge": 17.0,
+    "field": 100.0,
     "survive": 4.5,
     "coverage": 3.0,
     "smallest": 42.0,
@@ -73,6 +89,7 @@ def works(
     """All parts but making and telling; of tasks those whose key holds a word."""
     all_of_it = {
         "judge": Work({each.name: each for each in wanted}, judge.work),
+        "field": Work({each.name: each for each in field.sets(start, *extent.field)}, field.work),
         "survive": Work(survive.tasks(wanted, extent.survive, start), survive.work),
         "coverage": Work(coverage.tasks(wanted), coverage.work),
         "smallest": Work(smallest.tasks(start, extent.smallest), smallest.work),
@@ -125,6 +142,7 @@ def all_tables(wanted: Sequence[HiddenSet], there: Mapping[str, Work]) -> list[T
     scores = coverage.scores(lines, wanted, own["coverage"])
     made = [
         *table.tables(lines),
+        *field_table.tables(own["field"]),
         *survive.tables(lines, own["survive"]),
         coverage.table(scores),
         coverage.rank_table(scores),

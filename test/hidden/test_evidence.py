@@ -9,12 +9,12 @@ from collections.abc import Sequence
 
 import pytest
 
-from test.hidden import plan
+from test.hidden import field, field_table, plan
 from test.hidden.__main__ import extent_wanted, judged_lines, works
 from test.hidden.judged import Judged
 from test.hidden.rules import RULES, Rule
 from test.hidden.sets import make_all
-from test.hidden.work import done, mark, results_of
+from test.hidden.work import done, kept, mark, results_of
 
 pytestmark = pytest.mark.evidence
 
@@ -42,3 +42,16 @@ def test_rule(lines: Sequence[Judged], rule: Rule) -> None:
         for line in rule.broken_by(lines)
     )
     assert rule.share(lines) >= rule.needed, f"of {len(there)} sets otherwise:\n{broken}"
+
+
+def test_rules_of_ordinary_recordings() -> None:
+    """Bags by a gyro, a localiser, both, and positions alone."""
+    start = plan.start_of(mark())
+    sets = {each.name: each for each in field.sets(start, *extent_wanted(False).field)}
+    for _ in done(results_of("field"), sets, field.work, os.cpu_count() or 1):
+        pass
+    there = {key: line for key, line in kept(results_of("field")).items() if key in sets}
+    assert len(there) == len(sets)
+    counted = field_table.rules(there)
+    broken = {says: found for says, found in counted.items() if found[0] < found[2] * found[1]}
+    assert not broken

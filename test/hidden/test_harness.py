@@ -15,7 +15,18 @@ from scipy.stats import binom
 
 pytest.importorskip("mujoco", reason="hidden sets need the physics engine (pip install mujoco)")
 
-from test.hidden import coverage, fisher, history, margins, plan, smallest, survive, work
+from test.hidden import (
+    coverage,
+    field,
+    field_table,
+    fisher,
+    history,
+    margins,
+    plan,
+    smallest,
+    survive,
+    work,
+)
 from test.hidden.follow import commands, follow, typed
 from test.hidden.intervals import clopper_pearson
 from test.hidden.judged import Judged
@@ -261,6 +272,75 @@ def test_another_split_holds_out_as_many_other_drives(folder: Path) -> None:
         }
     assert names["holdout"] == ["train_0", "train_1"]
     assert names["train"] == ["holdout_0", "holdout_1", "train_2"]
+
+
+# ------------------------------------------------------------------ as people record
+
+
+def said(verdict: str, *found: str, rivals: tuple[str, ...] = (), **more: object) -> work.Line:
+    return {"verdict": verdict, "found": list(found), "rivals": list(rivals), **more}
+
+
+SCALE = ("track_width", "reference_scale")
+
+
+@pytest.mark.parametrize(
+    ("hidden", "by", "line", "worth"),
+    [
+        (["castor_kick"], "localiser", said("named", "castor_kick"), "named"),
+        (["castor_kick"], "localiser", said("named", "castor_kick", "track_width"), "wrong"),
+        (["castor_kick"], "localiser", said("none"), "missed"),
+        (["castor_kick"], "localiser", said("unknown"), "wrong"),
+        (["castor_kick"], "localiser", said("refused", error="no"), "wrong"),
+        (["castor_kick"], "gyro", said("ambiguous", SCALE[0], rivals=SCALE), "missed"),
+        (["castor_kick"], "gyro", said("ambiguous", *SCALE[:1], "castor_kick", rivals=SCALE),
+         "named"),
+        (["track_width"], "gyro", said("ambiguous", SCALE[0], rivals=SCALE), "ambiguous"),
+        (["wheel_radius_scale"], "gyro", said("named", "track_width"), "named"),
+        (["wheel_radius_scale"], "both", said("named", "track_width"), "wrong"),
+        (["reference_delay"], "gyro", said("named", "reference_heading_delay"), "named"),
+        (["sideways_drift"], "localiser", said("named", "reference_yaw_offset"), "named"),
+        ([], "gyro", said("ambiguous", SCALE[0], rivals=SCALE), "named"),
+        ([], "localiser", said("ambiguous", SCALE[0], rivals=SCALE), "wrong"),
+        ([], "positions", said("none"), "named"),
+    ],
+)  # fmt: skip
+def test_what_a_verdict_by_an_ordinary_reference_is_worth(
+    hidden: list[str], by: str, line: work.Line, worth: str
+) -> None:
+    assert field.how(hidden, by, line) == worth
+
+
+def test_of_ordinary_recordings_each_rule_counts_what_it_speaks_of() -> None:
+    seen = {"castor_kick": 0.02}
+    there = {"held": [["train/a", 1.0, True]], "carried": [["train/a", 9.0, False]]}
+    good = said("named", "castor_kick", seen_from=seen, stretches=there)
+    small, large = (said("none", seen_from=seen, stretches={}) for _ in range(2))
+    wrong = said("named", "floor_slope", seen_from=seen, stretches={})
+    lines = {
+        key: {
+            "hidden": ["castor_kick"],
+            "strength": strength,
+            "said": {"localiser": one, "gyro": other},
+            "circles": {"/odom": True},
+        }
+        for key, strength, one, other in (("a", 0.01, good, small), ("b", 0.03, wrong, large))
+    }
+    counted = field_table.rules(lines)
+    assert [(kept, of) for kept, of, _ in counted.values()] == [(3, 4), (1, 1), (0, 1), (2, 2)]
+    rules, effects, wrongs = field_table.tables(lines)
+    assert [row[-1] for row in rules.rows] == ["BROKEN", "kept", "BROKEN", "kept"]
+    assert effects.rows == (("castor_kick", "1 small, 1 missed", "1 named, 1 WRONG", "", ""),)
+    assert [row[0] for row in wrongs.rows] == ["`b`"]
+
+
+def test_field_sets_have_seeds_of_their_own() -> None:
+    start = plan.start_of("abcdef012345")
+    own = field.sets(start, 4, 12, len(plan.EFFECTS))
+    assert len({each.name for each in own}) == len(own) == 4 * len(plan.EFFECTS) + 12
+    others = {each.seed for each in plan.plan(start, plan.ALL)}
+    assert not others & {each.seed for each in own}
+    assert all(start <= each.seed < start + plan.APART for each in own)
 
 
 # ------------------------------------------------------------------ margins

@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+from werrimbi_odom.model.shown import shown
 
 from test.white_noise_robot import wandering
 from werrimbi_odom.effects import find
@@ -19,7 +20,6 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.model.effect import Effect, view_of
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.shown import shown
 from werrimbi_odom.model.trajectory import trajectory
 
 GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0)
@@ -83,7 +83,7 @@ def case(seed: int, *, drives: int = 2, seconds: float = 60.0) -> Case:
 
 
 def _driven(truth: Robot, random: np.random.Generator, seconds: float, number: int) -> Run:
-    """The path of counters that show the noise of the wheels too, which the recorded ones do not."""
+    """A path of counters that show the noise of the wheels too; the recorded ones do not."""
     rate = 50.0
     speed, turning = wandering(random, seconds, rate)
     time = np.arange(speed.size + 1) / rate

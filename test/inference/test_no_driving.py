@@ -107,6 +107,18 @@ def test_a_robot_that_is_held_is_found_within_half_a_second(seed: int) -> None:
     assert found[2] == {"held"}
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_localiser_that_jumps_just_before_does_not_make_it_longer(seed: int) -> None:
+    run, begin, end = held(run_of(ROBOT, seed), 30.0, 36.0)
+    assert run.reference is not None
+    columns = (run.reference.x, run.reference.y, np.unwrap(run.reference.yaw))
+    time = np.arange(run.reference.time[0], run.reference.time[-1], 0.1)
+    x, y, yaw = (np.interp(time, run.reference.time, each) for each in columns)
+    jump = np.where(time > begin - 0.5, 0.4, 0.0)
+    jumped = replace(run, reference=Reference(time, x + jump, y - jump, yaw))
+    assert span(jumped)[:2] == pytest.approx((begin, end), abs=NEAR)
+
+
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("which", ["poses", "yaw"])
 def test_a_robot_that_is_carried_is_found_within_half_a_second(seed: int, which: str) -> None:

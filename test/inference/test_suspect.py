@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.judged_legs import prepare
 from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
@@ -42,10 +42,12 @@ def drives(*hidden: Peculiarity) -> list[Run]:
 
 
 def remarks(
-    spoil: Callable[[Reference], Reference] = lambda it: it, *hidden: Peculiarity
+    spoil: Callable[[Reference], Reference] = lambda it: it,
+    *hidden: Peculiarity,
+    kind: ReferenceKind = "absolute",
 ) -> dict[str, ReferenceRemark]:
     runs = [replace(run, reference=spoil(run.reference)) for run in drives(*hidden)]  # type: ignore[arg-type]
-    return {each.what: each for each in remarks_on(prepare(runs, ROBOT))}
+    return {each.what: each for each in remarks_on(prepare(runs, ROBOT, kind))}
 
 
 def test_a_sound_reference_has_no_remark() -> None:
@@ -75,6 +77,17 @@ def test_a_heading_that_drifts_from_its_path() -> None:
     found = remarks(lambda it: replace(it, yaw=it.yaw + np.radians(0.2) * it.time))
     assert "apart" in found
     assert np.degrees(abs(found["apart"].size)) == pytest.approx(0.2 * 80.0, rel=0.2)
+
+
+@pytest.mark.parametrize(("rate", "told"), [(0.05, set()), (0.3, {"apart"})])
+def test_a_localiser_wanders_by_some_degrees(rate: float, told: set[str]) -> None:
+    """Of motion capture 4 degrees in a drive are too much."""
+
+    def drifting(it: Reference) -> Reference:
+        return replace(it, yaw=it.yaw + np.radians(rate) * it.time)
+
+    assert "apart" in remarks(drifting)
+    assert set(remarks(drifting, kind="local_map")) == told
 
 
 def test_a_heading_that_is_wrong_in_places() -> None:

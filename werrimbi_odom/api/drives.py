@@ -41,6 +41,9 @@ class Options(TypedDict, total=False):
     """Topic of the ticks, of bags that are still to be read."""
     reference_topic: str | Sequence[str] | None
     """The same of the reference."""
+    references: Sequence[str | Path]
+    """What holds the reference of each drive, then of each held-out one, where they do not: other
+    bags, or folders with reference.csv."""
     effects: Sequence[str | Path]
     """Files with effects of your own, which the robot file may name."""
     force_reference: bool

@@ -40,6 +40,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "`none` for no reference",
     )
     parser.add_argument(
+        "--reference",
+        metavar="RUN",
+        type=Path,
+        help="what holds the reference of this drive, where RUN does not: another bag, or a folder "
+        "with reference.csv",
+    )
+    parser.add_argument(
         "--as-reference",
         action="store_true",
         help="write what the reference is predicted to show (its lever arm, yaw offset, delays and "
@@ -62,6 +69,7 @@ def run(arguments: argparse.Namespace) -> int:
             robot,
             ticks_topic=arguments.ticks_topic,
             reference_topic=arguments.reference_topic,
+            reference=arguments.reference,
             progress=lambda share: show(0.5 * share, "reading"),
         )
         show(0.5, "reckoning")

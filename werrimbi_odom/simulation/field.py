@@ -29,6 +29,9 @@ Floats = NDArray[np.float64]
 HELD, CARRIED = 4.0, 5.0
 """How long the robot is held and carried [s]."""
 
+AT_PACE = 0.5
+"""Until the hand that carries it moves as fast as it will [s]."""
+
 BEHIND = Lidar(mount=Pose(-0.032, 0.0, 0.0))
 """A lidar of 218 beams a little behind the axle, as on a TurtleBot3."""
 
@@ -213,8 +216,7 @@ def _by_the_bag(times: Sequence[float]) -> list[float]:
 
 def _stamped(at: Floats, sensors: FieldSensors, rng: np.random.Generator) -> tuple[Floats, Floats]:
     """Header stamps, in order, and when messages come in."""
-    stamps = np.maximum.accumulate(at + sensors.stamp_jitter * rng.standard_normal(at.size))
-    stamps += 1e-6 * np.arange(at.size)  # no two alike
+    stamps = np.sort(at + sensors.stamp_jitter * rng.standard_normal(at.size))
     received = np.maximum(stamps, at) + rng.exponential(sensors.latency, at.size)
     return stamps, np.maximum.accumulate(received)
 
@@ -258,7 +260,9 @@ def _carried(path: TruePath, rng: np.random.Generator) -> tuple[TruePath, list[f
     speed = np.abs(np.gradient(path.left_angle_rad)) + np.abs(np.gradient(path.right_angle_rad))
     row = _somewhere(speed <= np.quantile(speed, 0.02), (0.55, 0.9), rng)
     steps = round(CARRIED / PERIOD)
-    share = 0.5 - 0.5 * np.cos(np.pi * np.arange(1, steps + 1) / steps)
+    pace = np.minimum(np.arange(1, steps + 1), np.arange(steps, 0, -1)) * PERIOD / AT_PACE
+    share = np.cumsum(np.minimum(pace, 1.0))
+    share /= share[-1]
     away = rng.uniform(0.5, 1.5) * np.exp(1j * rng.uniform(-np.pi, np.pi))
     turn = float(rng.uniform(0.5, 2.5) * rng.choice([-1.0, 1.0]))
     here = complex(path.x_m[row], path.y_m[row])

@@ -12,7 +12,7 @@ matches and jumps have no say.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Literal
 
@@ -39,6 +39,7 @@ from werrimbi_odom.inference.rules import (
     SUSPECT_STRETCHES,
     SUSPECT_TURNED,
     SUSPECT_TURNS_AGREE,
+    SUSPECT_WANDER,
 )
 from werrimbi_odom.model.pose import Floats, wrap_all
 
@@ -104,7 +105,12 @@ def remarks_on(prepared: Prepared) -> tuple[ReferenceRemark, ...]:
         return ()
     cuts = [_cuts(item, gap, prepared.leg) for _, item, gap in paths]
     runs = [run for run, _, _ in paths]
-    return (*_lengths(runs, cuts, prepared.leg), *_angles(runs, cuts, prepared.leg), *_metre(cuts))
+    wander = min(SUSPECT_WANDER, max(noise.wander[1] for _, noise in prepared.noises))
+    return (
+        *_lengths(runs, cuts, prepared.leg),
+        *_angles(runs, cuts, prepared.leg, wander),
+        *_metre(cuts),
+    )
 
 
 @dataclass(frozen=True, slots=True)
@@ -224,12 +230,16 @@ def _lengths(runs: list[Run], cuts: list[_Cuts], leg: float) -> Iterator[Referen
         )
 
 
-def _angles(runs: list[Run], cuts: list[_Cuts], leg: float) -> Iterator[ReferenceRemark]:
+def _angles(
+    runs: list[Run], cuts: list[_Cuts], leg: float, wander: float
+) -> Iterator[ReferenceRemark]:
+    """What of its headings is suspect, where they are known to wander by so much [rad]."""
     known = [own.angle[np.isfinite(own.angle)] for own in cuts]
     if not sum(each.size for each in known):
         return
     axis = np.angle(np.mean(np.exp(1j * np.concatenate(known))))
     looked = _stretches(cuts, [wrap_all(own.angle - axis) for own in cuts], leg)
+    looked = replace(looked, sigma=np.hypot(looked.sigma, wander))
     if looked.value.size <= SUSPECT_STRETCHES:
         return
     usual = float(np.median(looked.value))
@@ -265,7 +275,7 @@ def _drifting(looked: _Looked, off: Floats) -> float | None:
         return None
     farthest = max(found, key=abs)
     spread, rest = (float(np.median(np.abs(each - np.median(each)))) for each in (off, left))
-    sure = SUSPECT_SIGMA * float(np.median(looked.sigma))
+    sure = SUSPECT_SIGMA * np.sqrt(2.0) * float(np.median(looked.sigma))
     steady = rest < SUSPECT_DRIFT_LEFT * spread
     return farthest if steady and abs(farthest) > max(SUSPECT_ANGLE, sure) else None
 

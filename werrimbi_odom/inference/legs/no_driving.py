@@ -18,6 +18,7 @@ from scipy.ndimage import maximum_filter1d, median_filter, minimum_filter1d
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import NoDriving, Reference, Run
+from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
 from werrimbi_odom.inference.legs.counters import Counters, counters_of
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
@@ -131,7 +132,10 @@ def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> 
     beyond = off / np.maximum(max(NO_DRIVING_OFF, rough) * maximum_filter1d(gross, reach), least)
     if turns:  # of a way even a gentle one is most of what both wheels could do
         beyond = np.where(_stopped(found, low, high, least), np.maximum(beyond, 1.01), beyond)
-    edge = found.off > np.maximum(NO_DRIVING_EDGE * gross, 0.5 * least)
+    # At rest a place wanders in two coordinates, on the way along it in one: medians, by sigma.
+    at_rest = 1.0 if turns else np.sqrt(2.0 * np.log(2.0)) * MEDIAN_TO_SIGMA
+    unsure = 0.5 * least * np.where(rolls, 1.0, at_rest)
+    edge = found.off > np.maximum(NO_DRIVING_EDGE * gross, unsure)
     moves = np.abs(expected) > np.maximum(NO_DRIVING_EDGE * gross, least)
     return _Seen(found, beyond, edge, moves & keeps, enough)
 

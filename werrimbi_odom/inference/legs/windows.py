@@ -8,10 +8,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import maximum_filter1d, median_filter
 
 from werrimbi_odom.files.run import Reference
+from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.counters import Counters
 from werrimbi_odom.inference.rules import (
+    JUMP_NEIGHBOURS,
+    JUMP_SCATTER,
+    NO_DRIVING_LEAP,
     NO_DRIVING_POSES,
     NO_DRIVING_SILENCE,
     NO_DRIVING_SPANS,
@@ -100,15 +105,16 @@ def windows_of(
     right = np.interp(grid, counters.time, counters.right) * robot.right_tick
     way = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
     rolled = np.concatenate([[0.0], np.cumsum(way)])
+    by_wheels = rolled if ways else (right - left) / robot.track
     if ways:
-        place = reference.x[known][new] + 1j * reference.y[known][new]
-        measured = np.abs(
-            _over(np.interp(grid, time, place.real), steps)
-            + 1j * _over(np.interp(grid, time, place.imag), steps)
-        )
+        steps_seen = np.diff(reference.x[known][new]) + 1j * np.diff(reference.y[known][new])
     else:
-        turned = np.cumsum(wrap_all(np.diff(reference.yaw[known][new], prepend=0.0)))
-        measured = _over(np.interp(grid, time, turned), steps)
+        steps_seen = wrap_all(np.diff(reference.yaw[known][new])) + 0j
+    if usual[0] < 1.5 * _GRID:  # three slower steps may be a hand's
+        steps_seen = _without_leaps(steps_seen, np.abs(np.diff(np.interp(time, grid, by_wheels))))
+    gone = np.concatenate([[0j], np.cumsum(steps_seen)])
+    over = _over(np.interp(grid, time, gone.real), steps)
+    measured = np.hypot(over, _over(np.interp(grid, time, gone.imag), steps)) if ways else over
     begin, end = grid[:-steps], grid[steps:]
     for stamps, each in zip((time, counters.time), usual, strict=True):
         for gap in np.flatnonzero(
@@ -125,6 +131,20 @@ def windows_of(
         measured,
         np.ones_like(measured),
     )
+
+
+def _without_leaps(seen: NDArray[np.complex128], by_wheels: Floats) -> NDArray[np.complex128]:
+    """Steps of a reference from pose to pose, leaps (a localiser that found itself) taken out.
+
+    A leap is one step beyond all scatter, beyond those about it, and beyond what wheels did then.
+    Whoever moves a robot by hand takes longer than a step or three.
+    """
+    reach = 2 * JUMP_NEIGHBOURS + 1
+    usual = median_filter(seen.real, reach) + 1j * median_filter(seen.imag, reach)
+    left = np.abs(seen - usual)
+    moved = maximum_filter1d(np.maximum(np.abs(usual), by_wheels), reach)
+    scatter = JUMP_SCATTER * MEDIAN_TO_SIGMA * float(np.median(left))
+    return np.where(left > np.maximum(scatter, NO_DRIVING_LEAP * moved), usual, seen)
 
 
 def _over(values: Floats, steps: int) -> Floats:

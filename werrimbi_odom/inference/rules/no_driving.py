@@ -106,6 +106,10 @@ NO_DRIVING_FEWEST, NO_DRIVING_MORE = 6, 3
 """Windows in a row of the shortest stretch, and by how many it is longer than a window: at 10 Hz
 and more 0.8 s. A leap of the reference touches as many windows as one has steps, and one more."""
 
+NO_DRIVING_LEAP = 2.0
+"""Times what wheels did, or the reference a moment before and after, beyond which a step of it from
+one pose to the next is a leap. Chosen: stamps that wander by half an interval make 1.5 of one."""
+
 NO_DRIVING_AT_ONCE = 0.5
 """Share of what is in doubt, that must not be in one window: a lost track or a failed match is a
 jump, which is found as such."""

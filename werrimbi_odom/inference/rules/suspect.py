@@ -34,6 +34,11 @@ SUSPECT_SIGMA = 4.0
 """Standard deviations beyond which a stretch is another one: chance does it in one stretch of
 16,000, and two are asked for."""
 
+SUSPECT_WANDER = 0.03
+"""The most [rad] that a localiser's heading is believed to wander by, when its own noise says so.
+Chosen: particle filters and matchers are within 2 degrees once they have converged; what is beyond
+four times that is told, for a wrong heading would pass for a wander of any size."""
+
 SUSPECT_STRETCHES = 2
 """Stretches that must be so: one is an event (a collision, a failed match), and told as such."""
 

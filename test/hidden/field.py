@@ -1,0 +1,251 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Hidden sets as people record them: one set of bags, judged by each reference that they hold.
+
+A set is made by `werrimbi simulate --like field`: a gyro with a scale of its own, a localiser that
+wanders and jumps, stamps that jitter, and the robot held and carried in each drive.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import shutil
+import tempfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from werrimbi_odom.files.reading import read_run
+
+from test.hidden.follow import run
+from test.hidden.plan import EFFECTS, evenly
+from test.hidden.sets import HiddenSet, runs_of
+from test.hidden.work import Line, commit_now
+from werrimbi_odom.effects import find
+from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.run import Reference
+from werrimbi_odom.simulation.hidden import find as hideable
+
+LOCALISER = "/tf:map:base_link"
+BESIDE = "beside"
+"""Folder of a set with references that are no topic: positions alone, odometry as a table."""
+
+WITHIN = 0.5
+"""To this the beginning and the end of what was held or carried must be found [s]."""
+
+TURNED = 0.5
+"""Turn of a held robot's wheels [rad] from which on a gyro can see that it was held."""
+
+OWN_SCALE = frozenset({"reference_scale", "track_width", "wheel_radius_scale"})
+"""A gyro has a scale of its own, and headings alone cannot tell it from the base."""
+
+DELAYS = frozenset({"reference_delay", "reference_heading_delay"})
+"""Of headings alone they are one."""
+
+
+@dataclass(frozen=True)
+class Seen:
+    """One way of judging a bag."""
+
+    says: str
+    topics: tuple[str, ...] = ()
+    """None: positions alone, from beside the bag."""
+
+    @property
+    def has_positions(self) -> bool:
+        """Whether it measures where the robot is."""
+        return self.topics != ("/imu",)
+
+    def options(self, folder: Path) -> list[str]:
+        """Of the user's command."""
+        if self.topics:
+            return [word for topic in self.topics for word in ("--reference-topic", topic)]
+        tables = [
+            word
+            for part in ("train", "holdout")
+            for each in runs_of(folder, part)
+            for word in ("--reference", str(folder / BESIDE / "positions" / part / each.name))
+        ]
+        return ["--reference-kind", "local_map", *tables]
+
+
+SEEN = {
+    "gyro": Seen("a gyro", ("/imu",)),
+    "localiser": Seen("a localiser", (LOCALISER,)),
+    "both": Seen("a gyro and a localiser", ("/imu", LOCALISER)),
+    "positions": Seen("a localiser's positions alone"),
+}
+
+
+def sets(start: int, each: int, clean: int, effects: int) -> list[HiddenSet]:
+    """So many sets of each of some effects, and with nothing hidden."""
+    found = [
+        HiddenSet("field", (name,), start + 8000 + 20 * EFFECTS.index(name) + seed, "field")
+        for name in evenly(EFFECTS, effects, start)
+        for seed in range(each)
+    ]
+    return found + [HiddenSet("field", (), start + 8500 + n, "field") for n in range(clean)]
+
+
+def make(what: HiddenSet) -> Path:
+    """The folder of a set, made if it is not there yet."""
+    if what.path.exists():
+        return what.path
+    what.path.parent.mkdir(parents=True, exist_ok=True)
+    place = Path(tempfile.mkdtemp(prefix=".new.", dir=what.path.parent))
+    try:
+        folder = place / "set"
+        words = ["simulate", "--like", "field", "--seed", str(what.seed), "--out", str(folder)]
+        done = run([*words, *(word for name in what.effects for word in ("--hide", name))])
+        assert done.code == 0, done.complained
+        file = read_robot_file(folder / "robot.yaml")
+        for part in ("train", "holdout"):
+            for bag in runs_of(folder, part):
+                _beside(bag, file, folder / BESIDE, part)
+        folder.rename(what.path)
+    finally:
+        shutil.rmtree(place, ignore_errors=True)
+    return what.path
+
+
+def _beside(bag: Path, file: RobotFile, place: Path, part: str) -> None:
+    """The localiser's positions, and the robot's own odometry as if somebody had measured it."""
+    for name, topic in (("positions", LOCALISER), ("odometry", "/odom")):
+        reference = read_run(bag, file, reference_topic=topic, force=True).reference
+        assert reference is not None
+        _write(reference, place / name / part / bag.name, headings=name == "odometry")
+
+
+def _write(reference: Reference, folder: Path, *, headings: bool) -> None:
+    folder.mkdir(parents=True)
+    columns = (reference.time, reference.x, reference.y, reference.yaw)
+    lines = [
+        f"{t:.6f},{x:.6f},{y:.6f},{f'{yaw:.6f}' if headings else ''}\n"
+        for t, x, y, yaw in zip(*columns, strict=True)
+    ]
+    text = "t_s,x_m,y_m,yaw_rad\n" + "".join(lines)
+    (folder / "reference.csv").write_text(text, encoding="utf-8")
+
+
+def work(what: HiddenSet) -> Line:
+    """All references of a set, and what is made from the wheels, as a line of results."""
+    folder = make(what)
+    truth = what.truth
+    (strength,) = (each["strength"] for each in truth["hidden"]) if what.effects else (None,)  # type: ignore[attr-defined]
+    return {
+        "hidden": what.names,
+        "strength": strength,
+        "commit": commit_now(),
+        "said": {name: _said(folder, truth["field"], name) for name in SEEN},  # type: ignore[arg-type]
+        "circles": circles(folder),
+    }
+
+
+def _said(folder: Path, field: Mapping[str, Any], name: str) -> Line:
+    """The diagnosis by one reference."""
+    train, holdout = (list(map(str, runs_of(folder, part))) for part in ("train", "holdout"))
+    with tempfile.TemporaryDirectory() as place:
+        file = Path(place) / "diagnosis.json"
+        words = ["diagnose", "--robot", str(folder / "robot.yaml"), *train, "--holdout", *holdout]
+        done = run([*words, *SEEN[name].options(folder), "--json", str(file)])
+        if done.code != 0:
+            return {"verdict": "refused", "error": done.complained, "seconds": done.seconds}
+        said = json.loads(file.read_text(encoding="utf-8"))
+    return {
+        "verdict": said["verdict"],
+        "found": [each["effect"] for each in said["found"]],
+        "rivals": said["rivals"],
+        "seen_from": {
+            each["effect"]: each["seen_from"]
+            for each in reversed(said["could_have_been_seen"])
+            if math.isfinite(each["seen_from"] or math.inf)
+        },
+        "stretches": stretches(folder, field, said["left_out"], SEEN[name]),
+        "seconds": round(done.seconds, 1),
+    }
+
+
+def stretches(
+    folder: Path, field: Mapping[str, Any], left_out: Sequence[Line], seen: Seen
+) -> dict[str, list[list[Any]]]:
+    """What was held and carried, where the reference can see it: the run, when, whether found."""
+    file = read_robot_file(folder / "robot.yaml")
+    found: dict[str, list[list[Any]]] = {"held": [], "carried": []}
+    for name, true in field.items():
+        told = [each for each in left_out if each["run"].endswith(name)]
+        for why, there in found.items():
+            for begin, end in true[why]:
+                sees = why == "carried" or seen.has_positions
+                if not sees and abs(_turned(folder / name, file, begin, end)) < TURNED:
+                    continue
+                hit = any(
+                    each["why"] == why
+                    and abs(each["from_s"] - begin) <= WITHIN
+                    and abs(each["to_s"] - end) <= WITHIN
+                    for each in told
+                )
+                there.append([name, begin, hit])
+    return found
+
+
+def _turned(bag: Path, file: RobotFile, begin: float, end: float) -> float:
+    """What the wheels say that the robot turned [rad]."""
+    ticks = read_run(bag, file, reference_topic="/imu").ticks
+    robot = file.robot
+    rolled = [
+        float(np.diff(np.interp([begin, end], ticks.time, counts))[0]) * tick
+        for counts, tick in ((ticks.left, robot.left_tick), (ticks.right, robot.right_tick))
+    ]
+    return (rolled[1] - rolled[0]) / robot.track
+
+
+def circles(folder: Path) -> dict[str, bool]:
+    """Whether a reference that is made from the wheels is refused, by its way of being one."""
+    bag = runs_of(folder, "train")[0]
+    table = folder / BESIDE / "odometry" / "train" / bag.name
+    ways = {
+        "/odom": ["--reference-topic", "/odom"],
+        "/tf:odom:base_link": ["--reference-topic", "/tf:odom:base_link"],
+        "a table": ["--reference", str(table)],
+    }
+    words = ["compare", "--robot", str(folder / "robot.yaml"), str(bag)]
+    done = {name: run([*words, *options]) for name, options in ways.items()}
+    return {
+        name: each.code == 2 and "--force takes it all the same" in each.complained
+        for name, each in done.items()
+    }
+
+
+def expected(hidden: Sequence[str], name: str) -> set[str]:
+    """Names that are right of a set by one reference: what is hidden, and what is one with it."""
+    found = set(hidden)
+    for each in hidden:
+        twins = find(each).indistinguishable_from
+        found |= {twin.name for twin in twins if name == "gyro" or not twin.of_headings}
+        if name == "gyro" and each in DELAYS:
+            found |= DELAYS
+    return found
+
+
+def how(hidden: Sequence[str], name: str, said: Line) -> str:
+    """named, ambiguous, missed (too small, or not) or wrong: what one diagnosis is worth."""
+    if said["verdict"] in ("refused", "unknown"):
+        return "wrong"
+    right = expected(hidden, name)
+    allowed = right | (OWN_SCALE if name == "gyro" else set())
+    rivals = set(said["rivals"])
+    sure = set(said["found"]) - rivals
+    if sure - allowed or (rivals and not rivals & allowed):
+        return "wrong"
+    if not hidden or sure & right:
+        return "named"
+    return "ambiguous" if rivals & right else "missed"
+
+
+def could_be_seen(hidden: str, strength: float, said: Line) -> bool:
+    """Whether the diagnosis itself says that an effect of this size would have been seen."""
+    seen_from = said["seen_from"].get(hidden)
+    return seen_from is not None and abs(strength - hideable(hidden).null) >= seen_from
