@@ -64,8 +64,8 @@ PARAMETERS: tuple[Parameter, ...] = (
         "string",
         "",
         "",
-        "Robot file of odom_node: tell what is missing in it; empty: do not look. It is read, "
-        "never written.",
+        "Robot file of odom_node: tell what is missing in it; empty or `none`: do not look. It is "
+        "read, never written.",
         may_be_empty=True,
     ),
     Parameter(

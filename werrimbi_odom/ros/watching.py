@@ -247,4 +247,6 @@ def watching_of(
     node: Node, values: Mapping[str, Value], kind: type, subscribe: Callable[..., None]
 ) -> NoWatching:
     """What is asked for."""
-    return Watching(node, values, kind, subscribe) if values["robot_file"] else NoWatching()
+    if values["robot_file"] in ("", "none"):
+        return NoWatching()
+    return Watching(node, values, kind, subscribe)
