@@ -219,7 +219,8 @@ class SimulatedRobot(Node):  # type: ignore[misc]
     def _tell(self, _: Any, response: Any) -> Any:
         response.success = True
         response.message = "; ".join(
-            f"{each.entry.name} = {each.strength:g} {each.entry.unit}: {each.entry.says}"
+            f"{each.entry.name} = {each.strength:g}"
+            f"{'' if each.entry.unit == '1' else ' ' + each.entry.unit}: {each.entry.says}"
             for each in self._hidden
         )
         response.message = response.message or "nothing is hidden"
