@@ -54,7 +54,7 @@ sys.exit(code)
 endef
 export PROGRESS
 
-demo: setup  ## ticks through the real node, then a hidden effect found and added; ROBOT=robot.yaml RUN=folder-or-bag for your own
+demo: setup  ## ticks through the real node, then a robot that finds out what it lacks; ROBOT=robot.yaml RUN=folder-or-bag for your own
 	$(BIN)/python -m werrimbi_odom.demo $(if $(ROBOT),--robot '$(ROBOT)') $(if $(RUN),--run '$(RUN)') --out demo
 
 test: setup lint  ## linters, then all tests but the long ones

@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections import defaultdict
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -87,11 +88,14 @@ class Comparing:
             name: launched.keep(Float64, f"compare_node/{name}")
             for name in ("leg_nees", "nees", "nees_low", "nees_high", "coverage")
         }
-        self.said: list[Any] = []
+        self.told: defaultdict[str, list[Any]] = defaultdict(list)
+        self.said = self.told["honesty of the covariance"]
         launched._listen(DiagnosticArray, "/diagnostics", self._note)
 
     def _note(self, array: Any) -> None:
-        self.said += [s for s in array.status if s.name.startswith("compare_node")]
+        for status in array.status:
+            if status.name.startswith("compare_node: "):
+                self.told[status.name.removeprefix("compare_node: ")].append(status)
 
     def verdict(self) -> Any:
         """The next /diagnostics."""

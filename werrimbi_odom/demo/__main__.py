@@ -19,8 +19,8 @@ def main(argv: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="make demo",
         description="Recorded ticks through the real odom_node over DDS, and how far off it ends; "
-        "then, of the recording that comes along, why odometry errs: an effect that is hidden is "
-        "found, and added.",
+        "then a robot in a physics engine drives, is told what its robot file lacks, and drives "
+        "with that added.",
     )
     parser.add_argument("--robot", type=Path, default=RECORDING / "robot.yaml")
     parser.add_argument("--run", type=Path, default=RECORDING, help="folder or bag")
@@ -29,7 +29,8 @@ def main(argv: list[str] | None = None) -> int:
     arguments = parser.parse_args(argv)
     both = not arguments.first_act and arguments.run == RECORDING
     try:
-        for package in ("rclpy", "plotly", "rich", *(("scipy", "mujoco") if both else ())):
+        more = ("scipy", "mujoco", "rosbags") if both else ()
+        for package in ("rclpy", "plotly", "rich", *more):
             refuse_without(package, "it")
         first_act(arguments.robot, arguments.run, arguments.out)
         if both:

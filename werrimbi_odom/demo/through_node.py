@@ -13,13 +13,11 @@ from __future__ import annotations
 import math
 import os
 import shlex
-import signal
 import subprocess
 import sys
-import tempfile
 import time as clock
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -27,6 +25,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from werrimbi_odom.demo.pictures import save_and_tell
+from werrimbi_odom.demo.stage import end, private_domain
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
@@ -123,7 +122,7 @@ def measured_at(reference: Reference, time: float) -> Pose:
 
 
 @contextmanager
-def _node(robot_file: RobotFile, logs: str, private: str) -> Iterator[subprocess.Popen[bytes]]:
+def _node(robot_file: RobotFile, private: str) -> Iterator[subprocess.Popen[bytes]]:
     command = [
         *(sys.executable, "-m", "werrimbi_odom.ros.odom_node", "--ros-args"),
         *("--params-file", str(robot_file.path)),
@@ -133,32 +132,23 @@ def _node(robot_file: RobotFile, logs: str, private: str) -> Iterator[subprocess
         command += ["-r", f"{topic}:={private}/{topic.removeprefix('~/')}"]
     if "*" not in robot_file.node:
         command += ["-r", f"__node:={robot_file.node.strip('/').rpartition('/')[2]}"]
-    node = subprocess.Popen(command, env={**os.environ, "ROS_LOG_DIR": logs})
+    node = subprocess.Popen(command)
     try:
         yield node
     finally:
-        node.send_signal(signal.SIGINT)
-        try:
-            node.wait(timeout=10.0)
-        except subprocess.TimeoutExpired:
-            node.kill()
+        end(node)
 
 
 def _through_the_node(robot_file: RobotFile, run: Run, start: Pose) -> Answers:
     import rclpy
 
-    from werrimbi_odom.ros.domain import free_domain
     from werrimbi_odom.ros.player import Player
 
-    # A domain and topics of our own: no robot, nor another demo or test, may hear these ticks.
-    domain, lock = free_domain()
-    os.environ["ROS_DOMAIN_ID"] = str(domain)
     private = f"/demo_{os.getpid()}"
-    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     values = robot_file.values
-    with lock, tempfile.TemporaryDirectory() as logs:
-        os.environ["ROS_LOG_DIR"] = logs
-        with _node(robot_file, logs, private) as node:
+    with ExitStack() as stack:
+        private_domain(stack)
+        with _node(robot_file, private) as node:
             rclpy.init()
             player = Player(private)
             try:

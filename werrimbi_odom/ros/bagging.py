@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Sequence
-from functools import cache
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -14,23 +13,7 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from werrimbi_odom.errors import InputError
-
-
-@cache
-def known_types() -> Any:
-    """What rosbags knows of messages; the first call takes a second.
-
-    Raises
-    ------
-    InputError
-        When rosbags is not installed.
-    """
-    try:
-        from rosbags.typesys import Stores, get_typestore
-    except ModuleNotFoundError as missing:
-        raise InputError("record needs rosbags: pip install rosbags") from missing
-    return get_typestore(Stores.ROS2_JAZZY)
+from werrimbi_odom.files.bag_writing import BagWriter
 
 
 class Bagging:
@@ -52,25 +35,17 @@ class Bagging:
     """
 
     def __init__(self, node: Node, folder: Path, topics: Sequence[str]) -> None:
-        store = known_types()
-        from rosbags.rosbag2 import StoragePlugin, Writer, WriterError
-
         self.folder = folder
         self.topics: list[str] = []
         self._node = node
-        self._writer = Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP)
-        try:
-            folder.parent.mkdir(parents=True, exist_ok=True)
-            self._writer.open()
-        except (OSError, WriterError) as error:
-            raise InputError(f"record: {folder} cannot be written: {error}") from error
+        self._writer = BagWriter(folder)
         kinds = dict(node.get_topic_names_and_types())
         self._subscriptions = []
         for topic in topics:
             kind = _only(kinds.get(topic, []))
-            if kind is None or kind not in store.types:
+            connection = None if kind is None else self._writer.topic(topic, kind)
+            if kind is None or connection is None:
                 continue
-            connection = self._writer.add_connection(topic, kind, typestore=store)
             self.topics.append(topic)
             latched = any(
                 info.qos_profile.durability == DurabilityPolicy.TRANSIENT_LOCAL

@@ -15,7 +15,7 @@ from collections import Counter, deque
 from collections.abc import Callable
 from typing import Any
 
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseWithCovarianceStamped, Vector3Stamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
@@ -36,11 +36,14 @@ from werrimbi_odom.ros.compare_inputs import (
     reference_reader,
 )
 from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError
+from werrimbi_odom.ros.compare_motion import Motion
 from werrimbi_odom.ros.compare_track import OdometryTrack, Reading
 from werrimbi_odom.ros.compare_window import Window
 from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.graph import Company, full_name
 from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.telling import diagnostic, tell
+from werrimbi_odom.ros.watching import watching_of
 
 WAITING = 1_000
 """Reference poses that may wait for the odometry of their instant."""
@@ -71,6 +74,7 @@ class CompareNode(Node):  # type: ignore[misc]
         self._track = OdometryTrack()
         self._cutter = LegCutter(float(values["leg"]))  # type: ignore[arg-type]
         self._window = Window(int(values["window"]))  # type: ignore[arg-type]
+        self._motion = Motion()
         self._waiting: deque[Reading] = deque()
         self._base_frame = ""
         self._counts: Counter[str] = Counter()
@@ -80,6 +84,7 @@ class CompareNode(Node):  # type: ignore[misc]
         self._compared_at = -math.inf
         self._counts_before: Counter[str] = Counter()
         self._level = DiagnosticStatus.OK
+        self._moved_well = True
         self._steady = Clock(clock_type=ClockType.STEADY_TIME)
         self._error = self._publisher(Vector3Stamped, "~/error")
         self._pose = self._publisher(PoseWithCovarianceStamped, "~/error_with_covariance")
@@ -90,6 +95,7 @@ class CompareNode(Node):  # type: ignore[misc]
         self._diagnostics = self._publisher(DiagnosticArray, "/diagnostics")
         self._subscribe(Odometry, "odom", self._on_odometry)
         self._subscribe(REFERENCE_TYPES[kind], "reference", self._on_reference)
+        self._watching = watching_of(self, values, REFERENCE_TYPES[kind], self._subscribe)
         self.create_timer(PERIOD, self._report, clock=self._steady)
         topics = tuple(self.resolve_topic_name(name) for name in self._heard)
         self._company = Company(self, topics)
@@ -107,11 +113,13 @@ class CompareNode(Node):  # type: ignore[misc]
             self._refuse("odom", *error.args)
             return
         self._base_frame = message.child_frame_id
+        self._watching.odometry(reading.time, twist)
         happened = self._track.add(reading, twist)
         self._counts["old odometry" if happened == "old" else "odometry taken"] += 1
         if happened in ("set", "back"):
             self._counts["poses set" if happened == "set" else "clock jumps"] += 1
             self._cutter.restart()
+            self._motion.restart()
         if happened == "back":
             self._forget_waiting()
         while self._waiting and self._waiting[0].time <= self._track.newest:
@@ -130,7 +138,9 @@ class CompareNode(Node):  # type: ignore[misc]
                 return
             self._forget_waiting()  # its clock was put back
             self._cutter.restart()
+            self._motion.restart()
         self._latest = reading.time
+        self._watching.reference(message)
         if reading.time <= self._track.newest:
             self._compare(reading)
             return
@@ -147,7 +157,9 @@ class CompareNode(Node):  # type: ignore[misc]
             return
         self._counts["compared"] += 1
         self._compared_at = self._now()
-        leg, ends = self._cutter.take(Both(odometry, reference))
+        both = Both(odometry, reference)
+        self._motion.take(both)
+        leg, ends = self._cutter.take(both)
         if leg is None:
             return
         self._publish_error(leg)
@@ -194,11 +206,7 @@ class CompareNode(Node):  # type: ignore[misc]
         level, words = self._verdict()
         if level != self._level:
             self._level = level
-            # Two lines, because rclpy knows a logging call by its line and its severity.
-            if level == DiagnosticStatus.OK:
-                self.get_logger().info(words)
-            else:
-                self.get_logger().warning(words)
+            tell(self.get_logger(), words, fine=level == DiagnosticStatus.OK)
         window = self._window
         low, high = window.bounds()
         told = {
@@ -210,16 +218,20 @@ class CompareNode(Node):  # type: ignore[misc]
             **self._counts,
             "waiting": len(self._waiting),
         }
-        status = DiagnosticStatus(
-            level=level,
-            name=f"{full_name(self)}: honesty of the covariance",
-            message=words,
-            hardware_id="wheel encoders",
-            values=[KeyValue(key=key, value=str(value)) for key, value in told.items()],
-        )
-        array = DiagnosticArray(status=[status])
+        name = f"{full_name(self)}: honesty of the covariance"
+        status = diagnostic(level, name, words, told)
+        array = DiagnosticArray(status=[status, self._motion_status(), *self._watching.look()])
         array.header.stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(array)
+
+    def _motion_status(self) -> DiagnosticStatus:
+        fine, words = self._motion.told()
+        if fine != self._moved_well:
+            self._moved_well = fine
+            tell(self.get_logger(), words, fine=fine)
+        level = DiagnosticStatus.OK if fine else DiagnosticStatus.WARN
+        name = f"{full_name(self)}: wheels and reference"
+        return diagnostic(level, name, words, {"state": self._motion.state})
 
     def _verdict(self) -> tuple[bytes, str]:
         """Level and words: of what is compared, unless who is there makes that meaningless."""
@@ -252,6 +264,11 @@ class CompareNode(Node):  # type: ignore[misc]
 
     # ------------------------------------------------------------------------- set-up
 
+    def destroy_node(self) -> None:
+        """End, and what is under way with it."""
+        self._watching.close()
+        super().destroy_node()
+
     def _hear(self, topic: str) -> None:
         self._heard[topic] = self._now()
 
@@ -271,7 +288,9 @@ class CompareNode(Node):  # type: ignore[misc]
             message_type, topic, QoSProfile(depth=100), event_callbacks=callbacks
         )
 
-    def _subscribe(self, message_type: type, topic: str, take: Callable[[Any], None]) -> None:
+    def _subscribe(
+        self, message_type: type, topic: str, take: Callable[[Any], None], *, raw: bool = False
+    ) -> None:
         with inputs.qos_errors_of(topic):
             self.create_subscription(
                 message_type,
@@ -280,6 +299,7 @@ class CompareNode(Node):  # type: ignore[misc]
                 inputs.sensor_qos(),
                 event_callbacks=SubscriptionEventCallbacks(use_default_callbacks=False),
                 qos_overriding_options=QoSOverridingOptions.with_default_policies(),
+                raw=raw,
             )
 
 

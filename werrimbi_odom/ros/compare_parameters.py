@@ -59,6 +59,41 @@ PARAMETERS: tuple[Parameter, ...] = (
         minimum=LEAST,
         maximum=MOST,
     ),
+    Parameter(
+        "robot_file",
+        "string",
+        "",
+        "",
+        "Robot file of odom_node: tell what is missing in it; empty or `none`: do not look. It is "
+        "read, never written.",
+        may_be_empty=True,
+    ),
+    Parameter(
+        "diagnose_every",
+        "float",
+        5.0,
+        "min",
+        "Driving between two looks for what is missing, each of which is at twice as much.",
+        minimum=0.1,
+        maximum=60.0,
+    ),
+    Parameter(
+        "reference_kind",
+        "string",
+        "auto",
+        "",
+        "What the reference's noise is like, as for `werrimbi diagnose --reference-kind`; auto: as "
+        "it takes it by itself.",
+        choices=("auto", "absolute", "incremental", "local_map"),
+    ),
+    Parameter(
+        "new_robot_file",
+        "string",
+        "",
+        "",
+        "What `~/write_robot_file` writes; empty: beside `robot_file`, with _better in its name.",
+        may_be_empty=True,
+    ),
 )
 
 

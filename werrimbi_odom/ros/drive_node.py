@@ -17,7 +17,7 @@ from collections.abc import Callable
 from typing import Any
 
 from builtin_interfaces.msg import Time as Stamp
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import Point, Twist, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.clock import Clock, ClockType
@@ -39,6 +39,7 @@ from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.drive_records import Records
 from werrimbi_odom.ros.graph import full_name
 from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.telling import diagnostic, tell
 
 TICK = 0.02
 """Seconds between two looks at the time."""
@@ -224,12 +225,9 @@ class DriveNode(Node):  # type: ignore[misc]
             return
         self._held_until = time.monotonic() + HOLD
         self._records.ending()
-        log = self.get_logger()
-        # Two lines, because rclpy knows a logging call by its line and its severity.
-        if driver.state == "done":
-            log.info(f"{driver.words}. Next: {self._records.next_command()}")
-        else:
-            log.warning(f"stopped: {driver.words}. Next: {self._records.next_command()}")
+        done = driver.state == "done"
+        words = driver.words if done else f"stopped: {driver.words}"
+        tell(self.get_logger(), f"{words}. Next: {self._records.next_command()}", fine=done)
         self._report()
 
     def _words(self) -> str:
@@ -258,18 +256,14 @@ class DriveNode(Node):  # type: ignore[misc]
 
     def _report(self) -> None:
         driver = self._driver
-        status = DiagnosticStatus(
-            level=LEVELS[driver.state],
-            name=f"{full_name(self)}: drive",
-            message=f"{driver.state}: {driver.words}",
-            hardware_id="base",
-            values=[
-                KeyValue(key="manoeuvre", value=driver.plan.name),
-                KeyValue(key="progress", value=driver.progress),
-                KeyValue(key="speed", value=f"{driver.command.speed:.3f} m/s"),
-                KeyValue(key="yaw rate", value=f"{driver.command.yaw_rate:.3f} rad/s"),
-            ],
-        )
+        name, words = f"{full_name(self)}: drive", f"{driver.state}: {driver.words}"
+        told = {
+            "manoeuvre": driver.plan.name,
+            "progress": driver.progress,
+            "speed": f"{driver.command.speed:.3f} m/s",
+            "yaw rate": f"{driver.command.yaw_rate:.3f} rad/s",
+        }
+        status = diagnostic(LEVELS[driver.state], name, words, told, of="base")
         array = DiagnosticArray(status=[status])
         array.header.stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(array)

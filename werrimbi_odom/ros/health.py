@@ -9,9 +9,10 @@ from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticStatus
 
 from werrimbi_odom.model.encoder import EncoderTally
+from werrimbi_odom.ros.telling import diagnostic
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE
@@ -130,14 +131,8 @@ class Health:
         if new["published"]:
             self._answered = list(self._heard)
         told = rates | counts | dict(effects or {})
-        values = [KeyValue(key=key, value=str(value)) for key, value in told.items()]
-        return DiagnosticStatus(
-            level=level,
-            name=name,
-            message=words or f"{rates['input rate']} in, {rates['output rate']} out",
-            hardware_id="wheel encoders",
-            values=values,
-        )
+        words = words or f"{rates['input rate']} in, {rates['output rate']} out"
+        return diagnostic(level, name, words, told)
 
     def _counts(self, tally: EncoderTally, inputs: Mapping[str, int]) -> dict[str, int]:
         heard = {

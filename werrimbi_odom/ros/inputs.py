@@ -82,6 +82,17 @@ def topics_of(values: Mapping[str, Value]) -> tuple[str, ...]:
     }[str(values["input_type"])]
 
 
+def type_of(values: Mapping[str, Value]) -> type:
+    """The messages of a kind of input."""
+    kinds: dict[str, type] = {
+        "joint_state": JointState,
+        "int32_pair": Int32,
+        "int64_pair": Int64,
+        "int64_multi_array": Int64MultiArray,
+    }
+    return kinds[str(values["input_type"])]
+
+
 def subscribed(wiring: Wiring) -> JointStates | Pair | Ticks:
     """Subscribe to the input that the robot file names.
 
@@ -90,12 +101,10 @@ def subscribed(wiring: Wiring) -> JointStates | Pair | Ticks:
     InputError
         When a QoS override cannot be used.
     """
-    kind = wiring.values["input_type"]
-    if kind == "joint_state":
+    kind = type_of(wiring.values)
+    if kind is JointState:
         return JointStates(wiring)
-    if kind == "int64_multi_array":
-        return Ticks(wiring)
-    return Pair(wiring, Int32 if kind == "int32_pair" else Int64)
+    return Ticks(wiring) if kind is Int64MultiArray else Pair(wiring, kind)
 
 
 class JointStates:

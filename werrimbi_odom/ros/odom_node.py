@@ -37,6 +37,7 @@ from werrimbi_odom.ros.messages import OdometryMessage, pose_from, transform_of
 from werrimbi_odom.ros.running import run
 from werrimbi_odom.ros.slip import slip_of
 from werrimbi_odom.ros.status import status_of
+from werrimbi_odom.ros.telling import tell
 from werrimbi_odom.ros.tracker import Finished, Tracker
 from werrimbi_odom.ros.transforms import transform_sender
 
@@ -218,11 +219,7 @@ class OdomNode(Node):  # type: ignore[misc]
         status = self._health.report(name, tally, counts, effects, crowded, wrong)
         if status.level != self._level:
             self._level = status.level
-            # Two lines, because rclpy knows a logging call by its line and its severity.
-            if status.level == DiagnosticStatus.OK:
-                self.get_logger().info(status.message)
-            else:
-                self.get_logger().warning(status.message)
+            tell(self.get_logger(), status.message, fine=status.level == DiagnosticStatus.OK)
         array = DiagnosticArray(status=[status])
         array.header.stamp = self.get_clock().now().to_msg()
         self._diagnostics.publish(array)

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from builtin_interfaces.msg import Time as Stamp
-from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped, TransformStamped, Twist, TwistStamped
 from rclpy.clock import Clock, ClockType
 from rclpy.event_handler import PublisherEventCallbacks, SubscriptionEventCallbacks
@@ -33,6 +33,7 @@ from werrimbi_odom.ros import inputs, simulated_parameters
 from werrimbi_odom.ros.declaring import declared
 from werrimbi_odom.ros.graph import full_name
 from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.telling import diagnostic
 from werrimbi_odom.ros.transforms import transform_sender
 
 if TYPE_CHECKING:
@@ -218,7 +219,8 @@ class SimulatedRobot(Node):  # type: ignore[misc]
     def _tell(self, _: Any, response: Any) -> Any:
         response.success = True
         response.message = "; ".join(
-            f"{each.entry.name} = {each.strength:g} {each.entry.unit}: {each.entry.says}"
+            f"{each.entry.name} = {each.strength:g}"
+            f"{'' if each.entry.unit == '1' else ' ' + each.entry.unit}: {each.entry.says}"
             for each in self._hidden
         )
         response.message = response.message or "nothing is hidden"
@@ -230,18 +232,17 @@ class SimulatedRobot(Node):  # type: ignore[misc]
         self._reported = now, time
         slow = pace < 0.9 * self._factor
         words = f"{pace:.2f} simulated seconds in a second"
-        status = DiagnosticStatus(
-            level=DiagnosticStatus.WARN if slow else DiagnosticStatus.OK,
-            name=f"{full_name(self)}: simulation",
-            message=f"{words}, not {self._factor:g}: this machine is too slow" if slow else words,
-            hardware_id="physics engine",
-            values=[
-                KeyValue(key="time", value=f"{time:.3f} s"),
-                KeyValue(key="time lost", value=f"{self._late:.3f} s"),
-                KeyValue(key="speed asked", value=f"{self._asked[0]:.3f} m/s"),
-                KeyValue(key="yaw rate asked", value=f"{self._asked[1]:.3f} rad/s"),
-            ],
-        )
+        if slow:
+            words += f", not {self._factor:g}: this machine is too slow"
+        told = {
+            "time": f"{time:.3f} s",
+            "time lost": f"{self._late:.3f} s",
+            "speed asked": f"{self._asked[0]:.3f} m/s",
+            "yaw rate asked": f"{self._asked[1]:.3f} rad/s",
+        }
+        level = DiagnosticStatus.WARN if slow else DiagnosticStatus.OK
+        name = f"{full_name(self)}: simulation"
+        status = diagnostic(level, name, words, told, of="physics engine")
         array = DiagnosticArray(status=[status])
         array.header.stamp = self._stamp(time)
         self._diagnostics.publish(array)

@@ -1,0 +1,182 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The round closed without a hand: hidden, left open by plain driving, driven on, named.
+
+What `diagnose` proposes is driven by the code of drive_node; in the engine, without ROS.
+
+    python -m test.driving.closing SEED COUNT        # a line for each case, and the table
+"""
+
+from __future__ import annotations
+
+import itertools
+import json
+import math
+import random
+import sys
+import tempfile
+from collections import defaultdict
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+import werrimbi_odom as wo
+from test.driving.in_engine import LIMITS, InEngine
+from werrimbi_odom.driving.manoeuvres import BEFORE, proposed
+from werrimbi_odom.driving.plan import Move, Plan
+from werrimbi_odom.effects import find
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.simulation import CATALOGUE, LiveRobot, TrueRobot, hide, write_robot_file
+
+ROUND = (Move(2.0, 0.0, 0.6), Move(0.25 * math.pi, 0.5 * math.pi, 0.6)) * 4
+
+PLAIN = {
+    each.name: each
+    for each in (
+        Plan("circle", "a circle to the left", (BEFORE, *(Move(6.0, 6.0),) * 4)),
+        Plan("rounds", "rounds to the left, with round corners", (BEFORE, *ROUND * 4)),
+        Plan("line", "to and fro at one pace", (BEFORE, *(Move(4.0, 0.0), Move(-4.0, 0.0)) * 3)),
+    )
+}
+"""What robots do all day, some minutes of it."""
+KINDS = [each.name for each in CATALOGUE if each.kind == "effect"]
+MEASURED = ("poses", "positions")
+"""By a reference with a heading, and by one without."""
+MOST = 3
+"""Drives that are proposed, one after the other, before it is given up."""
+
+
+@dataclass(frozen=True)
+class Closed:
+    """One case.
+
+    Parameters
+    ----------
+    verdicts, driven : sequence of str
+        Of the plain drive, and after each proposal; and what those were.
+    names : tuple of str
+        What the last verdict names.
+    """
+
+    effect: str
+    strength: float
+    plain: str
+    measured: str
+    seed: int
+    verdicts: tuple[str, ...]
+    driven: tuple[str, ...]
+    names: tuple[str, ...]
+    by_hand: str = ""
+    """What is proposed in the end, where that is no drive."""
+
+    @property
+    def open_at_first(self) -> bool:
+        """Whether there was something for the robot to do."""
+        return bool(self.driven)
+
+    @property
+    def right(self) -> bool:
+        """Named and right."""
+        return self.verdicts[-1] == "named" and self.names == (self.effect,)
+
+    @property
+    def twins(self) -> bool:
+        """Left open because no drive can tell, with the right one among them."""
+        twins = {self.effect, *find(self.effect).twins}
+        return (
+            self.verdicts[-1] == "ambiguous"
+            and self.effect in self.names
+            and (set(self.names) <= twins)
+        )
+
+
+def closed(effect: str, plain: str, measured: str, seed: int) -> Closed:
+    """Hide, drive, diagnose, drive what is proposed, and so on."""
+    hidden = hide(effect, None, seed=seed)
+    robot = TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)
+    live = LiveRobot(robot, seed=seed, hidden=[hidden.peculiarity])
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "robot.yaml"
+        write_robot_file(hidden.peculiarity.written(robot), path)
+        file, told = wo.read_robot(path), Path(folder) / "diagnosis.json"
+        there = InEngine(live, file)
+        runs = [_driven(there, PLAIN[plain], measured)]
+        driven: list[str] = []
+        verdicts: list[str] = []
+        by_hand = ""
+        while True:
+            said = wo.diagnose(file, runs).to_dict()
+            verdicts.append(said["verdict"])
+            if said["verdict"] != "ambiguous" or len(driven) == MOST:
+                break
+            told.write_text(json.dumps(said), encoding="utf-8")
+            try:
+                plan = proposed(told, LIMITS)
+            except InputError as error:
+                by_hand = str(error)
+                break
+            driven.append(plan.name)
+            runs.append(_driven(there, plan, measured))
+    names = said["rivals"] or [each["effect"] for each in said["found"]]
+    return Closed(
+        effect,
+        hidden.strength,
+        plain,
+        measured,
+        seed,
+        tuple(verdicts),
+        tuple(driven),
+        tuple(names),
+        by_hand,
+    )
+
+
+def _driven(there: InEngine, plan: Plan, measured: str) -> Run:
+    run, driver = there.drive(plan)
+    assert driver.state == "done", driver.words
+    assert run.reference is not None
+    if measured == "poses":
+        return run
+    nowhere = np.full(run.reference.time.size, np.nan)
+    return replace(run, reference=replace(run.reference, yaw=nowhere))
+
+
+def cases(seed: int) -> Iterator[Closed]:
+    """All kinds, all plain drives, whatever was measured; in an order that is drawn."""
+    kinds = list(itertools.product(KINDS, PLAIN, MEASURED))
+    random.Random(seed).shuffle(kinds)
+    return (closed(*kind, seed) for kind in kinds)
+
+
+def table(found: Sequence[Closed]) -> str:
+    """Of the cases that were open: what was driven, and what came of it."""
+    rows: dict[str, list[Closed]] = defaultdict(list)
+    for each in found:
+        if each.open_at_first:
+            rows[each.effect].append(each)
+    lines = ["| hidden | left open | named then, and right | driven |", "| --- | --- | --- | --- |"]
+    for effect, those in sorted(rows.items()):
+        right = sum(each.right or each.twins for each in those)
+        names = sorted({name for each in those for name in each.driven})
+        lines.append(f"| `{effect}` | {len(those)} | {right} | {', '.join(names)} |")
+    everything = [each for those in rows.values() for each in those]
+    right = sum(each.right or each.twins for each in everything)
+    lines.append(f"| all | {len(everything)} | {right} | |")
+    return "\n".join(lines)
+
+
+def main() -> None:
+    """Judge as many cases of a seed as are asked for, and print."""
+    seed, count = map(int, sys.argv[1:])
+    found = []
+    for each in itertools.islice(cases(seed), count):
+        found.append(each)
+        print(each, flush=True)
+    print(table(found))
+
+
+if __name__ == "__main__":
+    main()

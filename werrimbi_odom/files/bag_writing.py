@@ -1,0 +1,67 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Bags that are written of messages as they came: rosbag2, MCAP, without `ros2 bag`."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+from werrimbi_odom.errors import InputError
+
+
+@cache
+def known_types() -> Any:
+    """What rosbags knows of messages; the first call takes a second.
+
+    Raises
+    ------
+    InputError
+        When rosbags is not installed.
+    """
+    try:
+        from rosbags.typesys import Stores, get_typestore
+    except ModuleNotFoundError as missing:
+        raise InputError("to record needs rosbags: pip install rosbags") from missing
+    return get_typestore(Stores.ROS2_JAZZY)
+
+
+class BagWriter:
+    """A bag that is being written.
+
+    Parameters
+    ----------
+    folder : Path
+        Of the bag; must not exist.
+
+    Raises
+    ------
+    InputError
+        When rosbags is not installed, or the folder cannot be written.
+    """
+
+    def __init__(self, folder: Path) -> None:
+        self._store = known_types()
+        from rosbags.rosbag2 import StoragePlugin, Writer, WriterError
+
+        self._writer = Writer(folder, version=9, storage_plugin=StoragePlugin.MCAP)
+        try:
+            folder.parent.mkdir(parents=True, exist_ok=True)
+            self._writer.open()
+        except (OSError, WriterError) as error:
+            raise InputError(f"record: {folder} cannot be written: {error}") from error
+
+    def topic(self, name: str, kind: str) -> Any:
+        """What `write` wants for a topic; None where nobody knows its type of messages."""
+        if kind not in self._store.types:
+            return None
+        return self._writer.add_connection(name, kind, typestore=self._store)
+
+    def write(self, topic: Any, received: int, message: bytes) -> None:
+        """Add a message as it came over the wire, and when that was [ns]."""
+        self._writer.write(topic, received, message)
+
+    def close(self) -> None:
+        """Write what is still to be written."""
+        self._writer.close()

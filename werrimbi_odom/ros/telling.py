@@ -1,0 +1,34 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""How things stand, for /diagnostics and the log."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticStatus, KeyValue
+
+
+def diagnostic(
+    level: bytes, name: str, words: str, values: Mapping[str, object], of: str = "wheel encoders"
+) -> DiagnosticStatus:
+    """A status; `of` is the hardware."""
+    return DiagnosticStatus(
+        level=level,
+        name=name,
+        message=words,
+        hardware_id=of,
+        values=[KeyValue(key=key, value=str(value)) for key, value in values.items()],
+    )
+
+
+def tell(log: Any, words: str, *, fine: bool) -> None:
+    """Say it, as a warning where not all is well.
+
+    In two lines, because rclpy knows a logging call by its line and its severity.
+    """
+    if fine:
+        log.info(words)
+    else:
+        log.warning(words)

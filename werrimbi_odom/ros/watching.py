@@ -1,0 +1,252 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What is missing in the robot file that runs: told while the robot drives, with compare_node.
+
+Messages of the last minutes of driving are kept (`kept`); now and then a process of its own with
+the lowest priority diagnoses them (`werrimbi_odom.api.watched`), as the command line would.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from diagnostic_msgs.msg import DiagnosticStatus
+from rclpy.node import Node
+from rclpy.qos import DurabilityPolicy, QoSProfile
+from rclpy.serialization import serialize_message
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.parameters import Value
+from werrimbi_odom.files.replacing import place_of, replacing
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.model.motion import BodyMotion
+from werrimbi_odom.ros import inputs
+from werrimbi_odom.ros.graph import full_name
+from werrimbi_odom.ros.kept import Kept
+from werrimbi_odom.ros.telling import diagnostic, tell
+
+LOOKER = "werrimbi_odom.api.watched"
+"""Run as a process, never imported: the node knows neither scipy nor any diagnosis."""
+LOOKS_BACK = 2.0
+"""Times the driving between two looks: what sets in is all that the second one after it sees."""
+
+
+class NoWatching:
+    """Where no robot file is given."""
+
+    def odometry(self, time: float, twist: BodyMotion[float]) -> None:
+        """Take the time and the twist of an odometry message."""
+
+    def reference(self, message: Any) -> None:
+        """Take a message of the reference."""
+
+    def look(self) -> list[DiagnosticStatus]:
+        """Once a second: go on with the diagnosis, and say how things stand."""
+        return []
+
+    def close(self) -> None:
+        """End what is under way."""
+
+
+class Watching(NoWatching):
+    """Diagnoses, again and again.
+
+    Parameters
+    ----------
+    node : Node
+    values : mapping
+        Parameters of compare_node.
+    kind : type
+        Of the messages of the reference.
+    subscribe : callable
+        Of the node.
+
+    Raises
+    ------
+    InputError
+        When the robot file cannot be used, or the new one would take its place.
+    """
+
+    def __init__(
+        self, node: Node, values: Mapping[str, Value], kind: type, subscribe: Callable[..., None]
+    ) -> None:
+        self._node = node
+        self._robot = Path(str(values["robot_file"])).absolute()
+        robot = read_robot_file(self._robot).values
+        named = str(values["new_robot_file"])
+        self._new = Path(named or self._robot.with_name(f"{self._robot.stem}_better.yaml"))
+        if place_of(self._new) == place_of(self._robot):
+            raise InputError(f"new_robot_file: {self._new} is the robot file in use; name another")
+        wheels = [node.resolve_topic_name(topic) for topic in inputs.topics_of(robot)]
+        reference = node.resolve_topic_name("reference")
+        of_wheels = inputs.type_of(robot)
+        self._reference = len(wheels)
+        kind_of = str(values["reference_kind"])
+        self._asked = {
+            "robot": str(self._robot),
+            "topics": {"ticks_topic": ",".join(wheels), "reference_topic": reference},
+            "options": {} if kind_of == "auto" else {"reference_kind": kind_of},
+        }
+        self._every = 60.0 * float(values["diagnose_every"])  # type: ignore[arg-type]
+        topics = [*((topic, _named(of_wheels)) for topic in wheels), (reference, _named(kind))]
+        self._kept = Kept(topics, LOOKS_BACK * self._every)
+        self._looked_at = 0.0
+        self._looks = 0
+        self._used = 0.0
+        self._looking: subprocess.Popen[bytes] | None = None
+        self._folder = Path()
+        self._found: dict[str, Any] = {}
+        self._better = ""
+        latched = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+        self._words = node.create_publisher(String, "~/diagnosis", latched)
+        node.create_service(Trigger, "~/write_robot_file", self._on_write)
+        for number, topic in enumerate(wheels):
+            subscribe(of_wheels, topic, partial(self._take, number), raw=True)
+
+    # ------------------------------------------------------------------------- messages
+
+    def odometry(self, time: float, twist: BodyMotion[float]) -> None:
+        """Take the time and the twist of an odometry message."""
+        self._kept.motion(time, twist.along, twist.turn)
+
+    def reference(self, message: Any) -> None:
+        """Take a message of the reference."""
+        self._take(self._reference, serialize_message(message))
+
+    def _take(self, topic: int, data: bytes) -> None:
+        self._kept.take(topic, self._node.get_clock().now().nanoseconds, data)
+
+    # ------------------------------------------------------------------------- looking
+
+    def look(self) -> list[DiagnosticStatus]:
+        """Once a second: go on with the diagnosis, and say how things stand."""
+        if self._looking is not None:
+            if self._looking.poll() is not None:
+                self._end()
+        elif self._kept.driven - self._looked_at >= self._every:
+            self._begin()
+        return [self._status()]
+
+    def _begin(self) -> None:
+        self._looked_at = self._kept.driven
+        self._folder = Path(tempfile.mkdtemp(prefix="werrimbi_odom_"))
+        self._kept.write(self._folder / "messages")
+        (self._folder / "asked.json").write_text(json.dumps(self._asked), encoding="utf-8")
+        self._looking = subprocess.Popen(
+            [sys.executable, "-m", LOOKER, str(self._folder)],
+            stdin=subprocess.DEVNULL,
+            stdout=subprocess.DEVNULL,
+            stderr=(self._folder / "said").open("wb"),
+            env=os.environ | {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"},
+        )
+
+    def _end(self) -> None:
+        """Take what was found, and tell it where it is news."""
+        before, better = self._found.get("headline"), self._folder / "better.yaml"
+        try:
+            self._found = json.loads((self._folder / "found.json").read_text(encoding="utf-8"))
+            self._better = better.read_text(encoding="utf-8") if better.exists() else ""
+        except (OSError, ValueError):
+            said = (self._folder / "said").read_text(encoding="utf-8", errors="replace")
+            last = (said.strip().splitlines() or ["it was ended"])[-1]
+            self._found, self._better = {"error": f"the diagnosis failed: {last}"}, ""
+        self._looks += 1
+        self._used += float(self._found.get("cpu_s", 0.0))
+        self.close()
+        self._words.publish(String(data=self._found.get("words") or self._found["error"]))
+        level, words = self._verdict()
+        if self._found.get("headline") != before:
+            tell(self._node.get_logger(), words, fine=level == DiagnosticStatus.OK)
+
+    def _verdict(self) -> tuple[bytes, str]:
+        found = self._found
+        if not found:
+            return DiagnosticStatus.OK, "not enough was driven yet"
+        if "error" in found:
+            return DiagnosticStatus.OK, f"these drives tell nothing: {found['error']}"
+        words = found["headline"]
+        if found["added"]:
+            words += f" {self._service()} writes {self._new} with it."
+        fine = found["verdict"] == "none" and not found["changes"]
+        return DiagnosticStatus.OK if fine else DiagnosticStatus.WARN, words
+
+    def _status(self) -> DiagnosticStatus:
+        kept, found = self._kept, self._found
+        level, words = self._verdict()
+        move = found.get("next_manoeuvre") or {}
+        told = {
+            "verdict": found.get("verdict", ""),
+            "effect": found.get("effect") or ", ".join(found.get("rivals", ())),
+            "next manoeuvre": move.get("name", ""),
+            "looks": self._looks,
+            "looking": self._looking is not None,
+            "driven": f"{kept.driven / 60.0:.1f} min",
+            "driven since the last look": f"{(kept.driven - self._looked_at) / 60.0:.1f} min",
+            "CPU of all looks": f"{self._used:.1f} s",
+        }
+        return diagnostic(level, f"{full_name(self._node)}: what is missing", words, told)
+
+    def close(self) -> None:
+        """End what is under way, and leave nothing behind."""
+        if self._looking is None:
+            return
+        self._looking.kill()
+        self._looking.wait()
+        self._looking = None
+        shutil.rmtree(self._folder, ignore_errors=True)
+
+    # ------------------------------------------------------------------------- asked for
+
+    def _service(self) -> str:
+        return f"{self._node.get_fully_qualified_name()}/write_robot_file"
+
+    def _on_write(self, _: Any, response: Any) -> Any:
+        response.success, response.message = False, self._unwritable()
+        if response.message:
+            return response
+        try:
+            with replacing(self._new) as file:
+                file.write(self._better)
+        except InputError as error:
+            response.message = str(error)
+            return response
+        names = ", ".join(self._found["added"])
+        response.success = True
+        response.message = (
+            f"{self._new} is {self._robot} with {names}; the one in use is as it was. "
+            "Restart odom_node and compare_node with the new one to use it"
+        )
+        return response
+
+    def _unwritable(self) -> str:
+        """Why there is no new robot file to write; "" if there is."""
+        if self._better:
+            there = f"{self._new} is there already: move it, or start with another new_robot_file"
+            return there if self._new.exists() else ""
+        why = self._found.get("refused") or self._verdict()[1]
+        return f"there is nothing to write: {why}"
+
+
+def _named(kind: type) -> str:
+    """The type of messages as bags name it."""
+    return f"{kind.__module__.split('.')[0]}/msg/{kind.__name__}"
+
+
+def watching_of(
+    node: Node, values: Mapping[str, Value], kind: type, subscribe: Callable[..., None]
+) -> NoWatching:
+    """What is asked for."""
+    if values["robot_file"] in ("", "none"):
+        return NoWatching()
+    return Watching(node, values, kind, subscribe)
