@@ -18,13 +18,13 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from werrimbi_odom.files.reading import read_run
 
 from test.hidden.follow import run
 from test.hidden.plan import EFFECTS, evenly
 from test.hidden.sets import HiddenSet, runs_of
 from test.hidden.work import Line, commit_now
 from werrimbi_odom.effects import find
+from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.simulation.hidden import find as hideable

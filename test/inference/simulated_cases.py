@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from werrimbi_odom.model.shown import shown
 
 from test.white_noise_robot import wandering
 from werrimbi_odom.effects import find
@@ -20,6 +19,7 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.model.effect import Effect, view_of
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.seen_by_reference import shown
 from werrimbi_odom.model.trajectory import trajectory
 
 GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0)

@@ -17,6 +17,7 @@ from werrimbi_odom.inference.rules import (
     JUMP_NEIGHBOURS,
     JUMP_SCATTER,
     NO_DRIVING_LEAP,
+    NO_DRIVING_LEAP_WITHIN,
     NO_DRIVING_POSES,
     NO_DRIVING_SILENCE,
     NO_DRIVING_SPANS,
@@ -110,7 +111,7 @@ def windows_of(
         steps_seen = np.diff(reference.x[known][new]) + 1j * np.diff(reference.y[known][new])
     else:
         steps_seen = wrap_all(np.diff(reference.yaw[known][new])) + 0j
-    if usual[0] < 1.5 * _GRID:  # three slower steps may be a hand's
+    if usual[0] < NO_DRIVING_LEAP_WITHIN:
         steps_seen = _without_leaps(steps_seen, np.abs(np.diff(np.interp(time, grid, by_wheels))))
     gone = np.concatenate([[0j], np.cumsum(steps_seen)])
     over = _over(np.interp(grid, time, gone.real), steps)

@@ -110,6 +110,10 @@ NO_DRIVING_LEAP = 2.0
 """Times what wheels did, or the reference a moment before and after, beyond which a step of it from
 one pose to the next is a leap. Chosen: stamps that wander by half an interval make 1.5 of one."""
 
+NO_DRIVING_LEAP_WITHIN = 0.15
+"""Seconds between poses up to which one step beyond all others is a leap and not a hand: whoever
+moves a robot by hand takes longer than three such steps; of slower ones it may take three."""
+
 NO_DRIVING_AT_ONCE = 0.5
 """Share of what is in doubt, that must not be in one window: a lost track or a failed match is a
 jump, which is found as such."""
