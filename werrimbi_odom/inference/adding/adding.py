@@ -60,36 +60,6 @@ from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
 
-def add_effect(
-    effect: Effect,
-    runs: Sequence[Run],
-    robot: Robot,
-    kind: ReferenceKind = "absolute",
-    *,
-    given: Robot | None = None,
-    holdout: Sequence[Run] = (),
-    leg: float = 1.0,
-    limits: EncoderLimits | None = None,
-    sigma_xy: float | None = None,
-    sigma_yaw: float | None = None,
-    show: Show = lambda share, words: None,
-) -> Added:
-    """One effect alone: `add_effects`."""
-    return add_effects(
-        (effect,),
-        runs,
-        robot,
-        kind,
-        given=given,
-        holdout=holdout,
-        leg=leg,
-        limits=limits,
-        sigma_xy=sigma_xy,
-        sigma_yaw=sigma_yaw,
-        show=show,
-    )
-
-
 def add_effects(
     effects: Sequence[Effect],
     runs: Sequence[Run],
