@@ -17,7 +17,7 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, Side
-from werrimbi_odom.inference.adding.fits import Show, fits_of
+from werrimbi_odom.inference.adding.fits import fits_of
 from werrimbi_odom.inference.adding.known import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.start import (
     Drives,
@@ -58,6 +58,7 @@ from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.progress import Show, silent
 
 
 def add_effects(
@@ -72,7 +73,7 @@ def add_effects(
     limits: EncoderLimits | None = None,
     sigma_xy: float | None = None,
     sigma_yaw: float | None = None,
-    show: Show = lambda share, words: None,
+    show: Show = silent,
 ) -> Added:
     """Fit effects together with all calibration, and judge each of them.
 
