@@ -68,6 +68,22 @@ def test_the_index_holds_every_page_once() -> None:
     assert sorted(listed) == sorted(page.stem for page in (ROOT / "docs").glob("*.md"))
 
 
+def test_source_files_that_pages_name_are_there() -> None:
+    there = [path.as_posix() for folder in ("werrimbi_odom", "test", "docs", "benchmark", "example")
+             for path in (ROOT / folder).rglob("*.py")]  # fmt: skip
+    own = {"my_effect/NAME.py"}  # what a command writes
+    named = {
+        (page.name, name)
+        for page in PAGES
+        if page.name != "CHANGELOG.md"  # it tells of what was
+        for name in re.findall(r"`([\w./]+\.py)`", page.read_text())
+    }
+    assert len(named) > 20
+    assert {each for each in named if not any(path.endswith(f"/{each[1]}") for path in there)} == {
+        ("draft.md", name) for name in own
+    }
+
+
 def test_pages_name_no_place_that_a_stranger_lacks() -> None:
     for page in PAGES:
         assert not re.search(r"\.\./shared|/work\b", page.read_text()), page

@@ -24,7 +24,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, write_robot_file
 from werrimbi_odom.files.run import Reference, Run
-from werrimbi_odom.inference.adding.adding import add_effect
+from werrimbi_odom.inference.adding.adding import add_effects
 
 Floats = NDArray[np.float64]
 STEP = 2.0
@@ -45,7 +45,7 @@ def test_the_node_with_the_added_effect_errs_less(
     train, holdout = (
         [read_run(path, file) for path in runs_of(folder, part)] for part in ("train", "holdout")
     )
-    found = add_effect(find("left_missed_ticks"), train, file.robot, holdout=holdout)
+    found = add_effects([find("left_missed_ticks")], train, file.robot, holdout=holdout)
     assert found.objection is None
     robot = found.robot
     multipliers = {

@@ -14,7 +14,7 @@ from test.inference.driven import runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.adding.adding import Added, add_effect
+from werrimbi_odom.inference.adding.adding import Added, add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.model.robot import Robot
@@ -28,7 +28,7 @@ PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noi
 
 def added(name: str, truth: Robot, given: Robot = PLAIN) -> Added:
     runs = runs_of(truth, (1, 2, 3, 4))
-    return add_effect(find(name), runs[:3], given, holdout=runs[3:])
+    return add_effects([find(name)], runs[:3], given, holdout=runs[3:])
 
 
 @pytest.fixture(scope="module")
@@ -83,7 +83,7 @@ def test_a_held_out_error_that_rises_by_chance_refuses_no_effect_that_the_others
     """Twenty seconds, in which a creep of eighteen deviations costs less than the noise."""
     truth = replace(PLAIN, effects=(find("lateral_slip").using(creep=0.003),))
     fitted, held = runs_of(truth, (1, 2, 3), 60), runs_of(truth, (8,), 20)
-    found = add_effect(find("lateral_slip"), fitted, PLAIN, holdout=held)
+    found = add_effects([find("lateral_slip")], fitted, PLAIN, holdout=held)
     sides = found.holdout.sides
     assert sides.after > sides.before
     assert found.objection is None
@@ -96,7 +96,7 @@ def test_a_held_out_error_that_rises_beyond_chance_refuses_what_the_others_show(
         replace(PLAIN, effects=(find("lateral_slip").using(creep=creep),)) for creep in (0.02, 0.0)
     )
     fitted, held = runs_of(one, (1, 2, 3), 30), runs_of(other, (8,), 40)
-    found = add_effect(find("lateral_slip"), fitted, PLAIN, holdout=held)
+    found = add_effects([find("lateral_slip")], fitted, PLAIN, holdout=held)
     assert found.objection is not None
     assert "chance does not raise it so" in found.objection
     assert found.chances["lateral_slip"] == pytest.approx(0.0, abs=1e-9)
@@ -137,7 +137,7 @@ def test_a_phase_of_each_drive_is_not_written() -> None:
         for phase in (0.3, 1.9, -2.0, 3.0)
     ]
     runs = [runs_of(robot, (seed,))[0] for seed, robot in enumerate(truth)]
-    found = add_effect(find("eccentric_left_wheel"), runs[:3], PLAIN, holdout=runs[3:])
+    found = add_effects([find("eccentric_left_wheel")], runs[:3], PLAIN, holdout=runs[3:])
     assert found.robot.effects[0].unknown == ("phase",)
     assert found.parameters["amplitude"].value == pytest.approx(2e-3, abs=2e-4)
     gone = np.angle(np.exp(1j * (np.array(found.parameters["phase"].of_runs) - [0.3, 1.9, -2.0])))
@@ -197,7 +197,7 @@ def test_a_reference_in_millimetres_is_to_be_converted_and_nothing_else() -> Non
         runs.append(replace(run, reference=seen))
     for asked in (
         lambda: diagnose(runs[:3], PLAIN, LIBRARY, holdout=runs[3:]),
-        lambda: add_effect(find("wheel_radius_scale"), runs[:3], PLAIN, holdout=runs[3:]),
+        lambda: add_effects([find("wheel_radius_scale")], runs[:3], PLAIN, holdout=runs[3:]),
     ):
         with pytest.raises(InputError) as refused:
             asked()
@@ -215,7 +215,7 @@ def test_headings_alone_are_judged_by_headings_beside_the_gyros_drift() -> None:
         time, nothing = run.reference.time, np.full(run.reference.time.size, np.nan)
         yaw = run.reference.yaw + (0.006 - 0.003 * number) * (time - time[0])
         runs.append(replace(run, reference=replace(run.reference, x=nothing, y=nothing, yaw=yaw)))
-    found = add_effect(find("track_width"), runs[:3], PLAIN, holdout=runs[3:])
+    found = add_effects([find("track_width")], runs[:3], PLAIN, holdout=runs[3:])
     assert found.objection is None
     assert found.parameters["multiplier"].value == pytest.approx(1.02, abs=1e-3)
     assert found.holdout.unit == "rad"

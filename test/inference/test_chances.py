@@ -6,12 +6,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from scipy import stats
 
-from werrimbi_odom.inference.chances import chi2_above, fisher_above, student_above
+from werrimbi_odom.inference.chances import chi2_above, fisher_above, in_any_of, student_above
 
 VALUES = st.floats(-1e3, 1e3)
 DEGREES = st.floats(1.0, 400.0)
@@ -33,3 +34,13 @@ def test_nothing_known_is_no_chance_at_all() -> None:
     assert math.isnan(student_above(math.nan, 2.0))
     assert math.isnan(fisher_above(math.nan, 2.0, 3.0))
     assert chi2_above(math.inf, 2.0) == fisher_above(math.inf, 2.0, 3.0) == 0.0
+
+
+def test_many_tests_find_something_by_chance_no_oftener_than_is_said() -> None:
+    """Bonferroni's bound against so many p-values drawn alike; and no chance is above one."""
+    least = np.random.default_rng(7).uniform(size=(4000, 20)).min(axis=1)
+    said = np.array([in_any_of(20, float(p)) for p in least])
+    for level in (0.05, 0.2):
+        share = float(np.mean(said < level))
+        assert 0.8 * level < share < level + 3.0 * np.sqrt(level / least.size)
+    assert in_any_of(20, 0.3) == 1.0

@@ -15,7 +15,7 @@ from test.inference.driven import run_of
 from test.model.drives import read
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.adding.adding import Added, add_effect
+from werrimbi_odom.inference.adding.adding import Added, add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.model.robot import Robot
@@ -72,7 +72,7 @@ def first(runs: list[Run]) -> Diagnosis:
 
 @pytest.fixture(scope="module")
 def kick(runs: list[Run]) -> Added:
-    return add_effect(find("castor_kick"), runs[:9], PLAIN, holdout=runs[9:])
+    return add_effects([find("castor_kick")], runs[:9], PLAIN, holdout=runs[9:])
 
 
 def test_a_length_that_they_do_not_hold_is_no_number(first: Diagnosis, kick: Added) -> None:
@@ -92,7 +92,7 @@ def test_rivals_are_not_forgotten_when_one_of_them_is_added(
     runs: list[Run], first: Diagnosis
 ) -> None:
     assert first.verdict == "ambiguous"
-    added = add_effect(find(first.rivals[0]), runs[:9], PLAIN, holdout=runs[9:])
+    added = add_effects([find(first.rivals[0])], runs[:9], PLAIN, holdout=runs[9:])
     later = diagnosed(runs, added.robot)
     assert later.verdict == "none"
     others = later.rivals_of_held[first.rivals[0]]

@@ -12,7 +12,7 @@ import pytest
 from test.inference.driven import runs_of
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.adding.adding import add_effect
+from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.model.robot import Robot
 
@@ -82,7 +82,7 @@ def test_a_fitted_drive_recorded_otherwise_is_told_and_left_out(runs: list[Run])
 
 def test_set_up_is_looked_for_in_the_fitted_drives_alone_when_adding(runs: list[Run]) -> None:
     held = [swapped(run) for run in runs[3:]]
-    found = add_effect(find("castor_kick"), runs[:3], GIVEN, holdout=held)
+    found = add_effects([find("castor_kick")], runs[:3], GIVEN, holdout=held)
     assert found.set_up.findings == ()
     assert found.train.sides.after < found.train.sides.before
 
@@ -90,8 +90,8 @@ def test_set_up_is_looked_for_in_the_fitted_drives_alone_when_adding(runs: list[
 def test_nothing_of_the_held_out_drives_moves_a_fit(runs: list[Run]) -> None:
     """The written robot is the same to the last digit whatever was held out."""
     effect = find("castor_kick")
-    one = add_effect(effect, runs[:3], GIVEN, holdout=runs[3:4])
-    other = add_effect(effect, runs[:3], GIVEN, holdout=[swapped(run) for run in runs[4:]])
+    one = add_effects([effect], runs[:3], GIVEN, holdout=runs[3:4])
+    other = add_effects([effect], runs[:3], GIVEN, holdout=[swapped(run) for run in runs[4:]])
     assert one.robot == other.robot
 
 

@@ -19,7 +19,7 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.adding.adding import Added, add_effect, add_effects
+from werrimbi_odom.inference.adding.adding import Added, add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.model.effect import Effect, Parameter, wheel_effect
@@ -155,7 +155,7 @@ def test_the_rest_of_a_law_that_the_file_holds_is_no_other_effect() -> None:
     truth = replace(PLAIN, effects=(_law(2).using(softness=0.2),))
     runs = driven(truth, (1, 2, 3, 4, 5))
     line = _law(1)
-    robot = add_effect(line, runs[:4], PLAIN, holdout=runs[4:]).robot
+    robot = add_effects([line], runs[:4], PLAIN, holdout=runs[4:]).robot
     found = diagnose(runs[:4], robot, [*LIBRARY, line], holdout=runs[4:])
     assert found.verdict == "none"
     assert found.misfit is not None

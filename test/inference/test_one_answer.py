@@ -22,7 +22,7 @@ from werrimbi_odom.effects.collection import all_effects, find
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.adding.adding import add_effect
+from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import figures_of, prepare
 from werrimbi_odom.inference.comparison.legs import LegStatistics
@@ -97,7 +97,7 @@ def test_every_verb_gives_the_same_figures(case: str) -> None:
     train, held = ([change(run) for run in drives(seeds, robot)] for seeds in ((50, 51), (52,)))
     compared = [compare(runs, robot, kind) for runs in (train, held)]
     of_compare = [figures(each.main.all.figures) for each in compared]
-    added = add_effect(find("track_width"), train, robot, kind, holdout=held)
+    added = add_effects([find("track_width")], train, robot, kind, holdout=held)
     diagnosis = diagnose(train, robot, (), kind, holdout=held)
     given = Recordings(
         ANY_FILE, all_effects(), tuple(train), tuple(held), DriveOptions(reference_kind=kind), robot

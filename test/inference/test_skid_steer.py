@@ -12,7 +12,7 @@ import pytest
 
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.adding.adding import add_effect
+from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.model.robot import Robot
@@ -84,7 +84,7 @@ def test_two_wheels_keep_the_base_and_hear_of_skidding() -> None:
 
 def test_whoever_asks_for_it_gets_it_and_no_other_number_moves() -> None:
     runs = [drive(number) for number in (1, 2, 3)]
-    added = add_effect(find("skid_steer"), runs[:2], ROBOT, holdout=runs[2:])
+    added = add_effects([find("skid_steer")], runs[:2], ROBOT, holdout=runs[2:])
     assert not added.objections
     (applied,) = added.robot.effects
     assert applied.values == pytest.approx({"multiplier": 1.7, "x": X, "y": Y}, abs=2e-3)
@@ -94,8 +94,8 @@ def test_whoever_asks_for_it_gets_it_and_no_other_number_moves() -> None:
 def test_a_file_that_holds_it_is_fitted_again_by_its_own_name() -> None:
     near = find("skid_steer").using(multiplier=1.6)
     runs = [drive(number) for number in (1, 2, 3)]
-    added = add_effect(
-        find("skid_steer"), runs[:2], replace(FOUR_WHEELS, effects=(near,)), holdout=runs[2:]
+    added = add_effects(
+        [find("skid_steer")], runs[:2], replace(FOUR_WHEELS, effects=(near,)), holdout=runs[2:]
     )
     assert added.robot.effects[0].values["multiplier"] == pytest.approx(1.7, abs=2e-3)
     assert added.robot.wheel_separation_multiplier == 1.0

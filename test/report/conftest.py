@@ -14,7 +14,7 @@ import pytest
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.adding.adding import Added, add_effect
+from werrimbi_odom.inference.adding.adding import Added, add_effects
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.model.robot import Robot
@@ -88,7 +88,7 @@ def diagnosis(runs: tuple[Run, ...]) -> Diagnosis:
 
 @pytest.fixture(scope="session")
 def added(runs: tuple[Run, ...]) -> Added:
-    return add_effect(find("eccentric_left_wheel"), runs[:2], PLAIN, holdout=runs[2:])
+    return add_effects([find("eccentric_left_wheel")], runs[:2], PLAIN, holdout=runs[2:])
 
 
 @pytest.fixture(scope="session")

@@ -10,9 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.api.result import NewRobot, Result
-from werrimbi_odom.api.verbs import Show, silent
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.progress import Show, silent
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
 from werrimbi_odom.api.next_command import beside, next_command
 from werrimbi_odom.api.result import Result
-from werrimbi_odom.api.verbs import Show, silent
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.progress import Show, silent
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack

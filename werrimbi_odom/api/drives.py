@@ -149,7 +149,7 @@ def refuse_circles(given: Recordings) -> list[str]:
     InputError
         When one is made from the wheels, and is not asked for all the same.
     """
-    from werrimbi_odom.inference.comparison.circle import refuse_circle
+    from werrimbi_odom.inference.comparison.made_from_wheels import refuse_circle
 
     told = []
     for run in (*given.runs, *given.holdout):

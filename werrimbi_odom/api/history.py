@@ -31,6 +31,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.changes.dated import Dated, History, Unusable, in_order
 from werrimbi_odom.inference.changes.history import Course, DriveTold, course_of, drive_told
 from werrimbi_odom.inference.rules import DATED
+from werrimbi_odom.progress import Show, silent
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -62,7 +63,7 @@ def history(
     like: RobotFile | None = None,
     cache: str | Path | None = None,
     spread: Spread | None = None,
-    show: Callable[[float, str], None] = lambda share, words: None,
+    show: Show = silent,
     **options: Unpack[Options],
 ) -> Result[History]:
     """How the numbers of a robot went over its drives, and when one changed.
@@ -96,7 +97,7 @@ def history_of(
     like: RobotFile | None = None,
     cache: str | Path | None = None,
     spread: Spread | None = None,
-    show: Callable[[float, str], None] = lambda share, words: None,
+    show: Show = silent,
 ) -> Result[History]:
     """`history` as the command line asks for it."""
     given = [runs] if isinstance(runs, Run | str | Path) else list(runs)
@@ -165,9 +166,7 @@ def _tasks(
     return found
 
 
-def _known_or_done(
-    tasks: Sequence[DriveTask], spread: Spread, show: Callable[[float, str], None]
-) -> list[Looked]:
+def _known_or_done(tasks: Sequence[DriveTask], spread: Spread, show: Show) -> list[Looked]:
     found: list[Looked] = []
     left = []
     for task in tasks:

@@ -11,10 +11,10 @@ from typing import TYPE_CHECKING, Any, TextIO, TypeVar
 
 from werrimbi_odom.api.drives import read_run
 from werrimbi_odom.api.result import Result
-from werrimbi_odom.api.verbs import Show, silent
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.progress import Show, silent
 
 if TYPE_CHECKING:
     import numpy as np

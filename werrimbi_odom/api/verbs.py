@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
@@ -13,6 +13,7 @@ from werrimbi_odom.api.result import NewRobot, Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.progress import Show, silent
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -22,13 +23,6 @@ if TYPE_CHECKING:
     from werrimbi_odom.inference.comparison.judged_legs import Prepared
     from werrimbi_odom.inference.manoeuvres.told import Told
     from werrimbi_odom.model.effect import Effect
-
-Show = Callable[[float, str], None]
-"""Told the share done, and what is being done."""
-
-
-def silent(share: float, words: str) -> None:
-    """Show nothing."""
 
 
 def compare(

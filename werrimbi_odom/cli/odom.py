@@ -6,13 +6,13 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Callable
 from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.cli.options import declare
 from werrimbi_odom.cli.recordings import remark
+from werrimbi_odom.progress import Show
 
 if TYPE_CHECKING:
     from werrimbi_odom.api.odom import Reckoned
@@ -82,9 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _write(
-    arguments: argparse.Namespace, result: Reckoned, show: Callable[[float, str], None]
-) -> None:
+def _write(arguments: argparse.Namespace, result: Reckoned, show: Show) -> None:
     """Both files, or neither."""
     with ExitStack() as files:
         if arguments.json is not None:

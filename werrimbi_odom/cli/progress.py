@@ -6,16 +6,18 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from importlib.util import find_spec
+
+from werrimbi_odom.progress import Show
 
 EVERY = 30.0
 """Seconds from line to line where nobody looks at a bar."""
 
 
 @contextmanager
-def share_done(words: str) -> Iterator[Callable[[float, str], None]]:
+def share_done(words: str) -> Iterator[Show]:
     """A bar on stderr, to be told the share done and what is being done.
 
     Where stderr is no terminal (a log, a service), a line when the work has taken long, and again.
@@ -31,7 +33,7 @@ def share_done(words: str) -> Iterator[Callable[[float, str], None]]:
         yield lambda share, words: bar.update(task, completed=share, description=words)
 
 
-def _now_and_then(title: str) -> Callable[[float, str], None]:
+def _now_and_then(title: str) -> Show:
     """Tells a line on stderr each time that `EVERY` seconds have gone by."""
     told = time.monotonic()
 

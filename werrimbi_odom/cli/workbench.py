@@ -44,7 +44,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 def run(arguments: argparse.Namespace) -> int:
     """Read, compare, serve until interrupted; 0 then."""
-    from werrimbi_odom.workbench.job import Job, Open
+    from werrimbi_odom.workbench.job import Job
+    from werrimbi_odom.workbench.tasks import Open
 
     job = Job(Open())
     job.start()  # before all else, so that it imports while the drives are read

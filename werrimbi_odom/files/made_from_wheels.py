@@ -3,7 +3,7 @@
 """What by its name and its frames is the robot's own odometry, and so no measurement of it.
 
 Names alone decide nothing: they are what is looked at; how closely such poses follow the wheels is
-asked beside them (inference.comparison.circle).
+asked beside them (inference.comparison.made_from_wheels).
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypedDict
@@ -22,6 +22,7 @@ from werrimbi_odom.files.run_bag import Topics
 from werrimbi_odom.files.run_folder import TICKS
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.progress import Show, silent
 
 BAG = "metadata.yaml"
 _NAMED = 8  # runs of a folder that are named before "..."
@@ -107,7 +108,7 @@ class Recordings:
 def read(
     asked: Asked,
     collection: Collection,
-    show: Callable[[float, str], None] = lambda share, words: None,
+    show: Show = silent,
 ) -> Recordings:
     """Read robot file and runs.
 
@@ -133,7 +134,7 @@ def gathered(
     runs: Sequence[Run | Path],
     holdout: Sequence[Run | Path],
     how: DriveOptions,
-    show: Callable[[float, str], None] = lambda share, words: None,
+    show: Show = silent,
 ) -> Recordings:
     """Drives of a robot, those that are paths read.
 

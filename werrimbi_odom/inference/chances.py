@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Chances that nothing but noise goes as far.
+"""Chances that nothing but noise goes as far, in one test or in any of many.
 
 By scipy.special: scipy.stats has the same functions of it, and takes half a second to import, which
 is a tenth of the time in which an hour of driving is to be seen.
@@ -13,6 +13,11 @@ MEDIAN_TO_SIGMA = 1.4826
 
 NORMAL_95 = 1.959963984540054
 """Standard deviations to either side that hold 95 % of a normal scatter."""
+
+
+def in_any_of(tests: int, chance: float) -> float:
+    """Chance that noise alone goes as far in any of several tests (Bonferroni's bound)."""
+    return min(1.0, tests * chance)
 
 
 def chi2_above(value: float, degrees: float) -> float:

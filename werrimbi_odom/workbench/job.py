@@ -18,34 +18,11 @@ from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.workbench.tasks import Task
 
 if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
     from werrimbi_odom.files.recordings import Recordings
-    from werrimbi_odom.model.robot import Robot
-
-
-@dataclass(frozen=True)
-class Diagnose:
-    """Find out what a robot's model is missing."""
-
-    robot: Robot
-
-
-@dataclass(frozen=True)
-class Add:
-    """Fit more effects together, and compare."""
-
-    effects: tuple[str, ...]
-    robot: Robot
-
-
-@dataclass(frozen=True)
-class Open:
-    """Cut the drives into legs, and compare the robot as given."""
-
-
-Task = Diagnose | Add | Open
 
 
 def begin(asked: Connection) -> None:

@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 from werrimbi_odom.api.verbs import compared
@@ -15,8 +14,7 @@ from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.holdout import judge_of
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.model.robot import Robot
-
-Show = Callable[[float, str], None]
+from werrimbi_odom.progress import Show, silent
 
 
 @dataclass(frozen=True, eq=False)
@@ -53,7 +51,7 @@ class Opened:
     judged_on: tuple[str, ...]
     """Names of the held-out drives, given or put aside."""
 
-    def look(self, robot: Robot, show: Show = lambda share, words: None) -> Look:
+    def look(self, robot: Robot, show: Show = silent) -> Look:
         """Compare a robot on all drives."""
         given = replace(self.given, fitted=robot)
         train = compared(given, lambda share, words: show(0.6 * share, words), over=self.train)

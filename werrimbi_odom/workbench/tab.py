@@ -16,11 +16,12 @@ from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.verdict import Verdict
 from werrimbi_odom.report.numbers import listed
-from werrimbi_odom.workbench.job import Add, CancelledError, Diagnose, Job, Task
+from werrimbi_odom.workbench.job import CancelledError, Job
 from werrimbi_odom.workbench.opened import Look, Opened
 from werrimbi_odom.workbench.parts import Part
 from werrimbi_odom.workbench.saving import Target, saved
 from werrimbi_odom.workbench.steps import Session, begun
+from werrimbi_odom.workbench.tasks import Add, Diagnose, Task
 from werrimbi_odom.workbench.work import known_to_both
 
 VIEWS = ("compare", "diagnose", "add", "save")

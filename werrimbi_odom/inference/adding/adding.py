@@ -17,7 +17,7 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, Side
-from werrimbi_odom.inference.adding.fits import Show, fits_of
+from werrimbi_odom.inference.adding.fits import fits_of
 from werrimbi_odom.inference.adding.known import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.start import (
     Drives,
@@ -58,36 +58,7 @@ from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
-
-
-def add_effect(
-    effect: Effect,
-    runs: Sequence[Run],
-    robot: Robot,
-    kind: ReferenceKind = "absolute",
-    *,
-    given: Robot | None = None,
-    holdout: Sequence[Run] = (),
-    leg: float = 1.0,
-    limits: EncoderLimits | None = None,
-    sigma_xy: float | None = None,
-    sigma_yaw: float | None = None,
-    show: Show = lambda share, words: None,
-) -> Added:
-    """One effect alone: `add_effects`."""
-    return add_effects(
-        (effect,),
-        runs,
-        robot,
-        kind,
-        given=given,
-        holdout=holdout,
-        leg=leg,
-        limits=limits,
-        sigma_xy=sigma_xy,
-        sigma_yaw=sigma_yaw,
-        show=show,
-    )
+from werrimbi_odom.progress import Show, silent
 
 
 def add_effects(
@@ -102,7 +73,7 @@ def add_effects(
     limits: EncoderLimits | None = None,
     sigma_xy: float | None = None,
     sigma_yaw: float | None = None,
-    show: Show = lambda share, words: None,
+    show: Show = silent,
 ) -> Added:
     """Fit effects together with all calibration, and judge each of them.
 

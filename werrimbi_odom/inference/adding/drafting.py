@@ -43,6 +43,7 @@ from werrimbi_odom.inference.rules import (
     WORTH_FITTING,
 )
 from werrimbi_odom.model.effect import Effect
+from werrimbi_odom.progress import Show, silent
 
 STEADY = {
     "speed": ("abs(drive.speed.end)",) * 2,
@@ -92,7 +93,7 @@ class _Option:
 
 def draft_effect(
     diagnosis: Diagnosis,
-    show: Callable[[float, str], None] = lambda share, words: None,
+    show: Show = silent,
 ) -> Draft:
     """Write the effect that the strongest dependence asks for.
 

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 from werrimbi_odom.errors import InputError
@@ -28,9 +28,7 @@ from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import Model, changed
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
-
-Show = Callable[[float, str], None]
-"""Told the share done, and what is being done."""
+from werrimbi_odom.progress import Show
 
 
 @dataclass(frozen=True, slots=True)

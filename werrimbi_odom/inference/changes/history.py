@@ -23,7 +23,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.chances import chi2_above, fisher_above
+from werrimbi_odom.inference.chances import chi2_above, fisher_above, in_any_of
 from werrimbi_odom.inference.changes.between import Moved, evidence_of, moves_of
 from werrimbi_odom.inference.changes.drives import Drives
 from werrimbi_odom.inference.changes.numbers import MOUNT, Group, groups_of, numbers_of, value_at
@@ -268,7 +268,7 @@ def _beyond_scatter(drives: Drives, found: Segmented, own: Values, scatter: Floa
                 return []
             usual, free = max(usual, float(np.sum(about)) / left), min(free, left)
         worth = step.gain / step.degrees / usual
-        if found.tried * fisher_above(worth, step.degrees, free) < SURE_OF_A_CHANGE:
+        if in_any_of(found.tried, fisher_above(worth, step.degrees, free)) < SURE_OF_A_CHANGE:
             lasting.append(step.group)
     return lasting
 

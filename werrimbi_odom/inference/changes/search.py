@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.inference.chances import chi2_above
+from werrimbi_odom.inference.chances import chi2_above, in_any_of
 from werrimbi_odom.inference.changes.drives import Drives
 from werrimbi_odom.inference.changes.numbers import Group
 from werrimbi_odom.inference.changes.shapes import (
@@ -208,7 +208,7 @@ def _earned(step: Step, price: float, tried: int) -> bool:
 
 
 def _chance(step: Step, tried: int) -> float:
-    return min(1.0, tried * chi2_above(step.gain, step.degrees))
+    return in_any_of(tried, chi2_above(step.gain, step.degrees))
 
 
 def _beside(rows: Rows, steps: Sequence[Step]) -> Nuisance:

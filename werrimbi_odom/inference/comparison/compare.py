@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -40,6 +40,7 @@ from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats, wrap
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.progress import Show, silent
 
 KINDS = ("line", "arc", "spin")
 
@@ -133,7 +134,7 @@ def compare(
     limits: EncoderLimits | None = None,
     sigma_xy: float | None = None,
     sigma_yaw: float | None = None,
-    show: Callable[[float, str], None] = lambda share, words: None,
+    show: Show = silent,
 ) -> Comparison:
     """Compare a model with recorded runs.
 
@@ -176,7 +177,7 @@ def judged(
     prepared: Prepared,
     robot: Robot | Model,
     *,
-    show: Callable[[float, str], None] = lambda share, words: None,
+    show: Show = silent,
 ) -> Comparison:
     """Compare a model over runs that were prepared: before and after over the same legs."""
     model = robot if isinstance(robot, Model) else in_runs(prepared, robot)

@@ -11,7 +11,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import fisher_above, student_above
+from werrimbi_odom.inference.chances import fisher_above, in_any_of, student_above
 from werrimbi_odom.inference.comparison.legs import LegErrors, LegStatistics, statistics
 from werrimbi_odom.inference.comparison.systematic import CHANNELS
 from werrimbi_odom.inference.rules import (
@@ -84,7 +84,7 @@ def by_variables(
     result = []
     for name, found in members.items():
         p_values = {
-            channel: min(1.0, tried * _differ([signs[rows] for _, _, rows in found]))
+            channel: in_any_of(tried, _differ([signs[rows] for _, _, rows in found]))
             for channel, signs in _signals(legs, left).items()
         }
         bins = tuple(
@@ -188,7 +188,7 @@ def cells_of(legs: LegErrors, left: Floats, x: Floats, y: Floats, leg: float) ->
                 float((at[1] + 0.5) * side),
                 side,
                 statistics(legs.chosen(here)),
-                min(1.0, chance * len(places)),
+                in_any_of(len(places), chance),
             )
         )
     return tuple(sorted(found, key=lambda cell: cell.p_value))

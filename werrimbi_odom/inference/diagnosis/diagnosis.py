@@ -12,7 +12,7 @@ that are held out have no part in any of it: they report.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from werrimbi_odom.files.run import ReferenceKind, Run
@@ -49,6 +49,7 @@ from werrimbi_odom.inference.rules import (
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.progress import Show, silent
 
 __all__ = ["SURE", "VERY_SURE", "Diagnosis", "Ranked", "Verdict", "chance", "diagnose"]
 
@@ -64,7 +65,7 @@ def diagnose(
     limits: EncoderLimits | None = None,
     sigma_xy: float | None = None,
     sigma_yaw: float | None = None,
-    show: Callable[[float, str], None] = lambda share, words: None,
+    show: Show = silent,
 ) -> Diagnosis:
     """Find out what a model is missing.
 

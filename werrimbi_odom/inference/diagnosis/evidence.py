@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.chances import chi2_above
+from werrimbi_odom.inference.chances import chi2_above, in_any_of
 from werrimbi_odom.inference.diagnosis.variables import (
     CONSTANT,
     Form,
@@ -160,7 +160,7 @@ def dependences(
             else test.coefficients,
             test.gain,
             test.degrees,
-            min(1.0, chi2_above(test.gain, test.degrees) * len(found)),
+            in_any_of(len(found), chi2_above(test.gain, test.degrees)),
             shares[amount],
         )
         for amount, variable, form, test in found

@@ -14,7 +14,7 @@ import numpy as np
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
-from werrimbi_odom.inference.chances import chi2_above
+from werrimbi_odom.inference.chances import chi2_above, in_any_of
 from werrimbi_odom.inference.comparison.another_drive import of_another_drive
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
@@ -108,7 +108,7 @@ def chance(fit: Fitted, before: Fitted, tried: int) -> float:
     """How often chance would lower the cost as much, all that was tried counted."""
     gain = (before.cost + before.needless - fit.cost - fit.needless) / fit.scatter
     numbers = round((fit.price - before.price) / fit.price_of_one)
-    return min(1.0, chi2_above(max(gain, 0.0), max(numbers, 1)) * max(tried, 1))
+    return in_any_of(max(tried, 1), chi2_above(max(gain, 0.0), max(numbers, 1)))
 
 
 def told(
@@ -188,7 +188,7 @@ def told(
 def _is_news(name: str, final: Fitted, tried: int) -> bool:
     """Whether a size is a finding: worth its price twice, and as sure as any effect must be."""
     worth = final.importance[name]
-    certain = chi2_above(worth, 1) * tried < SURE
+    certain = in_any_of(tried, chi2_above(worth, 1)) < SURE
     return certain and worth > CALIBRATION_WORTH * final.price_of_one
 
 
@@ -308,13 +308,13 @@ def _ranking(
     calibrated = judge.of(rounds[0].before.point.model)
     for name in CALIBRATED:
         importance = final.importance.get(name, 0.0)
-        p_value = min(1.0, chi2_above(importance, 1) * rounds[0].number)
+        p_value = in_any_of(rounds[0].number, chi2_above(importance, 1))
         untried = Ranked(name, p_value, None, None)
         worth = _worth(name, p_value, mended, calibrated) if importance else untried
         base = name_of_base(final.point.model.robot)
         ranked.setdefault(base if name == "track_width" else name, worth)
     for score in rounds[0].scores:
-        p_value = min(1.0, chi2_above(score.gain, score.degrees) * rounds[0].number)
+        p_value = in_any_of(rounds[0].number, chi2_above(score.gain, score.degrees))
         ranked.setdefault(score.candidate.name, Ranked(score.candidate.name, p_value, None, None))
     first = [ranked.pop(name) for name in found if name in ranked]
     return [*first, *sorted(ranked.values(), key=_certainty)]

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.files.recordings import Recordings
@@ -13,6 +13,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, diagnos
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit, detection_limits
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre, next_manoeuvre, strongest
+from werrimbi_odom.progress import Show, silent
 
 
 @dataclass(frozen=True)
@@ -30,9 +31,7 @@ class Told:
     """What differs between the fitted drives."""
 
 
-def told_of(
-    given: Recordings, show: Callable[[float, str], None] = lambda share, words: None
-) -> Told:
+def told_of(given: Recordings, show: Show = silent) -> Told:
     """The diagnosis of one robot, what to do next, and what these drives could have shown.
 
     Raises

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
-from werrimbi_odom.report.comparison.path_figure import path_figure
+from werrimbi_odom.report.comparison.measured_path_figure import path_figure
 from werrimbi_odom.report.comparison.tables import tables_of
 from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.report.document import Document, Shown

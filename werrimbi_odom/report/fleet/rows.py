@@ -15,7 +15,7 @@ ERROR = "error"
 
 @dataclass(frozen=True)
 class Row:
-    """One robot: its diagnosis as `report.diagnosis_json` tells it, or why there is none."""
+    """One robot: its diagnosis as `report.diagnosis.as_json` tells it, or why there is none."""
 
     robot: str
     runs: int

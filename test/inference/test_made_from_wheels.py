@@ -12,7 +12,7 @@ import pytest
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.comparison.circle import closeness, refuse_circle
+from werrimbi_odom.inference.comparison.made_from_wheels import closeness, refuse_circle
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
