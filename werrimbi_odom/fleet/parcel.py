@@ -41,7 +41,7 @@ class Parcel:
     name: str
     asked: Asked
     items: tuple[Item, ...]
-    """Robot file, files with effects, runs, held-out runs."""
+    """Robot file, files with effects, references of their own, runs, held-out runs."""
 
 
 def packed(task: Task) -> bytes:
@@ -53,7 +53,8 @@ def packed(task: Task) -> bytes:
         When a file cannot be read, or they are too large.
     """
     asked = task.asked
-    paths = [asked.robot, *asked.how.effects, *asked.runs, *asked.holdout]
+    how = asked.how
+    paths = [asked.robot, *how.effects, *how.references, *asked.runs, *asked.holdout]
     room = MOST
     items = []
     for path in paths:
@@ -114,7 +115,8 @@ def _moved(parcel: Parcel, places: list[Path]) -> Task:
         return tuple(next(rest) for _ in paths)
 
     robot = next(rest)
-    how = replace(asked.how, effects=as_many_as(asked.how.effects))
+    how = asked.how
+    how = replace(how, effects=as_many_as(how.effects), references=as_many_as(how.references))
     runs, holdout = as_many_as(asked.runs), as_many_as(asked.holdout)
     return Task(parcel.name, Asked(robot, runs, holdout, how))
 
