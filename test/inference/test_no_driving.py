@@ -151,6 +151,38 @@ def test_a_robot_that_is_turned_while_it_stands_is_found_in_a_straight_drive_of_
     assert found[2] == {"carried"}
 
 
+def test_a_robot_that_a_hand_turns_faster_than_its_wheels_could_is_found_by_a_gyro() -> None:
+    """It drove straight on until then, and spun slowly: how it turns, nothing else says."""
+    time = np.arange(0.0, 40.0, 0.05)
+    spins = 4.0 * (time > 20.0)
+    forth = 40.0 * (time < 15.0)
+    by_hand = np.where((time > 30.0) & (time < 36.0), 1.5 * np.sin(time - 30.0), 0.0)
+    yaw = np.cumsum(0.05 * by_hand) + np.random.default_rng(0).normal(0.0, 1e-3, time.size)
+    nothing = np.full(time.size, np.nan)
+    ticks = Ticks(time, np.cumsum(forth - spins), np.cumsum(forth + spins))
+    seen = Reference(time, nothing, nothing, yaw)
+    found = span(looked_at(Run("lifted", Path("lifted"), ticks, seen), ROBOT))
+    assert found[0] == pytest.approx(30.0, abs=NEAR)
+    assert found[1] > 35.5
+    assert found[2] == {"carried"}
+
+
+def test_a_robot_that_is_lifted_ever_faster_until_it_is_lost() -> None:
+    time = np.arange(0.0, 33.0, 0.1)
+    spins, forth = 2.0 * (time > 20.0), 40.0 * (time < 15.0)
+    left, right = (np.cumsum(forth + side * spins) for side in (-1.0, 1.0))
+    gone = 0.5 * (left + right) * ROBOT.left_tick + np.clip(time - 30.0, 0.0, 2.4) ** 3 / 12.0
+    noise = np.random.default_rng(0).normal(0.0, 1e-3, (2, time.size))
+    seen = time < 32.4
+    yaw = (right - left) * ROBOT.left_tick / ROBOT.track
+    reference = Reference(time[seen], (gone + noise[0])[seen], noise[1][seen], yaw[seen])
+    run = Run("lost", Path("lost"), Ticks(time, left, right), reference)
+    begin, end, why = span(looked_at(run, ROBOT))
+    assert begin == pytest.approx(30.0, abs=NEAR)
+    assert end > 32.0
+    assert why == {"carried"}
+
+
 def test_of_positions_alone_the_longest_drive_is_kept() -> None:
     """How a robot stands after it was carried, positions do not say."""
     run = looked_at(parts(carried(run_of(ROBOT, 1), 60.0, 3.0), "positions"), ROBOT)

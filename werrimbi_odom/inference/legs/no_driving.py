@@ -30,6 +30,7 @@ from werrimbi_odom.inference.rules import (
     NO_DRIVING_JOINED,
     NO_DRIVING_LATE,
     NO_DRIVING_MORE,
+    NO_DRIVING_MOST,
     NO_DRIVING_NOISE,
     NO_DRIVING_OFF,
     NO_DRIVING_ROUGH,
@@ -75,7 +76,8 @@ class _Seen:
 
     def at(self, values: Floats, time: Floats) -> Floats:
         """Values of the windows at some times."""
-        return np.interp(time, self.time, np.nan_to_num(values))
+        known = np.isfinite(values)
+        return np.interp(time, self.time[known], values[known])
 
 
 def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Run:
@@ -106,7 +108,7 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
     found = sorted(_reaching(stretch, seen) for each in seen for stretch in _stretches(each))
     parts = [part for each in _joined(found, seen) for part in _by_kind(*each, seen)]
     if turns is not None and not seen:
-        parts = _turned_at_rest(turns)
+        parts = _turned_by_hand(turns, robot.track)
     if parts and not reference.has_yaw.any():
         parts = _with_what_follows(parts, counters)
     return tuple(parts)
@@ -160,35 +162,50 @@ def _stopped(found: Agreement, low: Floats, high: Floats, least: float) -> NDArr
     return rows
 
 
-def _turned_at_rest(windows: Windows) -> list[NoDriving]:
-    """Where the wheels stand and the robot turns, in a drive that says nothing else of turns."""
+def _turned_by_hand(windows: Windows, track: float) -> list[NoDriving]:
+    """Where the robot turns as no wheels can, in a drive that says nothing else of turns."""
     slowest = NO_DRIVING_TURNS * windows.steps * windows.step
-    turns = (windows.rolled <= windows.still) & (np.abs(windows.measured) > slowest)
+    could = (np.abs(windows.left) + np.abs(windows.right)) / track
+    stands = windows.rolled <= windows.still
+    turned = np.abs(windows.measured)
+    sure = turned > np.maximum(slowest, np.where(stands, 0.0, NO_DRIVING_MOST * could))
     half = 0.5 * windows.steps * windows.step
-    return [
-        NoDriving(
-            float(windows.time[first]) - half, float(windows.time[last]) + half, "carried", CARRIED
-        )
-        for first, last in _runs_of(turns)
-        if last + 1 - first >= windows.steps + NO_DRIVING_MORE
-    ]
+    last_of_all = float(windows.time[-1]) + half
+    found: list[NoDriving] = []
+    for first, last in _runs_of(turned > np.maximum(slowest, could)):
+        inside = slice(first, last + 1)
+        if np.count_nonzero(sure[inside]) < windows.steps + NO_DRIVING_MORE:
+            continue
+        begin, end = float(windows.time[first]) - half, float(windows.time[last]) + half
+        by_hand = CARRIED if stands[inside].mean() > 0.5 else BY_HAND
+        if by_hand == BY_HAND and last_of_all - end <= NO_DRIVING_SILENT:
+            end = last_of_all  # who lifts a robot does not put it down to drive for a moment
+        if found and begin - found[-1].end <= NO_DRIVING_JOINED:
+            begin = found.pop().begin
+        found.append(NoDriving(begin, end, "carried", by_hand))
+    return found
 
 
 def _stretches(seen: _Seen) -> list[tuple[float, float]]:
     """Where it is beyond all driving for long enough, from and to [s]."""
     windows, off = seen.agreement.windows, seen.agreement.off
     more = np.abs(windows.measured) > np.abs(seen.agreement.expected)
+    surely = seen.beyond > 1.0
     found = []
-    for first, last in _runs_of(seen.beyond > 1.0):
+    # A hand that slows a robot down does not do so evenly: what is off in between belongs to it.
+    for begin, end in _runs_of(surely | seen.edge):
+        rows = begin + np.flatnonzero(surely[begin : end + 1])
+        if rows.size < max(NO_DRIVING_FEWEST, windows.steps + NO_DRIVING_MORE):
+            continue
+        first, last = int(rows[0]), int(rows[-1])
         inside = slice(first, last + 1)
         doubted = float(off[inside].sum()) / windows.steps
-        lasts = last + 1 - first >= max(NO_DRIVING_FEWEST, windows.steps + NO_DRIVING_MORE)
         # A lost track or a failed match leaps from one pose to the next: for a window, no longer.
         leaps = more[inside].mean() > 0.5 and (
             last + 1 - first < 2 * windows.steps
             or float(off[inside].max()) > NO_DRIVING_AT_ONCE * doubted
         )
-        if not lasts or leaps or doubted < seen.enough:
+        if leaps or doubted < seen.enough:
             continue
         found.append((float(seen.time[first]), float(seen.time[last])))
     return found

@@ -106,17 +106,20 @@ NO_DRIVING_FEWEST, NO_DRIVING_MORE = 6, 3
 """Windows in a row of the shortest stretch, and by how many it is longer than a window: at 10 Hz
 and more 0.8 s. A leap of the reference touches as many windows as one has steps, and one more."""
 
-NO_DRIVING_LEAP = 2.0
+NO_DRIVING_LEAP, NO_DRIVING_LEAP_WITHIN = 2.0, 0.15
 """Times what wheels did, or the reference a moment before and after, beyond which a step of it from
-one pose to the next is a leap. Chosen: stamps that wander by half an interval make 1.5 of one."""
+one pose to the next is a leap; and longest usual step [s] for that to be asked. Chosen: stamps that
+wander by half an interval make 1.5 of one, and three steps of 0.15 s are no hand's."""
 
-NO_DRIVING_LEAP_WITHIN = 0.15
-"""Seconds between poses up to which one step beyond all others is a leap and not a hand: whoever
-moves a robot by hand takes longer than three such steps; of slower ones it may take three."""
+NO_DRIVING_AT_ONCE = 0.75
+"""Share of what is in doubt, that must not be in one window: a lost track or a failed match is over
+within one (a share of 1), and is found as a jump. A hand that moves a robot ever faster, until the
+reference lost it, did three fifths of it in the last window."""
 
-NO_DRIVING_AT_ONCE = 0.5
-"""Share of what is in doubt, that must not be in one window: a lost track or a failed match is a
-jump, which is found as such."""
+NO_DRIVING_MOST = 4.0
+"""Times what both wheels could turn the robot by its file, beyond which no wheels did, where a
+drive says nothing of how they go together: no base, no radius is off by more
+(`CALIBRATION_BOUNDS`)."""
 
 NO_DRIVING_TURN, NO_DRIVING_WAY = math.radians(3.0), 0.03
 """What must be in doubt for a stretch to be left out [rad, m]: more than any castor kicks (0.03 rad
