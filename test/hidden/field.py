@@ -77,6 +77,7 @@ SEEN = {
     "localiser": Seen("a localiser", (LOCALISER,)),
     "both": Seen("a gyro and a localiser", ("/imu", LOCALISER)),
     "positions": Seen("a localiser's positions alone"),
+    "scans": Seen("a lidar's scans", ("/scan",)),
 }
 
 
