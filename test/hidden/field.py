@@ -42,6 +42,9 @@ TURNED = 0.5
 OWN_SCALE = frozenset({"reference_scale", "track_width", "wheel_radius_scale"})
 """A gyro has a scale of its own, and headings alone cannot tell it from the base."""
 
+ON_THE_FLOOR = frozenset({"floor_slope"})
+"""By scans nobody is asked for it, and an unknown says so: their axes begin anew in each drive."""
+
 DELAYS = frozenset({"reference_delay", "reference_heading_delay"})
 """Of headings alone they are one."""
 
@@ -77,6 +80,7 @@ SEEN = {
     "localiser": Seen("a localiser", (LOCALISER,)),
     "both": Seen("a gyro and a localiser", ("/imu", LOCALISER)),
     "positions": Seen("a localiser's positions alone"),
+    "scans": Seen("a lidar's scans", ("/scan",)),
 }
 
 
@@ -232,6 +236,8 @@ def expected(hidden: Sequence[str], name: str) -> set[str]:
 
 def how(hidden: Sequence[str], name: str, said: Line) -> str:
     """named, ambiguous, missed (too small, or not) or wrong: what one diagnosis is worth."""
+    if name == "scans" and said["verdict"] == "unknown" and set(hidden) & ON_THE_FLOOR:
+        return "missed"
     if said["verdict"] in ("refused", "unknown"):
         return "wrong"
     right = expected(hidden, name)

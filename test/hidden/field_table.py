@@ -16,7 +16,7 @@ from test.hidden.work import Line
 WORDS = (
     "Sets made by `werrimbi simulate --like field`: wheels at 20 Hz with stamps that jitter, a "
     "gyro with a scale of its own, a localiser that wanders and jumps, the robot held and carried "
-    "in each drive. The same bags are judged by four references. *Small*: not told, and the "
+    "in each drive. The same bags are judged by five references. *Small*: not told, and the "
     "diagnosis itself says that one of this size would not have been seen."
 )
 

@@ -303,6 +303,8 @@ SCALE = ("track_width", "reference_scale")
         ([], "gyro", said("ambiguous", SCALE[0], rivals=SCALE), "named"),
         ([], "localiser", said("ambiguous", SCALE[0], rivals=SCALE), "wrong"),
         ([], "positions", said("none"), "named"),
+        (["floor_slope"], "scans", said("unknown"), "missed"),
+        (["floor_slope"], "localiser", said("unknown"), "wrong"),
     ],
 )  # fmt: skip
 def test_what_a_verdict_by_an_ordinary_reference_is_worth(
@@ -330,7 +332,7 @@ def test_of_ordinary_recordings_each_rule_counts_what_it_speaks_of() -> None:
     assert [(kept, of) for kept, of, _ in counted.values()] == [(3, 4), (1, 1), (0, 1), (2, 2)]
     rules, effects, wrongs = field_table.tables(lines)
     assert [row[-1] for row in rules.rows] == ["BROKEN", "kept", "BROKEN", "kept"]
-    assert effects.rows == (("castor_kick", "1 small, 1 missed", "1 named, 1 WRONG", "", ""),)
+    assert effects.rows == (("castor_kick", "1 small, 1 missed", "1 named, 1 WRONG", "", "", ""),)
     assert [row[0] for row in wrongs.rows] == ["`b`"]
 
 

@@ -17,7 +17,12 @@ from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.calibration.any_driving import calibrate
-from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, judged_by, prepare
+from werrimbi_odom.inference.comparison.judged_legs import (
+    far_above_noise,
+    figures_of,
+    judged_by,
+    prepare,
+)
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.values import values_of
 from werrimbi_odom.inference.fitting.knobs import Model
@@ -88,6 +93,38 @@ def test_the_scatter_of_stamps_is_told_from_noise_of_the_heading() -> None:
     assert noise.sigma_stamp == pytest.approx(6e-3, rel=0.25)
     [(_, noise)] = prepare([gyro_drive(3)], NOMINAL).noises
     assert noise.sigma_stamp < 1.5e-3
+
+
+def scan_drive(seed: int, stamps: float) -> Run:
+    """Poses at 10 Hz that state a millimetre and a milliradian, at stamps that scatter."""
+    random = np.random.default_rng(seed)
+    true = WhiteNoiseRobot(0.35, 0.05, 0.05, 5e-4, 5e-4)
+    run = drive(true, wandering(random, 60.0), random, sigma_xy=0.0, sigma_yaw=0.0, every=1)
+    assert run.reference is not None
+    time = run.reference.time[5:-5:5]
+    seen = time - stamps * random.standard_normal(time.size)
+    poses = [
+        np.interp(seen, run.reference.time, part) + 1e-3 * random.standard_normal(time.size)
+        for part in (run.reference.x, run.reference.y, run.reference.yaw)
+    ]
+    stated = np.full(time.size, 1e-3)
+    return replace(run, reference=Reference(time, *poses, stated, stated, own_axes=True))
+
+
+@pytest.mark.parametrize("stamps", [0.0, 6e-3])
+def test_scans_state_how_well_they_are_matched_and_nothing_of_their_stamps(stamps: float) -> None:
+    """Not told apart, the scatter passed for the wheels' noise, tenfold, and for an effect."""
+    runs = [scan_drive(seed, stamps) for seed in (7, 8, 9)]
+    found = diagnose(runs, NOMINAL, LIBRARY)
+    assert found.verdict == "none"
+    noise = found.final.point.variances
+    assert np.sqrt(noise.stamp[0]) == pytest.approx(stamps, rel=0.15, abs=1.5e-3)
+    for wheel in (noise.left, noise.right):
+        assert 3e-4 < np.sqrt(wheel[0]) < 9e-4
+    prepared = prepare(runs, NOMINAL)
+    [(_, own)] = prepared.noises
+    assert own.sigma_stamp == pytest.approx(stamps, rel=0.25, abs=1.5e-3)
+    assert figures_of(prepared, NOMINAL).nees == pytest.approx(1.0, abs=0.25)
 
 
 @pytest.mark.parametrize("kind", ["absolute", "incremental"])

@@ -32,6 +32,12 @@ def ahead(duration: float, speed: float = 0.3) -> TruePath:
     return _path(t, speed * lead, 0.05 * lead * np.cos(t), middle=False)
 
 
+def hops(duration: float) -> TruePath:
+    """Half a second ahead and half a second back, with hard starts and stops, again and again."""
+    t = np.arange(0.0, duration, PERIOD)
+    return _path(t, 0.4 * np.clip(3.0 * np.sin(np.pi * t), -1.0, 1.0), 0.0 * t)
+
+
 def _path(t: Floats, speed: Floats, turning: Floats, middle: bool = True) -> TruePath:
     yaw = PERIOD * np.cumsum(turning)
     x, y = (PERIOD * np.cumsum(speed * f(yaw)) for f in (np.cos, np.sin))

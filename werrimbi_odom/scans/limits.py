@@ -43,4 +43,8 @@ echoes' noise is read off each drive (`path.common_noise`)."""
 COMMON = 1.5
 """By how much more than the matches state (ratio of variances) poses must scatter about their own
 course for a noise that is common to all echoes of a scan: without one it is 0.9 to 1.4 in simulated
-rooms, for no course is a parabola; with a real LD08, whose turns begin anywhere, 5 to 15."""
+rooms; with a real LD08, whose turns begin anywhere, 5 to 15."""
+
+CALM = 0.25
+"""Share of a drive in which speeds change least, where that scatter is looked for: of short hops
+with hard starts and stops half is neither."""

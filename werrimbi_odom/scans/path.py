@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.scans.limits import COMMON, FEWEST_POSES, LONGEST_HOLE, LOST_AFTER
+from werrimbi_odom.scans.limits import CALM, COMMON, FEWEST_POSES, LONGEST_HOLE, LOST_AFTER
 from werrimbi_odom.scans.matching import MAD
 from werrimbi_odom.scans.sweep import Course, Sweep, deskewed, own_course
 from werrimbi_odom.scans.tracker import Flag, Tracker, motion_between, moved
@@ -184,24 +184,29 @@ def common_noise(
 ) -> tuple[float, float]:
     """What all echoes of a scan err together [m, rad], beyond the covariance of its match.
 
-    A lidar whose turns begin at an angle that jitters, stamps that do: no match can see it. It is
-    read off how the poses scatter about a parabola through seven of them, one by one (Savitzky and
-    Golay 1964), in most of the drive.
+    A lidar whose turns begin at an angle that jitters: no match can see it. It is read off the
+    fourth differences of five poses, which no smooth course has, one by one. Starts and stops have
+    them: only the calmest part counts, by the poses before and after the five.
     """
-    if len(poses) < _SMOOTH.size + FEWEST_POSES:
+    middle = np.arange(_BESIDE, len(poses) - _BESIDE)
+    middle = middle[piece[middle - _BESIDE] == piece[middle + _BESIDE]]
+    if len(middle) < FEWEST_POSES:
         return 0.0, 0.0
-    rows = np.arange(len(poses) - _SMOOTH.size + 1)
-    rows = rows[piece[rows] == piece[rows + _SMOOTH.size - 1]]
-    smooth = sum(share * poses[rows + after] for after, share in enumerate(_SMOOTH))
-    middle = rows + _SMOOTH.size // 2
-    beside = np.median(np.abs(poses[middle] - smooth), axis=0) * MAD
-    seen = beside**2 / (1.0 - _SMOOTH[_SMOOTH.size // 2])
+
+    def step(first: int, last: int) -> Floats:
+        return np.asarray(poses[middle + last] - poses[middle + first])
+
+    changes = np.abs(step(3, _BESIDE) - step(-_BESIDE, -3))
+    rough = np.abs(step(1, 2) - 3.0 * step(0, 1) + 3.0 * step(-1, 0) - step(-2, -1))
+    calm = changes <= np.quantile(changes, CALM, axis=0)
+    seen = np.array([np.median(rough[calm[:, part], part]) for part in range(3)])
+    seen = (MAD * seen) ** 2 / 70.0  # 1, -4, 6, -4, 1
     stated = np.median(np.diagonal(covariances[middle], axis1=1, axis2=2), axis=0)
     more = np.where(seen > COMMON * stated, seen - stated, 0.0)
     return float(np.sqrt(0.5 * (more[0] + more[1]))), float(np.sqrt(more[2]))
 
 
-_SMOOTH = np.array([-2.0, 3.0, 6.0, 7.0, 6.0, 3.0, -2.0]) / 21.0
+_BESIDE = 5
 
 
 def _course(seen: deque[_Seen], at: int) -> Course:

@@ -17,8 +17,8 @@ from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.likelihood import (
     Variances,
     errors_between,
+    paces,
     reading_noise,
-    stamp_noise,
 )
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.together import Together, together
@@ -135,7 +135,7 @@ def errors_of(
     by_position : bool
         The reference gives positions alone; headings then come from those before the leg.
     sigma_stamp : float
-        Of the stamps of a reference of headings alone [s].
+        Of the stamps of a gyro, or of scans [s].
     wandering, jumped
         Noise of a reference on a local map, in place of sigmas, and the legs on which it jumped.
     """
@@ -166,8 +166,9 @@ def errors_of(
         heading = found.heading
     else:
         error = errors_between(start, finish, prediction)
-        reference = _reference_part(robot, runs, prediction, sigma_xy, sigma_yaw, kind)
-        reference[:, 2, 2] += 2.0 * sigma_stamp**2 * stamp_noise(prediction, runs.duration)
+        reference = _reference_part(
+            robot, runs, prediction, (sigma_xy, sigma_yaw, sigma_stamp), kind
+        )
     return LegErrors(
         error,
         wheels + reference,
@@ -198,23 +199,36 @@ def _reference_part(
     robot: Robot,
     runs: Together,
     prediction: Prediction,
-    sigma_xy: float | Floats,
-    sigma_yaw: float | Floats,
+    sigmas: tuple[float | Floats, float | Floats, float],
     kind: ReferenceKind,
 ) -> Floats:
-    """What the reference itself, and reading the counters, adds to the error of a leg."""
+    """What the reference itself, and reading the counters, adds to the error of a leg.
+
+    Of its positions, headings and stamps.
+    """
     reading = reading_noise(robot)
-    xy, yaw = (np.zeros(runs.count) + np.square(sigma) for sigma in (sigma_xy, sigma_yaw))
+    xy, yaw = (np.zeros(runs.count) + np.square(sigma) for sigma in sigmas[:2])
+    begun, ended = (sigmas[2] ** 2 * pace for pace in _paces(robot, runs))
     if kind == "incremental":
         none = np.zeros(runs.count)
         leg = BodyMotion(prediction.along, none, prediction.turn)
         swing = piece_covariance(leg, PathNoise(none, runs.intervals * yaw, none), none).matrix()
         flat = (runs.intervals * xy)[:, None, None] * np.diag([1.0, 1.0, 0.0])
-        return np.asarray(swing + flat + 2.0 * np.diag(reading))
+        return np.asarray(swing + flat + (begun + ended + 2.0 * reading)[..., None] * np.eye(3))
     lever = np.zeros((runs.count, 3, 3)) + np.eye(3)
     lever[:, 0, 2], lever[:, 1, 2] = -prediction.relative[:, 1], prediction.relative[:, 0]
-    pose = (np.stack([xy, xy, yaw], axis=-1) + reading)[:, :, None] * np.eye(3)
-    return np.asarray(pose + lever @ pose @ lever.transpose(0, 2, 1))
+    own = np.stack([xy, xy, yaw], axis=-1) + reading
+    first, last = ((own + late)[:, :, None] * np.eye(3) for late in (begun, ended))
+    return np.asarray(last + lever @ first @ lever.transpose(0, 2, 1))
+
+
+def _paces(robot: Robot, runs: Together) -> tuple[Floats, Floats]:
+    """What a stamp's error is multiplied with where legs begin and end (`paces`), (m, 3) each."""
+    drive = runs.drive(robot)
+    return (
+        paces(drive.speed.start[runs.begin], drive.yaw_rate.start[runs.begin]),
+        paces(drive.speed.end[runs.end - 1], drive.yaw_rate.end[runs.end - 1]),
+    )
 
 
 def squared_deviation(error: Floats, covariance: Floats) -> Floats:

@@ -36,7 +36,7 @@ class ReferenceNoise:
     """given (an option), stated (in the record), estimated, or assumed (too few poses)."""
     yaw_told: str
     sigma_stamp: float = 0.0
-    """Of the stamps of a reference of headings alone [s]."""
+    """Of the stamps of a gyro, or of scans [s]."""
     walk_xy: float = 0.0
     """On a local map: what its error gains in a second [m/s^0.5]."""
     walk_yaw: float = 0.0
@@ -100,7 +100,7 @@ def noise_of(
         estimated = reference_noise(robot, residuals, kind)
     position, of_position, told = _known(given[0], stated[0], estimated[0], usual[0])
     heading, of_heading, yaw_told = _known(given[1], stated[1], estimated[1], usual[1])
-    stamp = stamp_noise(every, residuals, measure)
+    stamp = stamp_noise(every, residuals)
     noise = ReferenceNoise(position, heading, told, yaw_told, stamp, *walk)
     return OwnNoise(noise, of_position, of_heading, wandering)
 

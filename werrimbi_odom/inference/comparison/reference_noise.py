@@ -19,7 +19,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import Reference, ReferenceKind, Run
+from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.fitting.knobs import START_YAW, Model
 from werrimbi_odom.inference.fitting.likelihood import reading_noise
@@ -76,20 +76,12 @@ def measured_alike(run: Run) -> tuple[Run, Measure]:
     both = position & yaw
     if both.sum() >= max(2, POSE_ROWS * max(position.sum(), yaw.sum())):
         whole = bool(both.all())
-        return run if whole else replace(run, reference=_rows(reference, both)), "pose"
+        return run if whole else replace(run, reference=reference.chosen(both)), "pose"
     if position.sum() >= max(2, yaw.sum()):
-        kept = _rows(reference, position)
+        kept = reference.chosen(position)
         start = np.where(np.arange(kept.yaw.size) == 0, kept.yaw, np.nan)
         return replace(run, reference=replace(kept, yaw=start)), "position"
-    return replace(run, reference=_rows(reference, yaw)), "heading"
-
-
-def _rows(reference: Reference, which: NDArray[np.bool_]) -> Reference:
-    sigmas = (reference.sigma_xy, reference.sigma_yaw)
-    return Reference(
-        *(part[which] for part in (reference.time, reference.x, reference.y, reference.yaw)),
-        *(None if part is None else part[which] for part in sigmas),
-    )
+    return replace(run, reference=reference.chosen(yaw)), "heading"
 
 
 def residuals_of(
@@ -216,14 +208,14 @@ def reference_noise(
     )
 
 
-def stamp_noise(every: Together, residuals: Sequence[Residual], measure: Measure) -> float:
-    """Standard deviation of the stamps of a reference of headings alone [s]; zero for others.
+def stamp_noise(every: Together, residuals: Sequence[Residual]) -> float:
+    """Standard deviation of the stamps of gyros, and of scans [s]; zero for others.
 
     While the robot turns, its headings scatter more than on a straight line, by its turn rate times
     that. Told over spans of more than two messages of the ticks, for what is laid between two of
     them errs alike for all headings.
     """
-    if measure != "heading":
+    if not every.stamps_err:
         return 0.0
     pairs = zip(every.runs, residuals, strict=True)
     found = [_scatter_and_rate(item, run.counters.time) for run, item in pairs]

@@ -45,9 +45,9 @@ class Variances:
     yaw: Floats
     """Of the reference's heading [rad²]."""
     stamp: Floats
-    """Of the stamps of a reference of headings alone [s²]: while it turns at ω, it errs by ω times
-    that. A gyro is read in bursts and its messages wait; where positions are measured, what stamps
-    err by is part of their noise."""
+    """Of the stamps of a gyro, or of scans, against those of the ticks [s²]: at a speed v and a
+    turn rate ω the pose errs by v and ω times that. A gyro is read in bursts and its messages wait;
+    where the noise of positions is estimated, what stamps err by is part of it."""
     walk_xy: Floats
     """Of the walk of a local_map's error in each coordinate, a second [m²/s]."""
     walk_yaw: Floats
@@ -212,22 +212,29 @@ def errors_between(start: Floats, finish: Floats, prediction: Prediction) -> Flo
     return np.asarray(error)
 
 
-def stamp_noise(prediction: Prediction, duration: Floats) -> Floats:
-    """Variance of a heading for stamps that err by 1 s, at the turn rate of each leg; (m,)."""
-    return np.asarray(np.square(prediction.turn / duration))
+def paces(speed: Floats, turn_rate: Floats) -> Floats:
+    """Variances of a pose for stamps that err by 1 s, from speeds (m,); (m, 3).
+
+    It errs along the way alone. Which way that is in the reference's axes changes as the robot
+    drives: each coordinate has half of it.
+    """
+    place = 0.5 * np.square(speed)
+    return np.stack([place, place, np.square(turn_rate)], axis=-1)
 
 
 def _reading(
     robot: Robot, variances: Variances, runs: Together, prediction: Prediction, *, adds_up: bool
 ) -> Floats:
     """Covariance of a measured pose, and of the counters' reading with it; (g, 1 or m, 3, 3)."""
-    alone = runs.headings_alone
-    reading = np.zeros((variances.left.size, runs.count if alone else 1, 3, 3))
+    stamps = runs.stamps_err
+    reading = np.zeros((variances.left.size, runs.count if stamps else 1, 3, 3))
     reading[..., 0, 0] = reading[..., 1, 1] = variances.xy[:, None]
     if not adds_up:
         reading[..., 2, 2] = variances.yaw[:, None]
-    if alone:
-        reading[..., 2, 2] += variances.stamp[:, None] * stamp_noise(prediction, runs.duration)
+    if stamps:
+        pace = paces(prediction.along / runs.duration, prediction.turn / runs.duration)
+        late = variances.stamp[:, None, None] * pace
+        reading += late[..., None] * np.eye(3)
     return np.asarray(reading + np.diag(reading_noise(robot)))
 
 

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """The variances that data and prior knowledge make likeliest, and how well they are known.
 
-Of two wheels, of the reference's position and heading, of its stamps where it has nothing but
-headings, and of how its error wanders where it tells its place on a map.
+Of two wheels, of the reference's position and heading, of the stamps of gyros and scans, and of how
+its error wanders where it tells its place on a map.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ from werrimbi_odom.model.robot import Robot
 NOISES = ("left_wheel_noise", "right_wheel_noise", "reference_sigma_xy", "reference_sigma_yaw")
 
 STAMP_NOISE = "reference_sigma_stamp"
-"""Beside them, of a reference of headings alone [s]."""
+"""Beside them, of a gyro or of scans [s]."""
 
 WALK = ("reference_walk_xy", "reference_walk_yaw", "reference_reversion")
 """And of a reference on a local map [m/s^0.5, rad/s^0.5, 1/s]."""
@@ -225,7 +225,7 @@ def _moving(costs: Costs, held: tuple[bool, bool]) -> NDArray[np.bool_]:
             True,
             not held[0] and places,
             not held[1] and headings,
-            not places,
+            runs.stamps_err,
             wanders and places,
             wanders and headings,
             wanders,

@@ -93,6 +93,14 @@ class Together:
         return not np.isfinite(self.finish[:, :2]).any()
 
     @property
+    def stamps_err(self) -> bool:
+        """Whether the stamps' noise is told apart: of gyros, and of scans.
+
+        Matches say how well each scan was seen, and nothing of when.
+        """
+        return self.headings_alone or self.own_axes
+
+    @property
     def own_axes(self) -> bool:
         """Whether references begin with axes of their own, so that no direction is common."""
         return any(run.measured.own_axes for run in self.runs)
