@@ -79,8 +79,8 @@ class Closed:
 
     @property
     def right(self) -> bool:
-        """Named and right."""
-        return self.verdicts[-1] == "named" and self.names == (self.effect,)
+        """Named, and first of all what is hidden: of a radius that drifts, its size since too."""
+        return self.verdicts[-1] == "named" and self.names[0] == self.effect
 
     @property
     def twins(self) -> bool:

@@ -250,6 +250,18 @@ def test_every_rule_has_its_reason_and_is_used(name: str) -> None:
     assert name in USED, f"{name} is used by nobody"
 
 
+@pytest.mark.parametrize("file", ["model/slip.py", "ros/compare_motion.py", "ros/kept.py"])
+def test_what_decides_on_the_robot_has_its_reason_where_it_stands(file: str) -> None:
+    """The core and the nodes cannot import from the rules, or need not."""
+    tree = ast.parse((PACKAGE / file).read_text(encoding="utf-8"))
+    named = [(name, after) for name, value, after in assigned(tree.body) if is_numeric(value)]
+    assert named
+    for name, after in named:
+        assert isinstance(after, ast.Expr), f"{file}: {name} has no reason"
+        assert isinstance(after.value, ast.Constant)
+        assert len(str(after.value.value).split()) >= 8, f"{file}: {name}: that is no reason"
+
+
 def used() -> set[str]:
     """Rules that some module imports and reads, or that another rule is made of."""
     found = set()

@@ -25,7 +25,7 @@ from rclpy.time import Time
 from sensor_msgs.msg import Imu, LaserScan
 from std_srvs.srv import Trigger
 
-from test.ros.beside import Beside
+from test.ros.beside import Beside, beside
 from test.ros.conftest import Launched, launcher
 
 VALUES = {
@@ -43,6 +43,8 @@ VALUES = {
 }
 SPEED = 0.2
 """Over this the robot is under way [m/s]."""
+STEP = 0.02
+"""Between two odometry messages [s]."""
 BRAKES = 3.0
 """[m/s^2]"""
 BUSY = ("stopped: the odometry is silent", "stopped: the odometry comes")
@@ -61,14 +63,15 @@ class PlayedRobot:
         self.stuck: float | None = None
         self.odometry: Callable[[Odometry], Odometry | None] = lambda message: message
         self.gyro, self.nearest = 0.0, 2.0
-        self._at = time.monotonic()
+        self.clock = 0.0
+        """Its own: it lives on with each odometry message, however busy the machine is [s]."""
         node = client.node
         deep = QoSProfile(depth=10)
         self._odometry = node.create_publisher(Odometry, "odom", deep)
         self._imu = node.create_publisher(Imu, "imu", deep)
         self._scan = node.create_publisher(LaserScan, "scan", deep)
         node.create_subscription(Twist, "cmd_vel", self._obey, deep)
-        node.create_timer(0.02, self._step)
+        node.create_timer(STEP, self._step)
 
     def driven(self) -> Beside:
         """A drive_node that has begun."""
@@ -77,15 +80,14 @@ class PlayedRobot:
     def _obey(self, message: Twist) -> None:
         self.wanted = message.linear.x
         if not self.wanted and math.isinf(self.zero_at):
-            self.zero_at = time.monotonic()
+            self.zero_at = self.clock
 
     def _step(self) -> None:
-        now = time.monotonic()
-        step, self._at = now - self._at, now
+        self.clock += STEP
         wanted = self.wanted if self.stuck is None else self.stuck
-        most = BRAKES * step
+        most = BRAKES * STEP
         self.speed += min(max(wanted - self.speed, -most), most)
-        self.x += self.speed * step
+        self.x += self.speed * STEP
         stamp = Time(nanoseconds=time.time_ns()).to_msg()
         message = Odometry()
         message.header.stamp, message.header.frame_id = stamp, "odom"
@@ -129,13 +131,31 @@ class PlayedRobot:
         raise AssertionError(self.state())
 
     def stops(self, since: float, x: float, words: str) -> tuple[float, float]:
-        """Until it stands, having said why: time to the first zero [s], way to standstill [m]."""
+        """Until it stands, having said why: time to the first zero [s], way to standstill [m].
+
+        Both by the robot's own clock. Where a busy machine was quicker to stop it: not numbers.
+        """
         self.client.until(lambda: not math.isinf(self.zero_at), "zero on cmd_vel")
-        self.client.until(lambda: words in self.state(), words)
+        self.client.until(
+            lambda: words in self.state() or self.state().startswith((*BUSY, "done")), words
+        )
         self.stuck = None
         self.client.until(lambda: not self.speed, "standstill")
+        if words not in self.state():
+            return math.nan, math.nan
         assert self.state().startswith("stopped: "), self.state()
         return self.zero_at - since, abs(self.x - x)
+
+    def tried(self, fault: Callable[[PlayedRobot], None], words: str) -> tuple[float, float]:
+        """Under way, a fault, and how it stops."""
+        for _ in range(10):
+            self.under_way()
+            since, x = self.clock, self.x
+            fault(self)
+            took, way = self.stops(since, x, words)
+            if not math.isnan(took):
+                return took, way
+        raise AssertionError(self.state())
 
 
 @pytest.fixture(scope="module")
@@ -215,10 +235,7 @@ FAULTS: dict[Callable[[PlayedRobot], None], str] = {
 def test_a_fault_stops_it_for_good(
     played: PlayedRobot, fault: Callable[[PlayedRobot], None]
 ) -> None:
-    played.under_way()
-    since, x = time.monotonic(), played.x
-    fault(played)
-    _, way = played.stops(since, x, FAULTS[fault])
+    _, way = played.tried(fault, FAULTS[fault])
     assert way < 0.1
     played.client.rest(0.2)
     assert played.wanted == 0.0
@@ -229,14 +246,14 @@ def test_a_robot_that_does_not_obey_is_told_to_stop_at_the_border(played: Played
     played.under_way()
     played.stuck = 0.4
     played.client.until(lambda: played.x > 1.6, "way to the border")  # 1.9 less the radius
-    _, way = played.stops(time.monotonic(), 1.6, "it left the area")
+    _, way = played.stops(played.clock, 1.6, "it left the area")
     assert way < 0.1
 
 
 def test_another_on_cmd_vel_stops_it_and_keeps_it_from_starting(played: PlayedRobot) -> None:
     for _ in range(5):
         played.under_way()
-        since, x = time.monotonic(), played.x
+        since, x = played.clock, played.x
         other = played.client.node.create_publisher(Twist, "cmd_vel", 10)
         try:
             _, way = played.stops(since, x, "stopped: ")
@@ -295,6 +312,26 @@ def test_killed_in_mid_drive_the_base_stops_and_a_successor_waits(played: Played
 
 
 @pytest.mark.evidence
+def test_a_second_drive_node_stops_the_first(played: PlayedRobot, tmp_path: Path) -> None:
+    took = way = math.nan
+    for _ in range(5):
+        played.under_way()
+        with beside(tmp_path, played.client.environment, "drive_node", **VALUES):
+            played.client.until(
+                lambda: played.client.node.count_publishers("cmd_vel") > 1, "a second", 30.0
+            )
+            took, way = played.stops(played.clock, played.x, "another publishes /cmd_vel too")
+        played.client.until(
+            lambda: played.client.node.count_publishers("cmd_vel") == 1, "one alone", 40.0
+        )
+        if not math.isnan(took):
+            break
+    print(f"a second drive_node: {took:.3f} s, {way:.3f} m")
+    assert took < 0.2
+    assert way < 0.1
+
+
+@pytest.mark.evidence
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda fault: fault.__name__)
 def test_each_fault_stops_it_in_time(
     played: PlayedRobot, fault: Callable[[PlayedRobot], None]
@@ -302,10 +339,7 @@ def test_each_fault_stops_it_in_time(
     """From the fault to the first zero on cmd_vel; ten times."""
     times, ways = [], []
     for _ in range(10):
-        played.under_way()
-        since, x = time.monotonic(), played.x
-        fault(played)
-        took, way = played.stops(since, x, FAULTS[fault])
+        took, way = played.tried(fault, FAULTS[fault])
         times.append(took)
         ways.append(way)
     print(f"{fault.__name__}: {max(times):.3f} s, {max(ways):.3f} m")

@@ -51,7 +51,7 @@ def watched(
     )
     words = launched.keep(String, "compare_node/diagnosis")
     play(launched, recorded(3, seconds), comparing)
-    launched.until(lambda: bool(words), "a diagnosis", 60.0)
+    launched.until(lambda: bool(words), "a diagnosis", 300.0)
     comparing.verdict()
     return launched, comparing, file, words
 

@@ -105,7 +105,7 @@ def _bag(folder: Path) -> Path:
 def main() -> int:
     """Look, and write what was found; always 0."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C is for the node, which ends us
-    os.nice(19)
+    os.nice(10)
     folder = Path(sys.argv[1])
     found = found_in(folder)
     used = resource.getrusage(resource.RUSAGE_SELF)

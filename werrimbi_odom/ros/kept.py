@@ -14,13 +14,13 @@ from typing import NamedTuple
 MOST_BYTES = 50_000_000
 """That are kept at the most: ten minutes at 50 Hz take 12 MB."""
 OVERHEAD = 200
-"""Bytes that Python takes for a message beside its own."""
+"""Bytes that Python takes for a message beside its own: a tuple, two numbers, and two heads."""
 MOVES, MOVES_TURN = 1e-3, 2e-3
-"""Speeds above these [m/s, rad/s] are driving."""
+"""Speeds above these [m/s, rad/s] are driving: a standing robot of fine counts shows none."""
 LINGER = 1.0
-"""Seconds after driving in which everything is still kept."""
+"""Seconds after driving in which all is still kept: the end of the motion, as it was seen."""
 RESTING = 0.5
-"""Seconds between two messages of a topic that are kept while the robot stands."""
+"""Seconds between two messages of a topic that are kept while the robot stands: of a night, few."""
 PAUSE = 1.0
 """Of two messages that are farther apart [s] nobody knows whether it drove in between."""
 

@@ -17,6 +17,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.odometer import Estimate
 from werrimbi_odom.model.pose import Pose
+from werrimbi_odom.model.slip import NOTHING, Missed
 from werrimbi_odom.ros import planar
 
 PLANAR_VARIANCE = 1e-6
@@ -55,13 +56,19 @@ class OdometryMessage:
         for place in _OUT_OF_PLANE:
             self._pose[place] = self._twist[place] = PLANAR_VARIANCE
 
-    def filled(self, stamp: Stamp, estimate: Estimate) -> Odometry:
-        """The message for an estimate, valid until the next call."""
+    def filled(self, stamp: Stamp, estimate: Estimate, missed: Missed = NOTHING) -> Odometry:
+        """The message for an estimate, valid until the next call.
+
+        What was missed by wheels that slip makes the twist less sure, for filters that fuse it: by
+        as much as integrated over the interval gives the variance that the pose gains.
+        """
         self._header.stamp = stamp
         self._position.x, self._position.y, yaw = estimate.pose
         self._orientation.z, self._orientation.w = math.sin(0.5 * yaw), math.cos(0.5 * yaw)
         self._linear.x, self._linear.y, self._angular.z = estimate.twist
         self._fill_covariances(estimate)
+        if missed.heading:
+            self._fill_slip(missed, estimate.late.duration)
         return self._message
 
     def _fill_covariances(self, estimate: Estimate) -> None:
@@ -81,6 +88,11 @@ class OdometryMessage:
         twist[_YY] = speed
         twist[_YAWYAW] = yaw_rate
         twist[_XYAW] = twist[_YAWX] = cross
+
+    def _fill_slip(self, missed: Missed, duration: float) -> None:
+        per_second = 1.0 / (duration * duration)
+        self._twist[_XX] += missed.along * per_second
+        self._twist[_YAWYAW] += missed.heading * per_second
 
 
 def transform_of(odometry: Odometry) -> TransformStamped:

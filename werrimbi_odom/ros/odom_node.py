@@ -111,14 +111,14 @@ class OdomNode(Node):  # type: ignore[misc]
             return
         if estimate is None:
             return
-        odometry = self._message.filled(stamp, estimate)
+        missed = self._slip.missed(self._tracker)
+        odometry = self._message.filled(stamp, estimate, missed)
         self._odometry.publish(odometry)
         self._health.published += 1
         if self._send_transform is not None:
             self._send_transform(transform_of(odometry))
         self._keep(self._tracker.finished_by(estimate))
         self._learning.after(self._tracker)
-        missed = self._slip.missed(self._tracker)
         if missed.heading:
             self._keep(self._tracker.grow(missed))
 

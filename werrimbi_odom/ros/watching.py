@@ -3,7 +3,7 @@
 """What is missing in the robot file that runs: told while the robot drives, with compare_node.
 
 Messages of the last minutes of driving are kept (`kept`); now and then a process of its own with
-the lowest priority diagnoses them (`werrimbi_odom.api.watched`), as the command line would.
+a low priority diagnoses them (`werrimbi_odom.api.watched`), as the command line would.
 """
 
 from __future__ import annotations
