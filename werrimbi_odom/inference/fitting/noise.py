@@ -50,17 +50,28 @@ _LOWEST, _HIGHEST = np.log(1e-14), np.log(10.0)
 
 @dataclass(frozen=True, slots=True)
 class NoiseEstimate:
-    """A standard deviation of noise, with its own; `determined` is False where data were mute."""
+    """A standard deviation of noise; `determined` is False where data were mute."""
 
     value: float
-    std: float
+    share: float
+    """Standard deviation of its logarithm, where the likelihood of a scale is nearly normal."""
     determined: bool
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Of 95 %, in the logarithm, where the likelihood of a scale is nearly normal."""
-        factor = float(np.exp(NORMAL_95 * self.std / self.value))
+        """Of 95 %."""
+        factor = float(np.exp(NORMAL_95 * self.share))
         return self.value / factor, self.value * factor
+
+    @property
+    def std(self) -> float:
+        """The larger half of that interval, which value ± 1.96 std then never leaves.
+
+        What comes out small by chance would else be stated with a small deviation too.
+        """
+        if not self.determined:
+            return self.value * self.share
+        return (self.interval[1] - self.value) / NORMAL_95
 
 
 def with_noise(robot: Robot, noises: Mapping[str, NoiseEstimate]) -> Robot:
@@ -207,7 +218,7 @@ def noise_estimates(
         _ALL, [name for name, known in zip(NOISES[2:], held, strict=True) if known]
     )
     return {
-        name: NoiseEstimate(float(sigma), float(sigma * part), bool(part < NOISE_TOLD))
+        name: NoiseEstimate(float(sigma), float(part), bool(part < NOISE_TOLD))
         for name, sigma, part, tell in zip(_ALL, sigmas, share, told, strict=True)
         if tell
     }
