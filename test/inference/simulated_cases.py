@@ -26,7 +26,7 @@ from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.effect import Effect, view_of
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.shown import shown
+from werrimbi_odom.model.seen_by_reference import shown
 from werrimbi_odom.model.trajectory import trajectory
 
 GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0)
