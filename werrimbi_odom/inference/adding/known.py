@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
@@ -11,6 +12,7 @@ import numpy as np
 
 from werrimbi_odom.inference.adding.start import Drives
 from werrimbi_odom.inference.calibration_sizes import with_sizes_in_multipliers
+from werrimbi_odom.inference.chances import upper_part
 from werrimbi_odom.inference.diagnosis.choices import Law, spread_over_choices
 from werrimbi_odom.inference.diagnosis.selection import Fitted, grain_of
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, choices
@@ -25,9 +27,11 @@ from werrimbi_odom.inference.fitting.knobs import (
     knobs_of,
     own_of,
     shared_of,
+    value_of,
 )
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, likeliest, noise_estimates
 from werrimbi_odom.inference.fitting.precision import Precision
+from werrimbi_odom.inference.rules import NOISE_TOLD
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
@@ -70,8 +74,8 @@ def with_spread(
     """The fit with deviations of what is told that count all that was chosen by the same drives.
 
     Which sizes differ from the file's and which parameters effects need (`spread_over_choices`),
-    and the noise (`Precision.widening`); and the edge of a threshold is no finer than its law
-    (`grain_of`).
+    and the noise (`Precision.widening`). The edge of a threshold is no finer than its law
+    (`grain_of`), and lengths are known by their logarithm, as all scales are.
     """
     laws = [law for effect in effects if len(law := _optional(effect)) > 1]
     columns = fit.design.columns
@@ -89,6 +93,17 @@ def with_spread(
     wide = _precision(drives, as_written(drives, fit, given)).widening(noises, names)
     variances = (wide * [spread[name] for name in names]) ** 2
     variances += grain_of(fit.design, fit.point.model.robot)[told]
+    scales = {
+        f"{effect.name}.{name}"
+        for effect in effects
+        for name, item in effect.parameters.items()
+        if item.tries and item.bounds[0] > 0.0
+    }
+    for index, name in enumerate(names):
+        if name in scales:
+            value = value_of(fit.point.model.robot, name)
+            share = min(math.sqrt(variances[index]) / value, NOISE_TOLD)
+            variances[index] = max(variances[index], upper_part(value, share) ** 2)
     size = np.ones(len(columns))
     size[told] = np.sqrt(variances / np.diag(fit.covariance)[told])
     return replace(fit, covariance=fit.covariance * np.outer(size, size))

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import NORMAL_95
+from werrimbi_odom.inference.chances import NORMAL_95, upper_part
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.prediction import Prediction
@@ -65,13 +65,10 @@ class NoiseEstimate:
 
     @property
     def std(self) -> float:
-        """The larger half of that interval, which value ± 1.96 std then never leaves.
-
-        What comes out small by chance would else be stated with a small deviation too.
-        """
+        """To be stated beside the value (`upper_part`)."""
         if not self.determined:
             return self.value * self.share
-        return (self.interval[1] - self.value) / NORMAL_95
+        return upper_part(self.value, self.share)
 
 
 def with_noise(robot: Robot, noises: Mapping[str, NoiseEstimate]) -> Robot:
