@@ -16,7 +16,7 @@ import pytest
 from test.inference import simulated_cases
 from test.inference.test_fit import NOMINAL, TRUTH, runs_of
 from werrimbi_odom.effects import find
-from werrimbi_odom.inference.adding.adding import add_effect
+from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.legs.cutting import match
@@ -92,7 +92,7 @@ def test_a_number_that_chance_freed_is_not_taken_for_certain(seed: int, name: st
 def test_the_wheels_noise_is_theirs_though_the_base_was_entered_in_millimetres() -> None:
     entered = replace(NOMINAL, wheel_separation=350.0)
     runs = runs_of(1, count=3, seconds=40.0)
-    result = add_effect(find("track_width"), runs[:2], entered, holdout=runs[2:])
+    result = add_effects([find("track_width")], runs[:2], entered, holdout=runs[2:])
     for side in ("left", "right"):
         low, high = result.noises[f"{side}_wheel_noise"].interval
         assert low < TRUTH[f"{side}_wheel_noise"] < high
