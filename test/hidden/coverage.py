@@ -25,7 +25,7 @@ from test.hidden.judged import Judged
 from test.hidden.rest import at_the_truth
 from test.hidden.sets import HiddenSet, make, runs_of
 from test.hidden.tables import Table
-from test.hidden.true_values import multipliers_of, noises_of, values_of
+from test.hidden.true_values import GIVES_WAY, multipliers_of, noises_of, values_of
 from test.hidden.work import Line
 
 WIDE = 1.96
@@ -96,11 +96,11 @@ def _of_addition(line: Judged, truth: Mapping[str, object]) -> list[tuple[str, f
                      for name in fit["effects"])  # fmt: skip
     stated |= fit["calibration"] if exotic else {}
     stated |= fit["noise"]
-    true |= {**multipliers_of(truth), **noises_of(truth)}
+    true |= {**multipliers_of(truth), **noises_of(truth, fit["effects"])}
     return [
         (name, (value - true[name]) / std)
         for name, (value, std) in stated.items()
-        if name in true and std and math.isfinite(std)
+        if name in true and name not in GIVES_WAY and std and math.isfinite(std)
     ]
 
 

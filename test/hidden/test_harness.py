@@ -36,7 +36,7 @@ from test.hidden.rules import RULES
 from test.hidden.sets import HiddenSet
 from test.hidden.table import tables
 from test.hidden.tables import Table
-from test.hidden.true_values import multipliers_of, values_of
+from test.hidden.true_values import multipliers_of, noises_of, values_of
 
 LINE = Judged(
     name="own-castor_kick-1",
@@ -449,6 +449,22 @@ def test_coverage_of_honest_and_of_too_narrow_intervals() -> None:
     assert min(counts) > 300
     edges = coverage.ranks(narrow, "add")
     assert edges[0] > 700 < edges[-1]
+
+
+def test_which_wheels_noise_is_known_and_by_which_name() -> None:
+    robot = {"left_wheel_noise": 4e-4, "right_wheel_noise": 5.8e-4}
+
+    def known(hidden: str, *said: str, seen: str = "") -> list[float | None]:
+        truth = {"robot_before_hiding": robot, "hidden": [{"effect": hidden}], "seen": seen}
+        found = noises_of(truth, said)
+        return [found.get(f"{side}_wheel_noise") for side in ("left", "right")]
+
+    assert known("lateral_slip", "lateral_slip") == [4e-4, 5.8e-4]
+    assert known("wheels_swapped", "wheels_swapped") == [4e-4, 5.8e-4]
+    assert known("reference_mirrored", "wheels_swapped") == [5.8e-4, 4e-4]
+    assert known("left_backlash", "left_backlash") == [None, 5.8e-4]
+    assert known("right_missed_ticks", "right_missed_ticks") == [4e-4, None]
+    assert known("lateral_slip", "lateral_slip", seen="scan_matcher") == [None, None]
 
 
 # ------------------------------------------------------------------ history

@@ -16,7 +16,14 @@ import numpy as np
 from test.white_noise_robot import wandering
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.inference.adding.fits import fits_of
+from werrimbi_odom.inference.adding.known import as_written, noises_of, with_spread
+from werrimbi_odom.inference.adding.start import Drives
+from werrimbi_odom.inference.adding.values import parameters_of, std_of
+from werrimbi_odom.inference.diagnosis.sizes import sizes_needed, with_sizes
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, changed
+from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.effect import Effect, view_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.seen_by_reference import shown
@@ -61,7 +68,7 @@ class Case:
         }
 
 
-def case(seed: int, *, drives: int = 2, seconds: float = 60.0) -> Case:
+def case(seed: int, *, drives: int = 2, seconds: float = 40.0) -> Case:
     """Effects in turn; of sizes none is off, or one, or all; sizes and noise by chance."""
     random = np.random.default_rng(seed)
     name = list(SIZES)[seed % len(SIZES)]
@@ -70,10 +77,9 @@ def case(seed: int, *, drives: int = 2, seconds: float = 60.0) -> Case:
     sizes = {key: float(1.0 + 0.01 * random.standard_normal() * moved)
              for key, moved in zip(MULTIPLIERS, off, strict=True)}  # fmt: skip
     effect = find(name)
-    left, right = np.exp(random.uniform(*np.log((5e-4, 2e-3)), 2))
+    left, right = 1e-3 * 2.0 ** random.uniform(-1.0, 1.0, 2)
     truth = replace(
-        GIVEN,
-        **sizes,
+        changed(GIVEN, sizes),
         left_wheel_noise=float(left),
         right_wheel_noise=float(right),
         effects=(effect.using(**values),),
@@ -83,7 +89,7 @@ def case(seed: int, *, drives: int = 2, seconds: float = 60.0) -> Case:
 
 
 def _driven(truth: Robot, random: np.random.Generator, seconds: float, number: int) -> Run:
-    """A path of counters that show the noise of the wheels too; the recorded ones do not."""
+    """The reference sees the noise of the wheels, the counters do not."""
     rate = 50.0
     speed, turning = wandering(random, seconds, rate)
     time = np.arange(speed.size + 1) / rate
@@ -107,3 +113,39 @@ def _driven(truth: Robot, random: np.random.Generator, seconds: float, number: i
         path.yaw[at] + errors[2],
     )
     return Run(f"run_{number}", Path(f"run_{number}"), Ticks(time, *seen), reference)
+
+
+def stated(case: Case) -> dict[str, tuple[float, float]]:
+    """What `add` states of a case: values with standard deviations.
+
+    All of `add` but the search for set-up mistakes before it, and the judgement after.
+    """
+    runs = together(match_finely(case.runs, GIVEN, leg=1.0))
+    nothing = tuple(np.zeros(run.legs, dtype=np.bool_) for run in runs.runs)
+    drives = Drives(runs, nothing, "absolute", (None, None))
+    fit = fits_of([case.effect], drives, GIVEN, GIVEN, (), lambda share, words: None).all
+    sizes = sizes_needed(fit, GIVEN, ())
+    fit = with_sizes(runs, drives.kind, fit, GIVEN, sizes)
+    noises = noises_of(drives, as_written(drives, fit, GIVEN))
+    known = with_spread([case.effect], drives, fit, GIVEN, (), sizes, noises)
+    robot = fit.point.model.robot
+    found = {name: (float(getattr(robot, name)), std_of(known, name)) for name in MULTIPLIERS}
+    found |= {
+        name: (item.value, item.std)
+        for name, item in parameters_of(case.effect, known, GIVEN).items()
+        if item.remark == "fitted" and item.value is not None and item.std is not None
+    }
+    found |= {name: (item.value, item.std) for name, item in noises.items() if item.determined}
+    return {name: pair for name, pair in found.items() if pair[1] > 0.0}
+
+
+def deviations(seed: int) -> dict[str, float]:
+    """(stated - true) / stated standard deviation, by effect and parameter."""
+    drawn = case(seed)
+    own = {f"{drawn.effect.name}.{name}" for name in drawn.effect.parameters}
+    return {
+        f"{drawn.effect.name}.{name}" if f"{drawn.effect.name}.{name}" in own else name: (
+            (value - drawn.true[name]) / std
+        )
+        for name, (value, std) in stated(drawn).items()
+    }

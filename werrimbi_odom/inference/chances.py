@@ -8,6 +8,8 @@ is a tenth of the time in which an hour of driving is to be seen.
 
 from __future__ import annotations
 
+import math
+
 MEDIAN_TO_SIGMA = 1.4826
 """Standard deviation of a normal scatter over the median of its sizes."""
 
@@ -18,6 +20,15 @@ NORMAL_95 = 1.959963984540054
 def in_any_of(tests: int, chance: float) -> float:
     """Chance that noise alone goes as far in any of several tests (Bonferroni's bound)."""
     return min(1.0, tests * chance)
+
+
+def upper_part(value: float, share: float) -> float:
+    """Standard deviation to state of a scale whose logarithm is normal, with deviation `share`.
+
+    The upper part of its 95 % interval, over 1.96: what comes out small by chance would else be
+    stated with a small deviation too.
+    """
+    return value * math.expm1(NORMAL_95 * share) / NORMAL_95
 
 
 def chi2_above(value: float, degrees: float) -> float:

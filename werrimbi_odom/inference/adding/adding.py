@@ -17,7 +17,7 @@ import numpy as np
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, Side
-from werrimbi_odom.inference.adding.fits import fits_of
+from werrimbi_odom.inference.adding.fits import fits_without_jumps
 from werrimbi_odom.inference.adding.known import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.start import (
     Drives,
@@ -114,7 +114,7 @@ def add_effects(
     sigma = (sigma_xy or _stated(judge, "xy_told"), sigma_yaw or _stated(judge, "yaw_told"))
     show(0.15, "calibration")
     drives = drives_of(judge.train, begun, kind, limits, sigma)
-    fits = fits_of(effects, drives, begun, robot, also, show)
+    drives, fits = fits_without_jumps(effects, drives, begun, robot, also, show)
     fit = fits.all
     wanted = _calibrations_wanted(effects, set_up)
     sizes = sizes_needed(fit, robot, wanted)
@@ -132,7 +132,7 @@ def add_effects(
     if not holdout:
         show(0.9, "all runs")
         drives, written = _on_all(judge, drives, fit, robot, runs, limits, sizes)
-    known = with_spread(drives, written, robot, wanted, sizes, noises)
+    known = with_spread(effects, drives, written, robot, wanted, sizes, noises)
     final = to_write(written.point.model, robot)
     final = _with_noise_of(final, robot)
     if explained:

@@ -8,6 +8,8 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.start import (
     Drives,
@@ -25,6 +27,7 @@ from werrimbi_odom.inference.adding.values import (
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.fit import without_jumps
 from werrimbi_odom.inference.fitting.knobs import Model, changed
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
@@ -40,6 +43,30 @@ class Fits:
     all: Fitted
     without: dict[str, Fitted]
     """With all but one of several effects; empty where there is but one."""
+
+
+def fits_without_jumps(
+    effects: Sequence[Effect],
+    drives: Drives,
+    begun: Robot,
+    given: Robot,
+    also: tuple[str, ...],
+    show: Show,
+) -> tuple[Drives, Fits]:
+    """The fits, and the drives without legs on which their model cannot believe the reference.
+
+    As in `diagnose`, jumps are found by the better model too where a reference's errors last: one
+    match that failed within the travel of its interval passes for noise of all the others.
+    """
+    fits = fits_of(effects, drives, begun, given, also, show)
+    if drives.kind == "absolute":
+        return drives, fits
+    found = without_jumps(drives.laid, fits.all.point, drives.kind).excluded
+    jumped = tuple(old | new for old, new in zip(drives.jumped, found, strict=True))
+    if all(np.array_equal(*pair) for pair in zip(jumped, drives.jumped, strict=True)):
+        return drives, fits
+    drives = replace(drives, jumped=jumped)
+    return drives, fits_of(effects, drives, begun, given, also, show)
 
 
 def fits_of(

@@ -4,19 +4,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+import math
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from werrimbi_odom.inference.adding.start import Drives
 from werrimbi_odom.inference.calibration_sizes import with_sizes_in_multipliers
+from werrimbi_odom.inference.chances import upper_part
+from werrimbi_odom.inference.diagnosis.choices import Law, spread_over_choices
 from werrimbi_odom.inference.diagnosis.selection import Fitted, grain_of
-from werrimbi_odom.inference.diagnosis.sizes import Sizes, spread_over_sizes
+from werrimbi_odom.inference.diagnosis.sizes import Sizes, choices
 from werrimbi_odom.inference.fitting.costs import Costs
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, START_YAW, Model, own_of, shared_of
+from werrimbi_odom.inference.fitting.design import stacked
+from werrimbi_odom.inference.fitting.knobs import (
+    CALIBRATION,
+    MULTIPLIERS,
+    START_YAW,
+    Knob,
+    Model,
+    knobs_of,
+    own_of,
+    shared_of,
+    value_of,
+)
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, likeliest, noise_estimates
 from werrimbi_odom.inference.fitting.precision import Precision
+from werrimbi_odom.inference.rules import NOISE_TOLD
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
 
@@ -47,6 +63,7 @@ def _held(drives: Drives) -> tuple[bool, bool]:
 
 
 def with_spread(
+    effects: Sequence[Effect],
     drives: Drives,
     fit: Fitted,
     given: Robot,
@@ -54,32 +71,60 @@ def with_spread(
     sizes: Sizes,
     noises: Mapping[str, NoiseEstimate],
 ) -> Fitted:
-    """The fit with covariances of what is told that count all that was chosen by the same drives.
+    """The fit with deviations of what is told that count all that was chosen by the same drives.
 
-    Which sizes differ from the file's (`spread_over_sizes`), and the noise (`Precision.widening`);
-    and the edge of a threshold is no finer than its law (`grain_of`).
+    Which sizes differ from the file's and which parameters effects need (`spread_over_choices`),
+    and the noise (`Precision.widening`). The edge of a threshold is no finer than its law
+    (`grain_of`), and lengths are known by their logarithm, as all scales are.
     """
-    columns = [knob.name for knob, run in fit.design.columns]
-    spread = spread_over_sizes(fit, given, wanted, sizes)
-    told = [
-        index
-        for index, (_, run) in enumerate(fit.design.columns)
-        if run < 0 and fit.moves[index].any()
-    ]
-    precision = _precision(drives, as_written(drives, fit, given))
-    wide = np.ones(len(columns))
-    wide[told] = precision.widening(noises, [columns[index] for index in told])
-    covariance = fit.covariance.copy()
-    spread = spread * np.outer(wide, wide) + np.diag(grain_of(fit.design, fit.point.model.robot))
-    covariance[np.ix_(told, told)] = spread[np.ix_(told, told)]
-    return replace(fit, covariance=covariance)
+    laws = [law for effect in effects if len(law := _optional(effect)) > 1]
+    columns = fit.design.columns
+    lacking = {name for law in laws for name in law} - {knob.name for knob, _ in columns}
+    design = fit.design
+    if lacking:
+        more = [knob for effect in effects for knob in knobs_of(effect) if knob.name in lacking]
+        design = stacked(drives.laid, fit.point, drives.kind, [*_local(fit), *more])
+    free = np.linalg.matrix_rank(fit.moves[[knob.name in MULTIPLIERS for knob, _ in columns]])
+    if free != sizes.free:  # they could not be put back (`with_sizes`)
+        *_, sizes = choices()
+    spread = spread_over_choices(fit, given, wanted, sizes, laws, design)
+    told = [index for index, (_, run) in enumerate(columns) if run < 0 and fit.moves[index].any()]
+    names = [columns[index][0].name for index in told]
+    wide = _precision(drives, as_written(drives, fit, given)).widening(noises, names)
+    variances = (wide * [spread[name] for name in names]) ** 2
+    variances += grain_of(fit.design, fit.point.model.robot)[told]
+    scales = {
+        f"{effect.name}.{name}"
+        for effect in effects
+        for name, item in effect.parameters.items()
+        if item.tries and item.bounds[0] > 0.0
+    }
+    for index, name in enumerate(names):
+        if name in scales:
+            value = value_of(fit.point.model.robot, name)
+            share = min(math.sqrt(variances[index]) / value, NOISE_TOLD)
+            variances[index] = max(variances[index], upper_part(value, share) ** 2)
+    size = np.ones(len(columns))
+    size[told] = np.sqrt(variances / np.diag(fit.covariance)[told])
+    return replace(fit, covariance=fit.covariance * np.outer(size, size))
+
+
+def _optional(effect: Effect) -> Law:
+    """Parameters that an effect may do without: no shapes, no phases, none of each run."""
+    phases = effect.quadrature or ()
+    return {
+        f"{effect.name}.{name}": item.null
+        for name, item in effect.parameters.items()
+        if not (item.tries or item.per_run or item.as_base or name in phases)
+    }
+
+
+def _local(fit: Fitted) -> list[Knob]:
+    """Columns of the fit's design, but start headings."""
+    knobs = (*fit.knobs, *fit.point.model.nuisance_knobs)
+    return [*CALIBRATION, *own_of(knobs), *shared_of(fit.knobs)]
 
 
 def _precision(drives: Drives, fit: Fitted) -> Precision:
-    knobs = (*fit.knobs, *fit.point.model.nuisance_knobs)
-    local = [
-        knob
-        for knob in (*CALIBRATION, *own_of(knobs), *shared_of(fit.knobs))
-        if knob.name != START_YAW
-    ]
+    local = [knob for knob in _local(fit) if knob.name != START_YAW]
     return Precision.of(drives.laid, fit.point, drives.kind, local, fit.moves)

@@ -190,15 +190,17 @@ def _of_roots(covariance: Floats, left: NoiseEstimate, right: NoiseEstimate) -> 
 
 
 def _each(likelihood: Likelihood, best: tuple[float, float]) -> tuple[NoiseEstimate, NoiseEstimate]:
-    """Both wheels: Fisher's standard deviation, and the interval by the profile likelihood."""
-    covariance = likelihood.covariance(*best)
+    """Both wheels, with the interval by the profile likelihood.
+
+    A few runs that scatter little by chance make k small, and Fisher's standard deviation with it:
+    of ten runs, 1.96 of it held k_L in 87 % of 400 calibrations. So what is stated is the upper
+    part of the interval; where the wheel may have no noise at all, no less than the value itself.
+    """
     estimates = []
     for wheel in (0, 1):
         value = math.sqrt(best[wheel])
         low, high = (math.sqrt(end) for end in likelihood.interval(wheel, best))
-        std = math.sqrt(covariance[wheel, wheel]) / (2.0 * value)
-        if low == 0.0:  # the parabola is no guide next to zero
-            std = max(value, high - value) / NORMAL_95
+        std = max(value if low == 0.0 else 0.0, high - value) / NORMAL_95
         estimates.append(NoiseEstimate(value, std, low, high))
     return estimates[0], estimates[1]
 

@@ -5,12 +5,10 @@
 A fit turns base, left radius and right radius together. What of that earns its price need not be
 all three: the base alone, one wheel, both wheels alike, one against the other. The cheapest of
 these is kept, and everything else is fitted again with the other sizes where the file has them.
-That choice may be wrong, and what is told of any number says how well it is known for all that.
 """
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass, replace
 
@@ -30,8 +28,8 @@ from werrimbi_odom.inference.fitting.knobs import (
     shared_of,
 )
 from werrimbi_odom.inference.fitting.together import Together
-from werrimbi_odom.inference.linear import SILENT, covariance_of, nuisance, solved
-from werrimbi_odom.inference.rules import CALIBRATION_KNOWN, RIVAL, STILL
+from werrimbi_odom.inference.linear import nuisance
+from werrimbi_odom.inference.rules import RIVAL, STILL
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -79,64 +77,12 @@ def sizes_needed(fit: Fitted, given: Robot, wanted: Collection[str]) -> Sizes:
     wanted
         Effects of calibration that are to be fitted whatever they are worth.
     """
-    return min(_weighed(fit, given, wanted), key=lambda item: item[0])[1]
-
-
-def _weighed(
-    fit: Fitted, given: Robot, wanted: Collection[str]
-) -> Iterator[tuple[float, Sizes, Floats]]:
-    """Cost and price of each choice of sizes, less what is common to all, and how far it goes."""
     marks, rest = _at_given(fit.design, fit.point.model.robot, given)
-    for sizes in _choices():
-        if all(set(_MOVES[name]) & set(sizes.parts) for name in wanted):
-            away = _solved(marks, sizes, rest)
-            gained = float(np.sum((marks @ sizes.directions @ away) ** 2))
-            yield fit.price_of_one * sizes.free - gained / fit.scatter, sizes, away
-
-
-def spread_over_sizes(fit: Fitted, given: Robot, wanted: Collection[str], told: Sizes) -> Floats:
-    """Covariance of the design's columns (p, p) about what one choice of sizes makes of them.
-
-    Each choice has its own values, with their own covariance, and is as likely as its cost and
-    price say; the mean square about the values told, over all choices, is what is not known of them
-    (Hoeting and others, Bayesian model averaging, Statistical Science 14, 1999). A choice that was
-    made by the same drives is then no longer taken for certain: else a size that chance frees, as
-    it does in one set of drives among some twenty, is never within two of its deviations.
-    """
-    robot, design = fit.point.model.robot, fit.design
-    names = [knob.name for knob, _ in design.columns]
-    sized = np.isin(names, MULTIPLIERS)
-    others = fit.moves[:, ~fit.moves[sized].any(axis=0)]
-    flat = design.flat()[1]
-    weighed = list(_weighed(fit, given, wanted))
-    least = min(total for total, *_ in weighed)
-    found, now = [], None
-    for total, sizes, away in weighed:
-        moves = np.concatenate([_free(design, robot, sizes)[:, : sizes.free], others], axis=1)
-        marks = flat @ moves
-        heard = np.sum(marks**2, axis=0) > SILENT**2
-        covariance = covariance_of(marks[:, heard])
-        if sizes.parts != told.parts and not (
-            heard.all() and np.all(np.diag(covariance)[: sizes.free] < CALIBRATION_KNOWN**2)
-        ):
-            continue  # drives that do not tell a size say nothing of what it would do to others
-        there = np.zeros(len(names))
-        there[[names.index(name) for name in MULTIPLIERS]] = -(sizes.directions @ away) * [
-            getattr(robot, name) for name in MULTIPLIERS
-        ]
-        # What is fitted beside them follows, to first order.
-        there -= others @ solved(flat @ others, flat @ there)
-        now = there if sizes.parts == told.parts else now
-        inside = moves[:, heard] @ covariance @ moves[:, heard].T
-        found.append((math.exp(-0.5 * (total - least)), there, inside))
-    assert now is not None
-    weights = sum(weight for weight, *_ in found)
-    return np.asarray(
-        sum(
-            weight / weights * (inside + np.outer(there - now, there - now))
-            for weight, there, inside in found
-        )
-    )
+    weighed = []
+    for sizes in choices(wanted):
+        gained = float(np.sum((marks @ sizes.directions @ _solved(marks, sizes, rest)) ** 2))
+        weighed.append((fit.price_of_one * sizes.free - gained / fit.scatter, sizes))
+    return min(weighed, key=lambda item: item[0])[1]
 
 
 def with_sizes(
@@ -196,31 +142,22 @@ def with_sizes(
     )
 
 
-def sizes_at(
-    fit: Fitted, given: Robot, wanted: Collection[str], sizes: Sizes
-) -> dict[str, tuple[float, float]]:
-    """Multipliers with those sizes alone free, each with its standard deviation, to first order.
-
-    A multiplier that is not free is the given one, with a deviation of 0.
-    """
+def sizes_at(fit: Fitted, given: Robot, sizes: Sizes) -> dict[str, float]:
+    """Multipliers with those sizes alone free, to first order; the others as they were given."""
     marks, rest = _at_given(fit.design, fit.point.model.robot, given)
-    values = _sized(given, sizes, -_solved(marks, sizes, rest))
-    names = [knob.name for knob, _ in fit.design.columns]
-    spread = np.diag(spread_over_sizes(fit, given, wanted, sizes))
-    return {
-        name: (values[name], math.sqrt(spread[names.index(name)]) if moves.any() else 0.0)
-        for name, moves in zip(MULTIPLIERS, sizes.directions, strict=True)
-    }
+    return _sized(given, sizes, -_solved(marks, sizes, rest))
 
 
-def _choices() -> Iterator[Sizes]:
-    """All that may be free, the fewest numbers first."""
+def choices(wanted: Collection[str] = ()) -> Iterator[Sizes]:
+    """All that may be free, the fewest numbers first; with all effects that are `wanted`."""
     every = [
         Sizes((base, radii), np.array([*_BASE[base], *_RADII[radii]]).reshape(-1, 3).T)
         for radii in _RADII
         for base in _BASE
     ]
-    yield from sorted(every, key=lambda sizes: sizes.free)
+    for sizes in sorted(every, key=lambda sizes: sizes.free):
+        if all(set(_MOVES[name]) & set(sizes.parts) for name in wanted):
+            yield sizes
 
 
 def _at_given(design: Design, robot: Robot, given: Robot) -> tuple[Floats, Floats]:

@@ -12,6 +12,7 @@ import numpy as np
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import base_told, sizes_of, std_as_effect
+from werrimbi_odom.inference.diagnosis.choices import spread_over_choices
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, Ranked, chance
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
@@ -165,7 +166,13 @@ def best_sizes(diagnosis: Diagnosis) -> Mapping[str, tuple[float, float | None]]
     if mistakes(diagnosis):
         return {name: (getattr(given, name), None) for name in MULTIPLIERS}
     wanted = set(diagnosis.found) & set(CALIBRATED)
-    return dict(sizes_at(final, given, wanted, sizes_needed(final, given, wanted)))
+    needed = sizes_needed(final, given, wanted)
+    values = sizes_at(final, given, needed)
+    spread = spread_over_choices(final, given, wanted, needed)
+    return {
+        name: (values[name], spread[name] if moves.any() else 0.0)
+        for name, moves in zip(MULTIPLIERS, needed.directions, strict=True)
+    }
 
 
 def one_wheel(diagnosis: Diagnosis) -> str | None:

@@ -14,7 +14,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.chances import NORMAL_95
+from werrimbi_odom.inference.chances import NORMAL_95, upper_part
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.prediction import Prediction
@@ -50,17 +50,25 @@ _LOWEST, _HIGHEST = np.log(1e-14), np.log(10.0)
 
 @dataclass(frozen=True, slots=True)
 class NoiseEstimate:
-    """A standard deviation of noise, with its own; `determined` is False where data were mute."""
+    """A standard deviation of noise; `determined` is False where data were mute."""
 
     value: float
-    std: float
+    share: float
+    """Standard deviation of its logarithm, where the likelihood of a scale is nearly normal."""
     determined: bool
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Of 95 %, in the logarithm, where the likelihood of a scale is nearly normal."""
-        factor = float(np.exp(NORMAL_95 * self.std / self.value))
+        """Of 95 %."""
+        factor = float(np.exp(NORMAL_95 * self.share))
         return self.value / factor, self.value * factor
+
+    @property
+    def std(self) -> float:
+        """To be stated beside the value (`upper_part`)."""
+        if not self.determined:
+            return self.value * self.share
+        return upper_part(self.value, self.share)
 
 
 def with_noise(robot: Robot, noises: Mapping[str, NoiseEstimate]) -> Robot:
@@ -207,7 +215,7 @@ def noise_estimates(
         _ALL, [name for name, known in zip(NOISES[2:], held, strict=True) if known]
     )
     return {
-        name: NoiseEstimate(float(sigma), float(sigma * part), bool(part < NOISE_TOLD))
+        name: NoiseEstimate(float(sigma), float(part), bool(part < NOISE_TOLD))
         for name, sigma, part, tell in zip(_ALL, sigmas, share, told, strict=True)
         if tell
     }

@@ -81,7 +81,7 @@ class Precision:
         middle = self._variances_of(names, centre)
         found, scatter = middle, np.zeros(len(names))
         for name, noise in noises.items():
-            step = math.sqrt(3.0) * min(noise.std / noise.value, LEAST_KNOWN)
+            step = math.sqrt(3.0) * min(noise.share, LEAST_KNOWN)
             if step > 0.0:
                 values = [noise.value * math.exp(sign * step) for sign in (1.0, -1.0)]
                 more, less = (

@@ -225,7 +225,14 @@ def json_of(added: Added) -> dict[str, Any]:
         },
         "noise": {
             "written": added.explained,
-            **{name: picked(item, "value std determined") for name, item in added.noises.items()},
+            **{
+                name: {
+                    "value": item.value,
+                    "std": item.std if added.explained else None,
+                    "determined": item.determined,
+                }
+                for name, item in added.noises.items()
+            },
         },
         "put_right_with_it": list(added.also),
         "per_run": list(added.per_run),

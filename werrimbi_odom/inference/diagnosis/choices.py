@@ -1,0 +1,117 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""How well numbers are known, for all that the same drives chose which of them to free.
+
+Which sizes differ from the given file's, and which parameters an effect needs, is chosen by what is
+worth its price. By chance a number that is none earns it in one set of drives among some twenty,
+and it is then three of its deviations from the truth, however well the rest is known.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Iterator, Sequence
+from itertools import chain, combinations, product
+
+import numpy as np
+
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.sizes import Sizes, choices
+from werrimbi_odom.inference.fitting.design import Design
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, value_of
+from werrimbi_odom.inference.linear import SILENT, covariance_of, nuisance
+from werrimbi_odom.inference.rules import CALIBRATION_KNOWN
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+
+Law = dict[str, float]
+"""Parameters that an effect may have or lack, at least one of them, with their null values."""
+
+
+def spread_over_choices(
+    fit: Fitted,
+    given: Robot,
+    wanted: Collection[str],
+    told: Sizes,
+    laws: Sequence[Law] = (),
+    design: Design | None = None,
+) -> dict[str, float]:
+    """Standard deviations of shared knobs about what one choice makes of them.
+
+    Each choice has its own values, with their own covariance, and is as likely as its cost and
+    price say; the mean square about the values told, over all choices, is what is not known of them
+    (Hoeting and others, Bayesian model averaging, Statistical Science 14, 1999).
+
+    Parameters
+    ----------
+    wanted
+        Effects of calibration whose sizes are free in every choice.
+    told
+        Sizes that were chosen, and what is told is about; of `laws` the knobs that `fit` holds.
+    design
+        With the other parameters of `laws` too; the fit's own if there are none.
+    """
+    robot = fit.point.model.robot
+    names, marks, rest = _shared(design or fit.design)
+    now = np.array([value_of(robot, name) for name in names])
+    fitted = {knob.name: row for (knob, _), row in zip(fit.design.columns, fit.moves, strict=True)}
+    matrix = np.array([fitted.get(name, np.zeros(fit.moves.shape[1])) for name in names])
+    nulls = {name: null for law in laws for name, null in law.items()}
+    chosen = np.isin(names, [*MULTIPLIERS, *nulls])
+    others = matrix[:, matrix.any(axis=0) & ~matrix[chosen].any(axis=0)]
+    absent = np.zeros(len(names))
+    for index, name in enumerate(names):
+        if name in MULTIPLIERS:
+            absent[index] = -now[index] * math.log(now[index] / getattr(given, name))
+        elif name in nulls:
+            absent[index] = nulls[name] - now[index]
+    limit = {knob.name: knob.undetermined for knob, _ in (design or fit.design).columns}
+    kept_now = tuple(name for name in nulls if name in fitted and fitted[name].any())
+    sized = [names.index(name) for name in MULTIPLIERS]
+    found, there_now = [], np.zeros(len(names))
+    for sizes, kept in product(choices(wanted), dict.fromkeys([*_subsets(laws), kept_now])):
+        is_told = sizes.parts == told.parts and kept == kept_now
+        moves = np.zeros((len(names), sizes.free + len(kept)))
+        moves[sized, : sizes.free] = sizes.directions * now[sized, None]
+        moves[[names.index(name) for name in kept], range(sizes.free, moves.shape[1])] = 1.0
+        moves = np.concatenate([moves, others], axis=1)
+        heard = np.sum((marks @ moves) ** 2, axis=0) > SILENT**2
+        limits = [CALIBRATION_KNOWN] * sizes.free + [limit[name] for name in kept]
+        if not is_told and not heard[: len(limits)].all():
+            continue
+        moves, columns = moves[:, heard], marks @ moves[:, heard]
+        covariance = covariance_of(columns)
+        if not is_told and not np.all(np.sqrt(np.diag(covariance))[: len(limits)] < limits):
+            continue  # what drives do not tell says nothing of what it would do to others
+        left = rest + marks @ absent
+        step = -covariance @ (columns.T @ left)
+        there = absent + moves @ step
+        cost = float(np.sum((left + columns @ step) ** 2)) / fit.scatter
+        cost += fit.price_of_one * (sizes.free + len(kept))
+        there_now = there if is_told else there_now
+        found.append((cost, there, moves @ covariance @ moves.T))
+    least = min(cost for cost, *_ in found)
+    weights = np.array([math.exp(-0.5 * (cost - least)) for cost, *_ in found])
+    squares = [np.diag(inside) + (there - there_now) ** 2 for _, there, inside in found]
+    spread = np.sqrt(np.average(squares, axis=0, weights=weights))
+    return dict(zip(names, spread.tolist(), strict=True))
+
+
+def _shared(design: Design) -> tuple[list[str], Floats, Floats]:
+    """Names, derivatives and innovations of shared knobs, clear of what runs have of their own."""
+    white, flat = design.flat()
+    common = np.array([run < 0 for _, run in design.columns])
+    own = nuisance(flat[:, ~common])
+    joined = np.column_stack([own.residual(flat[:, common]), own.residual(white)])
+    corner = np.asarray(np.linalg.qr(joined, mode="r"))  # as good as all rows, for squares
+    names = [knob.name for knob, run in design.columns if run < 0]
+    return names, corner[:, :-1], corner[:, -1]
+
+
+def _subsets(laws: Sequence[Law]) -> Iterator[tuple[str, ...]]:
+    """Of each law at least one parameter."""
+    each = [
+        [kept for size in range(1, len(law) + 1) for kept in combinations(law, size)]
+        for law in laws
+    ]
+    return (tuple(chain(*kept)) for kept in product(*each))
