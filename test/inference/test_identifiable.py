@@ -238,3 +238,29 @@ def test_the_kobuki_has_a_late_gyro_and_a_wide_base_at_any_rate(
     assert found.rivals == ()
     assert found.robot.wheel_separation_multiplier == pytest.approx(1.035, abs=0.004)
     assert found.holdout.after < 0.35 * found.holdout.before
+
+
+def test_a_robot_that_veers_on_straight_lines_has_unequal_wheels() -> None:
+    """The base stood first in the order: it turned the veer a little, and the ratio was not told.
+
+    `diagnose` said *none* where `compare` saw a veer of 23 standard deviations.
+    """
+    random = np.random.default_rng(101)
+    speed = np.repeat([0.4, -0.4] * 3, 500)
+    commands = speed, np.zeros(speed.size)
+    true = WhiteNoiseRobot(0.35, 0.0501, 0.0499, 4e-4, 4e-4)
+    run = drive(true, commands, random)
+    found = diagnose([run], NOMINAL, LIBRARY)
+    assert (found.verdict, found.found) == ("named", ("unequal_wheel_radii",))
+    ratio = values_of(found, "unequal_wheel_radii")["ratio"]
+    assert abs(ratio.value - 0.0499 / 0.0501) < 3.0 * ratio.std
+    assert "track_width" in found.final.held
+
+
+def test_on_one_circle_base_and_radii_are_not_told_apart() -> None:
+    random = np.random.default_rng(7)
+    commands = np.full(2500, 0.4), np.full(2500, 0.4)
+    run = drive(WhiteNoiseRobot(0.357, 0.05, 0.05, 4e-4, 4e-4), commands, random)
+    found = diagnose([run], NOMINAL, LIBRARY)
+    assert found.verdict == "ambiguous"
+    assert {"track_width", "unequal_wheel_radii"} <= set(found.rivals)

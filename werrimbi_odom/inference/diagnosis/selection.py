@@ -14,6 +14,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from itertools import combinations
+from typing import NamedTuple
 
 import numpy as np
 
@@ -21,7 +22,7 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import calibration_deviation
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
-from werrimbi_odom.inference.fitting.directions import Directions, determined, every_direction
+from werrimbi_odom.inference.fitting.directions import SIZE, Directions, determined, every_direction
 from werrimbi_odom.inference.fitting.fit import fit_model
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
@@ -33,7 +34,13 @@ from werrimbi_odom.inference.fitting.knobs import (
 )
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance, score_test
-from werrimbi_odom.inference.rules import NOISE_NUMBERS, PENALTY_FLOOR, RIVAL
+from werrimbi_odom.inference.rules import (
+    CALIBRATION_KNOWN,
+    NOISE_NUMBERS,
+    PENALTY_FLOOR,
+    RIVAL,
+    SIGNIFICANT,
+)
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -128,20 +135,18 @@ def fitted(
     design = stacked(runs, result.point, kind, [*CALIBRATION, *own_of(every), *shared_of(knobs)])
     ways = determined(design, result.robot)
     price, scatter = price_of_one(runs), scatter_of(runs, design)
-    weighed = sorted(
-        (
-            (rise / scatter + price * len(kept), rise, kept)
-            for kept, rise in calibration_rises(design, result.robot, given, ways.held)
-        ),
-        key=lambda item: item[0],
+    rises = calibration_rises(design, result.robot, given, ways.held)
+    totals = {each.kept: each.rise / scatter + price * len(each.kept) for each in rises}
+    kept, rise, _ = min(
+        (each for each in rises if not set(each.kept) & set(ways.held)),
+        key=lambda each: totals[each.kept],
     )
     covariance = covariance_of(design, ways) + np.diag(grain_of(design, result.robot))
-    total, rise, kept = weighed[0]
-    rises = {chosen: item for _, item, chosen in weighed}
     importance = {name: rise_without(name, design, covariance, result.point) for name in names}
     for name in kept:
         without = tuple(other for other in kept if other != name)
-        importance[name] = (rises[without] - rise) / scatter
+        rest = next(each.rise for each in rises if each.kept == without)
+        importance[name] = (rest - rise) / scatter
     counted = sum(
         1
         for knob, _ in design.columns
@@ -154,9 +159,13 @@ def fitted(
         result.minus_two_log_likelihood,
         kept,
         tuple(
-            other
-            for other_total, _, other in weighed[1:]
-            if len(other) == len(kept) and other_total - total < RIVAL
+            each.kept
+            for each in rises
+            if each.kept != kept
+            and len(each.kept) == len(kept)
+            and totals[each.kept] - totals[kept] < RIVAL
+            and each.believed
+            and (design.sized or SIZE not in each.kept)
         ),
         price * (len(kept) + counted),
         price,
@@ -171,14 +180,23 @@ def fitted(
     )
 
 
+class _Rise(NamedTuple):
+    """Some calibration effects, and what the cost rises when the others are put back."""
+
+    kept: tuple[str, ...]
+    rise: float
+    believed: bool
+    """Whether sizes that the data do not determine beside others stay what a tape may be off by."""
+
+
 def calibration_rises(
     design: Design, robot: Robot, given: Robot, held: Sequence[str] = ()
-) -> list[tuple[tuple[str, ...], float]]:
+) -> list[_Rise]:
     """For each subset of the calibration effects, what the cost rises when the others are put back.
 
     Everything else is fitted again, to first order. Effects that are `held`, for the data do not
-    determine them beside the others, are in no subset: a model that is the same under another name
-    is no rival.
+    determine them beside the others, come last: they are no part of the fit, but may do in place of
+    what is (on a circle the base and the ratio of the radii are one).
     """
     ways = every_direction(design.columns, robot)
     flat = design.flat()
@@ -187,13 +205,19 @@ def calibration_rises(
     others = nuisance(flat[1][:, [name not in MULTIPLIERS for name in names]])
     free = others.residual(marks)
     put_back = others.residual(flat[0]) - free @ calibration_deviation(robot, given)
-    costs = {}
-    for kept in _subsets([index for index, name in enumerate(CALIBRATED) if name not in held]):
-        chosen = list(kept)
+    found = []
+    for chosen in map(list, _subsets(range(len(CALIBRATED)))):
         test = score_test(marks[:, chosen], free[:, chosen], put_back)
-        costs[tuple(CALIBRATED[index] for index in chosen)] = -test.gain if test else 0.0
-    least = min(costs.values())
-    return [(kept, cost - least) for kept, cost in costs.items()]
+        kept = tuple(CALIBRATED[index] for index in chosen)
+        sizes = zip(kept, np.zeros(len(kept)) if test is None else test.coefficients, strict=True)
+        off = [abs(size) for name, size in sizes if name in held]
+        believed = max(off, default=0.0) < SIGNIFICANT * CALIBRATION_KNOWN
+        found.append(_Rise(kept, -test.gain if test else 0.0, believed))
+    least = min(each.rise for each in found if not set(each.kept) & set(held))
+    return sorted(
+        (each._replace(rise=each.rise - least) for each in found),
+        key=lambda each: bool(set(each.kept) & set(held)),
+    )
 
 
 def covariance_of(design: Design, ways: Directions) -> Floats:

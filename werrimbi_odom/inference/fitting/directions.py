@@ -83,20 +83,22 @@ def determined(design: Design, robot: Robot) -> Directions:
     """The directions that the data determine, and those of single runs."""
     every = every_direction(design.columns, robot)
     marks = design.flat()[1] @ every.matrix
-    shared = [index for index in every.shared if design.sized or every.names[index] != SIZE]
+    asked = [index for index in every.shared if design.sized or every.names[index] != SIZE]
     own = [
         index
         for index in range(len(every.names))
         if index not in every.shared and marks[:, index].any()
     ]
     beside = nuisance(marks[:, own])
+    seen = np.linalg.norm(beside.residual(marks), axis=0)
+    shared = _plainest_first(asked, every.names, seen)
     free = beside.residual(marks[:, shared])
 
     def known(tried: list[int]) -> bool:
         spread = np.sqrt(np.diag(covariance_of(free[:, tried])))
         return bool(np.all(spread <= every.limits[[shared[number] for number in tried]]))
 
-    kept = [shared[index] for index in admitted(marks[:, shared], beside, known)]
+    kept = sorted(shared[index] for index in admitted(marks[:, shared], beside, known))
     chosen = [*kept, *own]
     return Directions(
         tuple(every.names[index] for index in chosen),
@@ -105,6 +107,22 @@ def determined(design: Design, robot: Robot) -> Directions:
         list(range(len(kept))),
         tuple(every.names[index] for index in every.shared if index not in kept),
     )
+
+
+def _plainest_first(asked: Sequence[int], names: Sequence[str], seen: Floats) -> list[int]:
+    """What is asked for, the calibration by how plainly it is seen and then the rest as it stands.
+
+    A robot that veers on straight lines has unequal wheels; once they are, another base would turn
+    the veer too, a hundred times less, and must not take their place. Of two that are seen as
+    plainly as each other (base and size, by headings) the first is the first.
+    """
+    left = [index for index in asked if names[index] in CALIBRATED]
+    order = []
+    while left:
+        most = max(seen[index] for index in left)
+        order.append(next(index for index in left if seen[index] >= 0.5 * most))
+        left.remove(order[-1])
+    return [*order, *(index for index in asked if names[index] not in CALIBRATED)]
 
 
 def put_back(model: Model, given: Model, held: Iterable[str], knobs: Sequence[Knob]) -> Model:
