@@ -192,7 +192,7 @@ def test_the_page_draws_itself_without_a_complaint(tmp_path: Path, dark: bool) -
     rows = "[...document.querySelectorAll('#robots tbody tr')].map(row => row.cells[0].innerText)"
     names = (
         "[...document.querySelectorAll('#figure-errors g.ytick')].sort((one, other) => "
-        "robot_task.getBoundingClientRect().top - other.getBoundingClientRect().top)"
+        "one.getBoundingClientRect().top - other.getBoundingClientRect().top)"
         ".map(tick => tick.textContent)"
     )
     seen = visit(written, [rows, names], browser=browser, dark=dark)
