@@ -20,6 +20,7 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.changes.drives import Drives, drives_told
 from werrimbi_odom.inference.changes.numbers import (
     MOUNT,
+    PARTS,
     groups_of,
     numbers_of,
     value_at,
@@ -212,9 +213,11 @@ def _of_several(step: Step, drives: int, kind: ReferenceKind) -> bool:
     """Whether more than one drive is on either side, where it must be.
 
     A reference that wanders, or adds up its errors, has a drive now and then in which it errs
-    otherwise than in all others: that is no robot that changed, and changed back.
+    otherwise than in all others: that is no robot that changed, and changed back. And a drive of
+    another kind (starts and stops among rounds) tells another size of an effect, as far as its law
+    is not quite nature's: an effect that changed is seen in drives of either side.
     """
-    if kind == "absolute":
+    if kind == "absolute" and step.group.what in PARTS:
         return True
     several = MOST_ALONE < step.shape.first < drives - MOST_ALONE
     return several and step.shape.kind != "alone"

@@ -25,13 +25,16 @@ YAW, ARM = "reference_yaw_offset", "reference_lever_arm"
 MOUNT = (YAW, ARM)
 """Effects that say how the reference is mounted: it may be mounted anew whatever the file holds."""
 
+PARTS = ("left_wheel", "right_wheel", "wheel_base", "both_wheels", "mount")
+"""Groups whose numbers are sizes of things, by no law of an effect."""
+
 
 @dataclass(frozen=True, slots=True)
 class Group:
     """Numbers that change together: one cause on the robot."""
 
     what: str
-    """left_wheel, right_wheel, both_wheels, wheel_base, mount; or an effect."""
+    """One of `PARTS`, or an effect."""
     numbers: tuple[str, ...]
     """Names of those that move."""
     directions: Floats
