@@ -208,7 +208,9 @@ def _reference_part(
     """
     reading = reading_noise(robot)
     xy, yaw = (np.zeros(runs.count) + np.square(sigma) for sigma in sigmas[:2])
-    begun, ended = (sigmas[2] ** 2 * pace for pace in _paces(robot, runs))
+    begun = ended = np.zeros((runs.count, 3))
+    if sigmas[2] > 0.0:  # the speeds of an hour's steps are much to work out for nothing
+        begun, ended = (sigmas[2] ** 2 * pace for pace in _paces(robot, runs))
     if kind == "incremental":
         none = np.zeros(runs.count)
         leg = BodyMotion(prediction.along, none, prediction.turn)
