@@ -137,9 +137,8 @@ def fitted(
     price, scatter = price_of_one(runs), scatter_of(runs, design)
     rises = calibration_rises(design, result.robot, given, ways.held)
     totals = {each.kept: each.rise / scatter + price * len(each.kept) for each in rises}
-    kept, rise, _ = min(
-        (each for each in rises if not set(each.kept) & set(ways.held)),
-        key=lambda each: totals[each.kept],
+    kept, rise, *_ = min(
+        (each for each in rises if each.fitted), key=lambda each: totals[each.kept]
     )
     covariance = covariance_of(design, ways) + np.diag(grain_of(design, result.robot))
     importance = {name: rise_without(name, design, covariance, result.point) for name in names}
@@ -165,7 +164,6 @@ def fitted(
             and len(each.kept) == len(kept)
             and totals[each.kept] - totals[kept] < RIVAL
             and each.believed
-            and (design.sized or SIZE not in each.kept)
         ),
         price * (len(kept) + counted),
         price,
@@ -185,8 +183,10 @@ class _Rise(NamedTuple):
 
     kept: tuple[str, ...]
     rise: float
+    fitted: bool
+    """Whether the data determine all of them."""
     believed: bool
-    """Whether sizes that the data do not determine beside others stay what a tape may be off by."""
+    """Whether the others stay within what a tape may be off by, and can be seen at all."""
 
 
 def calibration_rises(
@@ -195,8 +195,8 @@ def calibration_rises(
     """For each subset of the calibration effects, what the cost rises when the others are put back.
 
     Everything else is fitted again, to first order. Effects that are `held`, for the data do not
-    determine them beside the others, come last: they are no part of the fit, but may do in place of
-    what is (on a circle the base and the ratio of the radii are one).
+    determine them beside the others, are no part of the fit, but may do in place of what is (on a
+    circle the base and the ratio of the radii are one).
     """
     ways = every_direction(design.columns, robot)
     flat = design.flat()
@@ -212,12 +212,10 @@ def calibration_rises(
         sizes = zip(kept, np.zeros(len(kept)) if test is None else test.coefficients, strict=True)
         off = [abs(size) for name, size in sizes if name in held]
         believed = max(off, default=0.0) < SIGNIFICANT * CALIBRATION_KNOWN
-        found.append(_Rise(kept, -test.gain if test else 0.0, believed))
-    least = min(each.rise for each in found if not set(each.kept) & set(held))
-    return sorted(
-        (each._replace(rise=each.rise - least) for each in found),
-        key=lambda each: bool(set(each.kept) & set(held)),
-    )
+        believed &= design.sized or SIZE not in kept
+        found.append(_Rise(kept, -test.gain if test else 0.0, not off, believed))
+    least = min(each.rise for each in found if each.fitted)
+    return [each._replace(rise=each.rise - least) for each in found]
 
 
 def covariance_of(design: Design, ways: Directions) -> Floats:

@@ -90,13 +90,13 @@ def determined(design: Design, robot: Robot) -> Directions:
         if index not in every.shared and marks[:, index].any()
     ]
     beside = nuisance(marks[:, own])
-    seen = np.linalg.norm(beside.residual(marks), axis=0)
-    shared = _plainest_first(asked, every.names, seen)
-    free = beside.residual(marks[:, shared])
+    free = beside.residual(marks)
+    shared = _plainest_first(asked, every.names, np.linalg.norm(free, axis=0))
 
     def known(tried: list[int]) -> bool:
-        spread = np.sqrt(np.diag(covariance_of(free[:, tried])))
-        return bool(np.all(spread <= every.limits[[shared[number] for number in tried]]))
+        columns = [shared[number] for number in tried]
+        spread = np.sqrt(np.diag(covariance_of(free[:, columns])))
+        return bool(np.all(spread <= every.limits[columns]))
 
     kept = sorted(shared[index] for index in admitted(marks[:, shared], beside, known))
     chosen = [*kept, *own]
