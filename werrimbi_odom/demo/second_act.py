@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     import plotly.graph_objects as go
 
 SEED = 126
+"""Of what is hidden: chosen as one that a minute's driving tells from all others."""
 PACES = (2.0, 1.0, 0.5)
 """Simulated seconds in a second: the first, and where the nodes cannot keep up, the others."""
 NODES = ("odom_node", "compare_node", "drive_node")
@@ -69,7 +70,7 @@ def second_act(out: Path) -> None:
         When a node does not do its part; the message says which, and its own words are above.
     """
     print("\nSecond act: why is the odometry wrong?\n")
-    print("A robot in a physics engine. An effect is hidden in it at random, and nobody is told.")
+    print("A robot in a physics engine, with an effect hidden in it. Which one is told at the end.")
     file, better = out / "robot.yaml", out / "better.yaml"
     out.mkdir(parents=True, exist_ok=True)
     drives: list[Drive] = []
