@@ -84,7 +84,6 @@ ELSEWHERE = {
     "fitting/knobs.py": {"STEP": "of a derivative"},
     "fitting/noise.py": {
         "_LOWEST": "where the search of a variance ends",
-        "_HIGHEST": "the same, upwards",
     },
     "fitting/prediction.py": {"_BLOCK": "size of a block"},
     "fitting/together.py": {
@@ -122,6 +121,7 @@ BARE = {
     ("calibration/noise_likelihood.py", 10.0): "a decade above where the search ends",
     ("diagnosis/diagnosis.py", 0.999): "a logarithm that stays finite",
     ("fitting/noise.py", 0.01): "damping of a search",
+    ("legs/even_stamps.py", 20.0): "what no wheel does between two messages: counters that wrap",
     ("legs/counters.py", 3.0): "what keeps a cubic monotone (Fritsch and Carlson)",
     ("manoeuvres/drives.py", 0.2): "messages of an ideal drive [s]",
     ("manoeuvres/proposal.py", 0.1): "in mm below it, in m above",

@@ -238,7 +238,8 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
         left_out = record_of(run, robot, limits).left_out if run.reference is not None else ()
     except InputError as error:
         return replace(held, problem=str(error))
-    return replace(held, run=run, driven=found, left_out=left_out)
+    put_right = counters.restamped
+    return replace(held, run=run, driven=found, left_out=left_out, restamped=put_right)
 
 
 def _write(found: Info, out: Path, force: bool) -> Path:

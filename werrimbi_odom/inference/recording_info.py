@@ -41,6 +41,8 @@ class Held:
     """Why not."""
     driven: Driven | None = None
     left_out: tuple[LeftOut, ...] = ()
+    restamped: float = 0.0
+    """By how much the ticks' stamps are put right (`legs.even_stamps`), rms [s]."""
 
 
 @dataclass(frozen=True)

@@ -51,6 +51,11 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
         measures = measures_of(held)
         if measures != "nothing":
             yield f"Reference: reference.csv, {_MEASURES[measures]}."
+    if held.restamped:
+        yield (
+            "By their counts, a timer read the wheels' counters evenly, and the stamps say when a "
+            f"message came: they are put back to when it was read, by {_ms(held.restamped)} (rms)."
+        )
     if held.problem:
         yield f"It cannot be used as it is: {held.problem}."
     if held.driven is not None:
@@ -261,6 +266,7 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
         "distance_m": drive.way if drive is not None and found.sizes else None,
         "turned_rad": drive.turned if drive is not None and found.sizes else None,
         "left_out": left_out_json(held.left_out),
+        "restamped_s": held.restamped,
         "can_show": can,
         "cannot_show": cannot,
     }

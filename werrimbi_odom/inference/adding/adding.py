@@ -51,9 +51,9 @@ from werrimbi_odom.inference.fitting.knobs import (
     NUISANCES,
     Model,
 )
-from werrimbi_odom.inference.fitting.noise import NoiseEstimate, with_noise
+from werrimbi_odom.inference.fitting.noise import NoiseEstimate, of_no_wheel, with_noise
 from werrimbi_odom.inference.fitting.together import together
-from werrimbi_odom.inference.rules import STRANGE_NOISE, VERY_SURE
+from werrimbi_odom.inference.rules import VERY_SURE
 from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -244,7 +244,7 @@ def _noise(
     found = dependences(drives.laid, fit.point, drives.kind, (*CALIBRATION, *fit.knobs))
     remaining = tuple(cell for cell in found if cell.p_value < VERY_SURE)
     wheels = [noises[name] for name in WHEEL_NOISES]
-    sane = all(not item.determined or item.value < STRANGE_NOISE for item in wheels)
+    sane = not any(of_no_wheel(item) for item in wheels)
     return noises, remaining, misfit_of_found(fit, remaining, drives.laid, drives.kind), sane
 
 

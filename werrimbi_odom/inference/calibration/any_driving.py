@@ -16,7 +16,12 @@ from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, MULTIPLIERS, START_YAW
 from werrimbi_odom.inference.fitting.likelihood import relative_errors
-from werrimbi_odom.inference.fitting.noise import NoiseEstimate, noise_estimates, with_noise
+from werrimbi_odom.inference.fitting.noise import (
+    NoiseEstimate,
+    noise_estimates,
+    of_no_wheel,
+    with_noise,
+)
 from werrimbi_odom.inference.fitting.precision import Precision
 from werrimbi_odom.inference.fitting.prediction import predict
 from werrimbi_odom.inference.fitting.together import together
@@ -117,7 +122,7 @@ def calibrate(
     wheels = {
         name: noises[name]
         for name in ("left_wheel_noise", "right_wheel_noise")
-        if noises[name].determined and noises[name].value <= STRANGE_NOISE
+        if noises[name].determined and not of_no_wheel(noises[name])
     }
     changes = {name: item.value for name, item in multipliers.items() if item.determined}
     usual = np.sqrt(np.diag(fit.covariance))
@@ -137,9 +142,9 @@ def calibrate(
 def _strange(fit: ModelFit, noises: dict[str, NoiseEstimate]) -> tuple[str, ...]:
     said = [f"{knob.name} ran against what is possible" for knob in fit.at_bound]
     for name in ("left_wheel_noise", "right_wheel_noise"):
-        if noises[name].determined and noises[name].value > STRANGE_NOISE:
+        if of_no_wheel(noises[name]):
             said.append(
-                f"{name} would have to be {noises[name].value:.3g} m^0.5, "
+                f"{name} would have to be {STRANGE_NOISE:g} m^0.5 or more, "
                 "which is no rolling wheel's noise"
             )
     return tuple(said)

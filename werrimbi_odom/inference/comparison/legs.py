@@ -152,9 +152,11 @@ def errors_of(
         error, total = errors_on_map(model, runs, prediction, wandering, jumped)
         reference = total - wheels
     elif by_position:
+        usual = 0.5 * (robot.left_wheel_noise**2 + robot.right_wheel_noise**2)
         found = position_errors(
             prediction.relative,
             wheels,
+            usual * (prediction.per_left + prediction.per_right),
             start[:, :2],
             finish[:, :2],
             np.square(sigma_xy) + float(reading_noise(robot)[0]),

@@ -39,6 +39,7 @@ class PositionErrors(NamedTuple):
 def position_errors(
     relative: Floats,
     wheels: Floats,
+    alike: Floats,
     start: Floats,
     finish: Floats,
     variance: Floats | float,
@@ -52,6 +53,9 @@ def position_errors(
     ----------
     relative, wheels : ndarray, shapes (m, 3) and (m, 3, 3)
         Predicted relative pose of each leg, and its covariance from the wheels' noise.
+    alike : ndarray, shape (m, 3, 3)
+        The same if both wheels were as noisy as one another. So is a model that is doubted: it does
+        not err as one wheel does, and an error along the way is none of the heading.
     start, finish : ndarray, shape (m, 2)
         Measured positions [m].
     variance : float, or ndarray of shape (m,)
@@ -66,8 +70,9 @@ def position_errors(
     variances = np.zeros(relative.shape[0]) + variance
     doubt = 1.0
     for _ in range(_ROUNDS):
+        doubted = wheels if doubt == 1.0 else doubt * alike
         found, deviation = _filtered(
-            relative, wheels, start, finish, variances, first, headings, gap, doubt
+            relative, wheels, doubted, start, finish, variances, first, headings, gap
         )
         usual = float(np.median(deviation[~gap])) / _MEDIAN_CHI2_2
         if usual <= HONEST_WITHIN or doubt >= _MOST_DOUBT:
@@ -79,13 +84,13 @@ def position_errors(
 def _filtered(
     relative: Floats,
     wheels: Floats,
+    doubted: Floats,
     start: Floats,
     finish: Floats,
     variances: Floats,
     first: NDArray[np.intp],
     headings: Floats,
     gap: NDArray[np.bool_],
-    doubt: float,
 ) -> tuple[PositionErrors, Floats]:
     count = relative.shape[0]
     found = PositionErrors(
@@ -112,10 +117,9 @@ def _filtered(
         lever[0, 2], lever[1, 2] = -move[1], move[0]
         found.heading[leg] = state[2]
         state = state + move
-        own = turn @ wheels[leg] @ turn.T
         parts = lever @ parts @ lever.T
-        parts[0] += doubt * own
-        parts[1] += own
+        parts[0] += turn @ doubted[leg] @ turn.T
+        parts[1] += turn @ wheels[leg] @ turn.T
         noise = variances[leg] * np.eye(2)
         if gap[leg]:
             state[:2] = finish[leg]

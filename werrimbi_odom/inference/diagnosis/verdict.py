@@ -11,7 +11,6 @@ from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
 from werrimbi_odom.inference.chances import chi2_above, in_any_of
@@ -23,15 +22,21 @@ from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.pairs import Sides
+from werrimbi_odom.inference.diagnosis.rivals import (
+    own_scale_instead,
+    possible_twins,
+    rivals_of,
+    rivals_of_others,
+    torn_by_halves,
+)
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.diagnosis.stability import rivals_in_halves
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.rules import CALIBRATION_WORTH, RIVAL, SIGNIFICANT, SURE
-from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding
+from werrimbi_odom.inference.rules import CALIBRATION_WORTH, SIGNIFICANT, SURE
+from werrimbi_odom.inference.set_up.mistakes import SetUp
 from werrimbi_odom.model.robot import Robot
 
 Verdict = Literal["none", "named", "ambiguous", "unknown"]
@@ -83,6 +88,8 @@ class Diagnosis:
     """Median position error on the held-out runs, outliers and all [m]."""
     headings: Sides
     """Heading error on the held-out runs [rad]: a reference of headings alone is judged by it."""
+    rivals_of_others: Mapping[str, tuple[str, ...]]
+    """Of the further effects that were found those that the runs cannot tell from another one."""
     left_out: tuple[LeftOut, ...] = ()
     """Stretches of all runs that none of it is about."""
     remarks: tuple[ReferenceRemark, ...] = ()
@@ -136,11 +143,11 @@ def told(
     rivals: tuple[str, ...] = ()
     torn: tuple[str, ...] = ()
     if mistakes:
-        twins = _possible_twins(set_up.findings[0])
+        twins = possible_twins(set_up.findings[0])
         rivals = (mistakes[0], *twins) if twins else ()
     elif found:
-        rivals = _rivals(found[0], rounds, final, instead)
-        torn = _torn(found[0], rounds, final, laid, kind)
+        rivals = rivals_of(found[0], rounds, final, instead)
+        torn = torn_by_halves(found[0], rounds, final, laid, kind)
         others = (*torn, *own_scale_instead(found[0], final, given, laid))
         rivals = tuple(dict.fromkeys((*(rivals or (found[0],)), *others))) if others else rivals
     verdict: Verdict
@@ -180,6 +187,7 @@ def told(
         start.to(last),
         Sides(start.holdout_median, last.holdout_median, start.unit),
         Sides(start.holdout_yaw, last.holdout_yaw, "rad"),
+        rivals_of_others(found, rounds, final),
         judge.left_out,
         (ReferenceRemark("another_drive", 0.0),) if another else remarks_on(judge.train),
     )
@@ -202,16 +210,6 @@ def _differs(name: str, final: Fitted, given: Robot) -> bool:
     return abs(math.log(size)) > SIGNIFICANT * std
 
 
-def _possible_twins(finding: SetUpFinding) -> tuple[str, ...]:
-    """What else it could be, as far as physics allows: no axle is askew by a quarter turn."""
-    impossible = {
-        twin.name
-        for twin in find(finding.effect).indistinguishable_from
-        if not find(twin.name).allows(twin.same_as(finding.values))
-    }
-    return tuple(name for name in finding.twins if name not in impossible)
-
-
 def _plain(fit: Fitted, given: Robot) -> Model:
     """A fitted model; multipliers that it does not need stay as they were given."""
     if fit.calibrated or fit.names:
@@ -219,63 +217,6 @@ def _plain(fit: Fitted, given: Robot) -> Model:
     model = fit.point.model
     back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
     return Model(changed(model.robot, back), model.own)
-
-
-def _rivals(
-    first: str, rounds: tuple[Round, ...], final: Fitted, instead: tuple[Instead, ...]
-) -> tuple[str, ...]:
-    """What the runs cannot tell from the first effect, that one leading; alone: none."""
-    if first in CALIBRATED:
-        others = {name for subset in final.alternatives for name in subset if first not in subset}
-        named = [first, *(name for name in CALIBRATED if name in others)]
-        limit = final.total + RIVAL * final.scatter
-        named += [item.effect for item in instead if item.total < limit]
-        return tuple(named) if len(named) > 1 else ()
-    for this in rounds:
-        fits = [fit for fit in this.tried if not fit.at_bound]
-        best = next((fit for fit in fits if fit.names[-1] == first), None)
-        if best is None:
-            continue
-        near = [fit.names[-1] for fit in fits if fit.total - best.total < RIVAL * best.scatter]
-        named = list(dict.fromkeys([first, *near]))
-        return tuple(named) if len(named) > 1 else ()
-    return ()
-
-
-def own_scale_instead(name: str, final: Fitted, given: Robot, laid: Together) -> tuple[str, ...]:
-    """What of the reference itself does the same as a size of the robot, to headings alone.
-
-    Positions are measured by tape or by satellites, whose metre is one; nobody knows a gyro's
-    radian, and no tape tells it.
-    """
-    if not laid.headings_alone or name not in CALIBRATED:
-        return ()
-    size = sizes_of(final.point.model.robot).over(sizes_of(given)).as_effects[name]
-    (own,) = find(name).parameters
-    twins = [
-        (find(twin.name), twin.same_as({own: size}))
-        for twin in find(name).indistinguishable_from
-        if twin.of_headings
-    ]
-    return tuple(
-        effect.name
-        for effect, values in twins
-        if effect.stage == "reference" and effect.allows(values)
-    )
-
-
-def _torn(
-    first: str, rounds: tuple[Round, ...], final: Fitted, laid: Together, kind: ReferenceKind
-) -> tuple[str, ...]:
-    """Effects that halves of the data prefer to the one that was found.
-
-    Of several that were found none is asked: a half that shows more of the one prefers it rightly.
-    """
-    if final.names != (first,):
-        return ()
-    fits = [fit for fit in rounds[0].tried if not fit.at_bound]
-    best = next((fit for fit in fits if fit.names[-1] == first), None)
-    return () if best is None else rivals_in_halves(laid, rounds[0], best, kind)
 
 
 def _ranking(

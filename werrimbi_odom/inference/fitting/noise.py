@@ -24,6 +24,7 @@ from werrimbi_odom.inference.rules import (
     MATCH_SPREAD,
     NOISE_TOLD,
     STAMP_NOISE_SPREAD,
+    STRANGE_NOISE,
     TYPICAL_GYRO_WALK,
     TYPICAL_MATCH,
     TYPICAL_STAMP_NOISE,
@@ -45,7 +46,9 @@ WALK = ("reference_walk_xy", "reference_walk_yaw", "reference_reversion")
 
 _ALL = (*NOISES, STAMP_NOISE, *WALK)
 
-_LOWEST, _HIGHEST = np.log(1e-14), np.log(10.0)
+_LOWEST = np.log(1e-14)
+_HIGHEST = np.log([STRANGE_NOISE**2] * 2 + [10.0] * 6)
+"""Of the variances, in logarithms: what wheels do not do is no noise of theirs."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,6 +72,11 @@ class NoiseEstimate:
         if not self.determined:
             return self.value * self.share
         return upper_part(self.value, self.share)
+
+
+def of_no_wheel(noise: NoiseEstimate) -> bool:
+    """Whether a wheel's noise went to the most that a fit may call so: it is none."""
+    return noise.determined and bool(np.isclose(noise.value, STRANGE_NOISE))
 
 
 def with_noise(robot: Robot, noises: Mapping[str, NoiseEstimate]) -> Robot:
@@ -107,15 +115,17 @@ def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Varian
     """
     prediction = costs.prediction()
     moving = _moving(costs, held)
-    logs = np.clip(np.log(_row(start)[moving]), _LOWEST, _HIGHEST)
+    highest = _HIGHEST[moving]
+    logs = np.clip(np.log(_row(start)[moving]), _LOWEST, highest)
     damping = 1e-6
     cost, gradient, curvature = _scored(costs, prediction, start, moving, logs)
     for _ in range(25):
+        free = (logs < highest) | (gradient > 0.0)
         scale = np.diag(curvature)
-        step = -np.linalg.solve(
-            curvature + np.diag(damping * scale + 1e-9 * scale.max(initial=1e-12) + 1e-12), gradient
-        )
-        tried = np.clip(logs + np.clip(step, -2.0, 2.0), _LOWEST, _HIGHEST)
+        damped = curvature + np.diag(damping * scale + 1e-9 * scale.max(initial=1e-12) + 1e-12)
+        step = np.zeros(logs.size)
+        step[free] = -np.linalg.solve(damped[np.ix_(free, free)], gradient[free])
+        tried = np.clip(logs + np.clip(step, -2.0, 2.0), _LOWEST, highest)
         ahead = _scored(costs, prediction, start, moving, tried)
         if ahead[0] > cost + 1e-9 * abs(cost):
             if damping > 1e4:
@@ -207,7 +217,9 @@ def noise_estimates(
         sides = logs + step * np.concatenate([np.eye(logs.size), -np.eye(logs.size)])
         found = [information(_variances(variances, moving, row[None])) for row in sides]
         gradient = np.subtract(*np.split(np.array(found), 2)) / (2.0 * step)
-        logs = logs + np.clip(-0.5 * covariance @ gradient, -1.0, 1.0)
+        shift = np.clip(-0.5 * covariance @ gradient, -1.0, 1.0)
+        highest = _HIGHEST[moving]
+        logs = np.where(np.isclose(logs, highest), logs, np.minimum(logs + shift, highest))
         sigmas[moving] = np.exp(0.5 * logs)
     share = np.zeros(len(_ALL))
     share[moving] = 0.5 * np.sqrt(np.maximum(np.diag(covariance), 0.0))

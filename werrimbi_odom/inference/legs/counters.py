@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.legs.even_stamps import evened
 from werrimbi_odom.inference.legs.leaps import Leap, bridged
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -41,6 +42,8 @@ class Counters:
     """Messages from one node to the next."""
     leaps: tuple[tuple[float, float, str], ...] = ()
     """Where a counter leapt: from and to [s], and what it did, in words."""
+    restamped: float = 0.0
+    """By how much stamps were put right, rms [s] (`even_stamps`)."""
 
     def at_most(self, rate: float) -> Counters:
         """The same with nodes at every so many messages, as many as come to `rate` [Hz] or more.
@@ -71,10 +74,11 @@ def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counter
         When fewer than two rows can be used, or the clock was set back.
     """
     ticks = run.ticks
-    steps = wheel_steps(robot, ticks.time, ticks.left, ticks.right, limits)
+    read = evened(ticks.time, ticks.left, ticks.right)
+    steps = wheel_steps(robot, read, ticks.left, ticks.right, limits)
     if steps.first_row < 0 or steps.time.size == 0:
         raise InputError(f"{run.path}: fewer than two usable rows of ticks")
-    time = np.concatenate([ticks.time[[steps.first_row]], steps.time])
+    time = np.concatenate([read[[steps.first_row]], steps.time])
     if not (np.diff(time) > 0.0).all():
         raise InputError(
             f"{run.path}: the ticks' clock was set back in mid-run; cut the run there into two"
@@ -97,6 +101,7 @@ def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counter
         float(ticks.right[steps.first_row]),
         {name: np.asarray(values)[rows] for name, values in ticks.channels.items()},
         leaps=leaps,
+        restamped=float(np.std(read - ticks.time)) if read is not ticks.time else 0.0,
     )
 
 

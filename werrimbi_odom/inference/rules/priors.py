@@ -24,7 +24,9 @@ another by some milliseconds; 1 and 10 ms are two standard deviations off. What 
 
 STRANGE_NOISE = 0.01
 """A wheel noise [m^0.5] above this (1 cm after 1 m) is no rolling wheel's: three times what the
-softest have (`TYPICAL_WHEEL_NOISE`). What a fit calls so is something else that is missing."""
+softest have (`TYPICAL_WHEEL_NOISE`). What a fit would call so is something else that is missing.
+No fit goes further: in 8.7 m of a Lego robot, seen by positions alone, a noise of 2 cm explained a
+base entered 17 % too small away, and every effect with it."""
 
 MOST_WHEEL_NOISE = 3e-3
 """The noise of the softest wheels that roll [m^0.5] (see `TYPICAL_WHEEL_NOISE`)."""

@@ -166,3 +166,10 @@ CIRCLE_STEPS, CIRCLE_WHOLE = 10.0, 0.02
 asked whether they are whole, and how much a unit may be off: angles of 32 bits are whole but for a
 hundredth of a count at a thousand turns. What is not whole rounds nothing off, and by numbers alone
 nothing is refused then."""
+
+EVEN_MESSAGES, EVEN_WINDOW, EVEN_SHARE = 50, 51, 0.5
+"""Messages that tell whether stamps say when counters were read: with fewer, chance does. How many
+the middle of their lateness is taken over: few seconds, in which two clocks part by 0.1 ms, and
+enough to be right to a sixth of the scatter of one stamp. And the share of the counts' unevenness
+that must be gone when messages are numbered in place of stamped: a timer that is itself uneven, but
+told truly, leaves more than all of it, counts that are coarse leave all."""

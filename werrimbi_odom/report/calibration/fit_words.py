@@ -31,9 +31,10 @@ def fit_in_words(result: Calibration) -> list[Part]:
     elif held := [name for name in result.fit.held if name != "wheel_radius_scale"]:
         said.append(f"What these drives do not determine is left as it was: {listed(held)}.")
     if unwritten := [name for name in _UNITS if _strange(result, name)]:
+        stays = "stays as it was" if len(unwritten) == 1 else "stay as they were"
         said.append(
-            f"{_capital(listed(unwritten))} stays as it was in the robot file: a noise that no "
-            "wheel has is not written."
+            f"{_capital(listed(unwritten))} {stays} in the robot file: a noise that no wheel has "
+            "is not written."
         )
     left_out = sum(int(legs.sum()) for legs in result.excluded)
     if left_out:

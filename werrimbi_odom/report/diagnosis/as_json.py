@@ -44,6 +44,7 @@ def json_of(
             for item in diagnosis.ranking
         ],
         "rivals": list(diagnosis.rivals),
+        "rivals_of_others": {name: list(each) for name, each in diagnosis.rivals_of_others.items()},
         "rivals_by_halves": list(diagnosis.torn),
         "rivals_of_held": {name: list(each) for name, each in diagnosis.rivals_of_held.items()},
         "depends_on": [_cell(cell) for cell in significant(diagnosis)],

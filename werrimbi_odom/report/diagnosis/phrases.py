@@ -13,6 +13,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.pairs import Sides
+from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
 from werrimbi_odom.inference.diagnosis.values import (
     Value,
     at_bounds,
@@ -21,7 +22,6 @@ from werrimbi_odom.inference.diagnosis.values import (
     ranked_of,
     values_of,
 )
-from werrimbi_odom.inference.diagnosis.verdict import own_scale_instead
 from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.inference.rules import SIGNIFICANT
 from werrimbi_odom.model.effect import Effect
@@ -57,6 +57,11 @@ def also(told: Told, name: str) -> list[str]:
     own = own_scale_instead(name, told.diagnosis.final, told.diagnosis.given, told.diagnosis.runs)
     if own:
         what += f" Headings alone cannot tell it from {listed(own, 'or')}."
+    twins = effect.twins if effect is not None else ()
+    if rivals := [
+        each for each in told.diagnosis.rivals_of_others.get(name, ()) if each not in twins
+    ]:
+        what += f" These drives cannot tell it from {listed(rivals, 'or')}."
     if effect is not None and effect.twins:
         what += f" To the reference it is one with {listed(effect.twins, 'or')}, on any drive."
     return [f"- Also {name}: {size}{sure}.{what}"]

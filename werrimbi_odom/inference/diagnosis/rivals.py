@@ -1,0 +1,102 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What the drives cannot tell from what was found."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from werrimbi_odom.effects.collection import find
+from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.calibration_sizes import sizes_of
+from werrimbi_odom.inference.diagnosis.search import Instead, Round
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.stability import rivals_in_halves
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import RIVAL
+from werrimbi_odom.inference.set_up.mistakes import SetUpFinding
+from werrimbi_odom.model.robot import Robot
+
+
+def possible_twins(finding: SetUpFinding) -> tuple[str, ...]:
+    """What else it could be, as far as physics allows: no axle is askew by a quarter turn."""
+    impossible = {
+        twin.name
+        for twin in find(finding.effect).indistinguishable_from
+        if not find(twin.name).allows(twin.same_as(finding.values))
+    }
+    return tuple(name for name in finding.twins if name not in impossible)
+
+
+def rivals_of(
+    first: str, rounds: tuple[Round, ...], final: Fitted, instead: tuple[Instead, ...]
+) -> tuple[str, ...]:
+    """What the runs cannot tell from the first effect, that one leading; alone: none."""
+    if first in CALIBRATED:
+        others = {name for subset in final.alternatives for name in subset if first not in subset}
+        named = [first, *(name for name in CALIBRATED if name in others)]
+        limit = final.total + RIVAL * final.scatter
+        named += [item.effect for item in instead if item.total < limit]
+        return tuple(named) if len(named) > 1 else ()
+    for this in rounds:
+        if any(fit.names[-1] == first and not fit.at_bound for fit in this.tried):
+            near = _near(first, this)
+            return (first, *near) if near else ()
+    return ()
+
+
+def rivals_of_others(
+    found: Sequence[str], rounds: tuple[Round, ...], final: Fitted
+) -> dict[str, tuple[str, ...]]:
+    """The same of each further effect, in the round that took it; none that was found as well."""
+    others = {}
+    for name in found[1:]:
+        if name in final.names:
+            near = _near(name, rounds[final.names.index(name)])
+            others[name] = tuple(other for other in near if other not in found)
+    return {name: rivals for name, rivals in others.items() if rivals}
+
+
+def _near(name: str, this: Round) -> tuple[str, ...]:
+    """What would have done as well as an effect in the round that tried it."""
+    fits = [fit for fit in this.tried if not fit.at_bound]
+    best = next(fit for fit in fits if fit.names[-1] == name)
+    near = (fit.names[-1] for fit in fits if fit.total - best.total < RIVAL * best.scatter)
+    return tuple(other for other in dict.fromkeys(near) if other != name)
+
+
+def own_scale_instead(name: str, final: Fitted, given: Robot, laid: Together) -> tuple[str, ...]:
+    """What of the reference itself does the same as a size of the robot, to headings alone.
+
+    Positions are measured by tape or by satellites, whose metre is one; nobody knows a gyro's
+    radian, and no tape tells it.
+    """
+    if not laid.headings_alone or name not in CALIBRATED:
+        return ()
+    size = sizes_of(final.point.model.robot).over(sizes_of(given)).as_effects[name]
+    (own,) = find(name).parameters
+    twins = [
+        (find(twin.name), twin.same_as({own: size}))
+        for twin in find(name).indistinguishable_from
+        if twin.of_headings
+    ]
+    return tuple(
+        effect.name
+        for effect, values in twins
+        if effect.stage == "reference" and effect.allows(values)
+    )
+
+
+def torn_by_halves(
+    first: str, rounds: tuple[Round, ...], final: Fitted, laid: Together, kind: ReferenceKind
+) -> tuple[str, ...]:
+    """Effects that halves of the data prefer to the one that was found.
+
+    Of several that were found none is asked: a half that shows more of the one prefers it rightly.
+    """
+    if final.names != (first,):
+        return ()
+    fits = [fit for fit in rounds[0].tried if not fit.at_bound]
+    best = next((fit for fit in fits if fit.names[-1] == first), None)
+    return () if best is None else rivals_in_halves(laid, rounds[0], best, kind)
