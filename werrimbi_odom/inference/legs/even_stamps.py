@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter, uniform_filter1d
 
-from werrimbi_odom.inference.rules import EVEN_MESSAGES, EVEN_SHARE, EVEN_WINDOW
+from werrimbi_odom.inference.rules import EVEN_LEAST, EVEN_MESSAGES, EVEN_SHARE, EVEN_WINDOW
 from werrimbi_odom.model.encoder import Counts
 from werrimbi_odom.model.pose import Floats
 
@@ -47,8 +47,8 @@ def evened(time: Floats, left: Counts, right: Counts) -> Floats:
     off = np.clip(stamps - even - late, -period, period)
     late += uniform_filter1d(off, EVEN_WINDOW, mode="reflect")
     least = 0.1 * even  # none is read before the one before it
-    read = np.maximum.accumulate(even + late - least) + least
-    return np.asarray(read[number])
+    read = (np.maximum.accumulate(even + late - least) + least)[number]
+    return np.asarray(read) if np.std(read - time) > EVEN_LEAST * period else time
 
 
 def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:

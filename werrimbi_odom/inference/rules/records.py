@@ -167,6 +167,11 @@ asked whether they are whole, and how much a unit may be off: angles of 32 bits 
 hundredth of a count at a thousand turns. What is not whole rounds nothing off, and by numbers alone
 nothing is refused then."""
 
+EVEN_LEAST = 0.1
+"""Share of the time between two messages by which their stamps must be off (rms) to be put right.
+Less moves a wheel by less than a tenth of what it goes in a message; and a gyro in the same packets
+errs alike, and with wheels put right alone would err against them."""
+
 EVEN_MESSAGES, EVEN_WINDOW, EVEN_SHARE = 50, 51, 0.5
 """Messages that tell whether stamps say when counters were read: with fewer, chance does. How many
 the middle of their lateness is taken over: few seconds, in which two clocks part by 0.1 ms, and
