@@ -68,6 +68,21 @@ def labyrinth(read: Read) -> Iterator[Drive]:
     )
 
 
+def lego(read: Read) -> Iterator[Drive]:
+    """Counters of both motors, and positions by a camera above, as they were written [ms, mm]."""
+    motors = _rows(read("Unit_D/robot4_motors.txt"), "M", 6)
+    camera = _rows(read("Unit_D/robot4_reference.txt"), "P")
+    nowhere = np.full(len(camera), np.nan)
+    yield Drive(
+        name="drive",
+        t=1e-3 * motors[:, 0],
+        counts=motors[:, [1, 5]].astype(np.int64),
+        t_pose=1e-3 * camera[:, 0],
+        pose=np.column_stack([1e-3 * camera[:, 1:3], nowhere]),
+        decimals=(3, 3, 3),
+    )
+
+
 def kobuki(read: Read, bag: str, bias: float, cuts: tuple[int, ...]) -> Iterator[Drive]:
     """A bag as CSV, cut at rows of its counters; the heading is the integral of the raw gyro.
 
@@ -152,9 +167,10 @@ def _upenn_counts(read: Read, number: int) -> tuple[Floats, NDArray[np.int64], f
     return stamps - stamps[0], counts, float(stamps[0])
 
 
-def _rows(text: bytes, kind: str) -> Floats:
+def _rows(text: bytes, kind: str, columns: int = 3) -> Floats:
     lines = [line.split() for line in text.decode().splitlines()]
-    return np.array([[float(word) for word in line[1:4]] for line in lines if line[:1] == [kind]])
+    kept = [line[1 : 1 + columns] for line in lines if line[:1] == [kind]]
+    return np.array([[float(word) for word in line] for line in kept])
 
 
 def _counted(turns: Floats) -> NDArray[np.int64]:

@@ -92,6 +92,11 @@ LIDAR_SLAM = Repository(
     commit="72c56b51391182c4b0ea38828ca62ec9177c3c85",
     licence="Apache-2.0 (recordings: UPenn ESE 650)",
 )
+BRENNER = Repository(
+    name="trueliar/SLAM",
+    commit="0f3daf6e5e525354acc1fb18b9e7d67791b92239",
+    licence="none stated (data of Claus Brenner's lectures on SLAM): use it, do not pass it on",
+)
 
 _KOBUKI = (
     "nominal values of kobuki_driver: base 0.230 m, wheel radius 0.035 m, 2578.33 counts a turn",
@@ -141,6 +146,15 @@ ROBOTS = (
         radius=0.016,
         counts=1000000.0,
         drives=converters.labyrinth,
+    ),
+    Robot(
+        folder="lego",
+        source=BRENNER,
+        remarks=("Lego NXT robot; 0.349 mm a count and a base of 155 mm as in the lectures",),
+        separation=0.155,
+        radius=0.02,
+        counts=360.0,
+        drives=converters.lego,
     ),
     _TURTLEBOT(
         folder="kobuki_sound",

@@ -56,6 +56,15 @@ def test_speeds_are_held_over_the_interval_that_they_end() -> None:
     assert np.isnan(drive.pose[0, 2])
 
 
+def test_a_camera_s_millimetres_are_metres() -> None:
+    motors = "M 204 20795 20795 3000 0 16067 16066 3000 0 0 0 6000 0\n"
+    (drive,) = converters.lego(of(motors__txt=2 * motors, reference__txt="P 378 1850 1897\n"))
+    assert drive.t[0] == pytest.approx(0.204)
+    assert drive.counts.tolist() == [[20795, 16067]] * 2
+    assert drive.pose[0, :2].tolist() == [1.85, 1.897]
+    assert np.isnan(drive.pose[0, 2])
+
+
 def test_robot_files_are_read_as_any_other_and_say_where_the_robot_is_from(tmp_path: Path) -> None:
     for robot in robots.ROBOTS:
         path = tmp_path / f"{robot.folder}.yaml"
