@@ -109,7 +109,7 @@ def misfit_of_found(
 def _laws(fit: Fitted, runs: Together) -> Iterator[tuple[AppliedEffect, Support, float]]:
     """Laws of a model with their reach, and by how much each lowers the cost."""
     robot = fit.point.model.robot
-    drive = runs.drive(fit.point.model.laid_out(runs.run_of_step))
+    drive = runs.drive(fit.point.model.laid_out(runs.steps))
     for applied in robot.effects:
         if applied.effect.is_mistake or applied.name in CALIBRATED or not applied.ready:
             continue

@@ -81,7 +81,7 @@ def legs_shown(model: Model, runs: Together, looked_at: Robot | None = None) -> 
     """
     view = view_of(model.robot.effects)
     runs = runs.delayed(view.delay)
-    robot = model.laid_out(runs.run_of_step)
+    robot = model.laid_out(runs.steps)
     path = _path(robot, runs, view, model.start_yaws, looked_at)
     return _shown(path, runs, view, model.drifts)
 
@@ -94,7 +94,7 @@ def predict_all(model: Model, runs: Together) -> Prediction:
 def _predicted(model: Model, runs: Together) -> Prediction:
     view = view_of(model.robot.effects)
     runs = runs.delayed(view.delay)
-    path = path_of(model, runs)
+    path = _path_of(model, runs)
     return Prediction(
         _shown(path, runs, view, model.drifts),
         *_noise_of_legs(path, runs, model.robot.track, view),
@@ -110,13 +110,13 @@ def right_handed(poses: Floats, view: View) -> Floats:
 
 
 def path_of(model: Model, runs: Together) -> DrivenPath:
-    """What the model makes of the steps of all runs (the reference's delay being none)."""
+    """What the model makes of the steps of all runs (the reference's delay being none); kept."""
+    return runs.of_steps(model, "path", lambda: _path_of(model, runs))
 
-    def path() -> DrivenPath:
-        robot = model.laid_out(runs.run_of_step)
-        return _path(robot, runs, view_of(robot.effects), model.start_yaws)
 
-    return runs.of_steps(model, "path", path)
+def _path_of(model: Model, runs: Together) -> DrivenPath:
+    robot = model.laid_out(runs.steps)
+    return _path(robot, runs, view_of(robot.effects), model.start_yaws)
 
 
 def headings_of(
@@ -143,10 +143,10 @@ def anchors(runs: Together, known: NDArray[np.bool_]) -> NDArray[np.intp]:
     That is the latest leg of the run at whose start something is `known` (m,); with none, its
     first leg.
     """
-    first = runs.legs[:-1]
-    leg = np.searchsorted(runs.begin, np.arange(runs.run_of_step.size), side="right") - 1
+    first, run = runs.legs[:-1], runs.run_of_step
+    leg = np.searchsorted(runs.begin, np.arange(run.size), side="right") - 1
     latest = np.where(known, np.arange(runs.count), first[runs.run_of_leg])
-    return np.maximum.accumulate(latest)[np.clip(leg, first[runs.run_of_step], None)]
+    return np.maximum.accumulate(latest)[np.clip(leg, first[run], None)]
 
 
 def _path(
@@ -244,10 +244,10 @@ def _noise_of_legs(
     marker = path.position[runs.end] + complex(view.ahead, view.left) * np.exp(
         1j * path.yaw[runs.end]
     )
-    found = np.zeros((6, 2, runs.count))
+    found, inside = np.zeros((6, 2, runs.count)), runs.inside
     for begin in range(0, leg.size, _BLOCK):
         block = slice(begin, begin + _BLOCK)
-        steps, own_leg = runs.inside[block], leg[block]
+        steps, own_leg = inside[block], leg[block]
         motion = BodyMotion(*(part[steps] for part in path.motion))
         left, right = (np.abs(side[steps]) for side in path.travel)
         none = np.zeros_like(left)
