@@ -219,9 +219,9 @@ def driven_from_measured(
     """
     seen = watched(drive)
     found = AfterEffects(*after_effects(robot, raw, seen))
-    plain, placed = wheels_to_body(raw, robot.track), False
     if not seen.asked & POSE:
         return found
+    plain, placed = wheels_to_body(raw, robot.track), False
     for _ in range(_PASSES):
         if seen.asked & PLACE and not placed:
             found, placed = AfterEffects(raw, plain), True

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.inference.fitting.knobs import START_YAW, Model
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.model.course import integrated
 from werrimbi_odom.model.covariance import (
     PoseCovariance,
     carried,
@@ -22,8 +23,8 @@ from werrimbi_odom.model.covariance import (
 from werrimbi_odom.model.driving import acts
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.effects_over_run import AfterEffects, driven_from_measured
-from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, wheels_to_body
+from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.robot import Robot
 
@@ -190,13 +191,10 @@ def places_of(
 
 
 def _from_motion(travel: WheelTravel[Floats], motion: BodyMotion[Floats]) -> DrivenPath:
-    yaw = _summed(motion.turn)
-    dx, dy = displacement(motion, yaw[:-1])
-    return DrivenPath(motion, travel, _summed(dx) + 1j * _summed(dy), yaw)
-
-
-def _summed(steps: Floats) -> Floats:
-    return np.concatenate([[0.0], np.cumsum(steps)])
+    x, y, yaw = integrated(Pose(), motion)
+    position = np.empty(yaw.size, dtype=np.complex128)
+    position.real, position.imag = x, y
+    return DrivenPath(motion, travel, position, yaw)
 
 
 def _shown(path: DrivenPath, runs: Together, view: View, drifts: Floats) -> Floats:

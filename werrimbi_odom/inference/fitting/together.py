@@ -26,7 +26,6 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.wiring import Wiring
 
-SIDES = ("left", "right")
 MODELS = 8
 """Of which it is remembered what was worked out: a fit comes back to a few only."""
 DELAYS = 4
@@ -171,8 +170,7 @@ class Together:
 
     def raw(self, robot: Robot) -> WheelTravel[Floats]:
         """Travel of all steps before any effect."""
-        left, right = (_joined([getattr(run, side) for run in self.runs]) for side in SIDES)
-        left, right = wiring_of(robot.effects).wheels(left, right)
+        left, right = wiring_of(robot.effects).wheels(*self.known("counts", _counts))
         return WheelTravel(left * robot.left_tick, right * robot.right_tick)
 
     def drive(self, robot: Robot) -> Drive[Floats]:
@@ -255,6 +253,12 @@ def _recalled(
         found[key] = work()
     value: Found = found[key]
     return value
+
+
+def _counts(runs: Together) -> WheelTravel[Floats]:
+    """Of both wheels in all steps."""
+    counts: WheelTravel[Floats] = _joined([WheelTravel(run.left, run.right) for run in runs.runs])
+    return counts
 
 
 def _starts(sizes: Sequence[int]) -> NDArray[np.intp]:
