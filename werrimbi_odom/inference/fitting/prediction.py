@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -134,7 +135,7 @@ def headings_of(
             measured[runs.legs[index]] = given - view.yaw
     anchor = anchors(runs, np.isfinite(measured))
     return np.asarray(
-        np.nan_to_num(measured[anchor]) + path.yaw[:-1] - path.yaw[runs.begin[anchor]]
+        np.nan_to_num(measured)[anchor] + path.yaw[:-1] - path.yaw[runs.begin][anchor]
     )
 
 
@@ -144,6 +145,10 @@ def anchors(runs: Together, known: NDArray[np.bool_]) -> NDArray[np.intp]:
     That is the latest leg of the run at whose start something is `known` (m,); with none, its
     first leg.
     """
+    return runs.known(("anchors", known.tobytes()), lambda runs: _anchors(runs, known))
+
+
+def _anchors(runs: Together, known: NDArray[np.bool_]) -> NDArray[np.intp]:
     first, run = runs.legs[:-1], runs.run_of_step
     leg = np.searchsorted(runs.begin, np.arange(run.size), side="right") - 1
     latest = np.where(known, np.arange(runs.count), first[runs.run_of_leg])
@@ -162,11 +167,20 @@ def _path(
         return _from_motion(raw, wheels_to_body(raw, robot.track))
     drive = runs.drive(looked_at or robot)
 
+    latest: list[Any] = [None, None]
+
+    def led_to(found: AfterEffects) -> DrivenPath:
+        """The path; headings and places of a pass are of one."""
+        if latest[0] is not found:
+            latest[:] = found, _from_motion(*found)
+        path: DrivenPath = latest[1]
+        return path
+
     def headings(found: AfterEffects) -> Floats:
-        return headings_of(_from_motion(*found), runs, view, start_yaws)
+        return headings_of(led_to(found), runs, view, start_yaws)
 
     def places(found: AfterEffects, heading: Floats) -> tuple[Floats, Floats]:
-        return places_of(_from_motion(*found), heading, runs, view)
+        return places_of(led_to(found), heading, runs, view)
 
     return _from_motion(*driven_from_measured(robot, raw, drive, headings, places))
 
@@ -182,11 +196,12 @@ def places_of(
     start = right_handed(runs.start, view)
     known = np.isfinite(start[:, 0]) & np.isfinite(start[:, 1])
     anchor = anchors(runs, known)
-    begin = np.minimum(runs.begin[anchor], heading.size - 1)
+    begin = np.minimum(runs.begin, heading.size - 1)
     frame = heading - path.yaw[:-1]
-    moved = np.exp(1j * frame) * (path.position[:-1] - path.position[begin])
+    moved = np.exp(1j * frame) * (path.position[:-1] - path.position[begin][anchor])
     arm = complex(view.ahead, view.left) * np.exp(1j * heading[begin])
-    placed = np.nan_to_num(start[anchor, 0] + 1j * start[anchor, 1]) / view.scale - arm + moved
+    first = np.nan_to_num(start[:, 0] + 1j * start[:, 1]) / view.scale - arm
+    placed = first[anchor] + moved
     return np.asarray(placed.real), np.asarray(placed.imag)
 
 
