@@ -70,8 +70,8 @@ def slope(laid: Together, ahead: Robot, behind: Robot, step: float) -> Floats:
 
 def pushed(laid: Together, amount: Amount) -> Floats:
     point = start_point(laid, ROBOT)
-    left, right = pushes_of(laid, path_of(point.model, laid), amount, point)
-    ones = np.ones((left.shape[0], 1))
+    left, right = pushes_of(laid, path_of(point.model, laid), [amount], point)
+    ones = np.ones((laid.run_of_step.size, 1))
     return np.asarray((legs_pushed(laid, ones, left) + legs_pushed(laid, ones, right))[..., 0])
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
-from typing import Generic, NamedTuple
+from typing import Any, Generic, NamedTuple
 
 from werrimbi_odom.model.motion import Number
 
@@ -91,11 +91,15 @@ class Drive(Generic[Number]):
 
     def with_heading(self, start: Number, turn: Number) -> Drive[Number]:
         """The same with the heading that the odometry has at the start of the step."""
-        return replace(self, heading=Span(start, start + turn))
+        return self.but(heading=Span(start, start + turn))
 
     def with_place(self, x: Number, y: Number, moved: tuple[Number, Number]) -> Drive[Number]:
         """The same with the place that the odometry has at the start of the step."""
-        return replace(self, x=Span(x, x + moved[0]), y=Span(y, y + moved[1]))
+        return self.but(x=Span(x, x + moved[0]), y=Span(y, y + moved[1]))
+
+    def but(self, **quantities: Any) -> Drive[Number]:
+        """The same with other quantities."""
+        return replace(self, **quantities)
 
 
 class RawStep(NamedTuple):

@@ -4,14 +4,63 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from typing import NamedTuple
+from collections.abc import Callable, Mapping
+from dataclasses import fields
+from functools import cache, partial
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from werrimbi_odom.model.drive import ROLLBACK, Drive, Span
 from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Floats
+
+QUANTITIES = tuple(item.name for item in fields(Drive))
+"""All that effects may look at."""
+
+
+Some = TypeVar("Some", bound="DriveOfRun")
+
+
+class DriveOfRun(Drive[Floats]):
+    """A `Drive` over the steps of runs that works each quantity out when it is first asked for.
+
+    Effects look at two or three of them, and all are thirty numbers for each step.
+    """
+
+    __slots__ = ("_works",)
+    _works: Mapping[str, Callable[[], Any]]
+
+    @classmethod
+    def by(cls: type[Some], works: Mapping[str, Callable[[], Any]]) -> Some:
+        """The drive whose quantities these functions find, by name."""
+        drive = object.__new__(cls)
+        object.__setattr__(drive, "_works", works)
+        return drive
+
+    def found(self, name: str) -> Any:
+        """A quantity, worked out and not kept."""
+        return self._works[name]()
+
+    def __getattr__(self, name: str) -> Any:
+        """A quantity that was not asked for before."""
+        if name not in QUANTITIES:
+            raise AttributeError(name)
+        value = self.found(name)
+        object.__setattr__(self, name, value)
+        return value
+
+    def but(self, **quantities: Any) -> DriveOfRun:
+        """The same with other quantities."""
+        works: dict[str, Callable[[], Any]]
+        works = {name: partial(getattr, self, name) for name in QUANTITIES}
+        for name, value in quantities.items():
+            works[name] = partial(_itself, value)
+        return self.by(works)
+
+
+def _itself(value: Any) -> Any:
+    return value
 
 
 def drive_of_run(
@@ -26,40 +75,47 @@ def drive_of_run(
     flicker: float,
     first_angles: tuple[float, float] = (0.0, 0.0),
     channels: Mapping[str, Span[Floats]] | None = None,
-) -> Drive[Floats]:
+) -> DriveOfRun:
     """All steps of a run at once; the same as feeding them to a `drive_memory.DriveMemory`.
 
     Arrays have shape (n,), as in `RawStep`. The pose is that of the counters alone, from zero on
     (`Drive.with_heading`, `Drive.with_place`).
     """
     least = max(flicker, ROLLBACK)
-    middle = _shuttled(along, least)
-    left_side, right_side = _shuttled(left, least), _shuttled(right, least)
-    heading = _grown(0.0, turn)
-    dx, dy = displacement(BodyMotion(along, np.zeros_like(along), turn), heading.start)
-    return Drive(
-        duration=duration,
-        time=_grown(0.0, duration),
-        speed=_lagged(along / duration),
-        yaw_rate=_lagged(turn / duration),
-        left_speed=_lagged(left / duration),
-        right_speed=_lagged(right / duration),
-        left_angle=_grown(first_angles[0], left_angle),
-        right_angle=_grown(first_angles[1], right_angle),
-        distance=_grown(0.0, np.abs(along)),
-        left_since_reversal=left_side.since,
-        right_since_reversal=right_side.since,
-        since_reversal=middle.since,
-        left_direction=left_side.direction,
-        right_direction=right_side.direction,
-        direction=middle.direction,
-        reversals=middle.reversals,
-        left_reversals=left_side.reversals,
-        right_reversals=right_side.reversals,
-        heading=heading,
-        x=_grown(0.0, dx),
-        y=_grown(0.0, dy),
-        channels=channels or {},
+    since = cache(partial(_shuttled, along, least))
+    since_left, since_right = (cache(partial(_shuttled, side, least)) for side in (left, right))
+    heading = cache(partial(_grown, 0.0, turn))
+
+    @cache
+    def places() -> list[Span[Floats]]:
+        moved = displacement(BodyMotion(along, np.zeros_like(along), turn), heading().start)
+        return [_grown(0.0, steps) for steps in moved]
+
+    return DriveOfRun.by(
+        {
+            "duration": lambda: duration,
+            "time": lambda: _grown(0.0, duration),
+            "speed": lambda: _lagged(along / duration),
+            "yaw_rate": lambda: _lagged(turn / duration),
+            "left_speed": lambda: _lagged(left / duration),
+            "right_speed": lambda: _lagged(right / duration),
+            "left_angle": lambda: _grown(first_angles[0], left_angle),
+            "right_angle": lambda: _grown(first_angles[1], right_angle),
+            "distance": lambda: _grown(0.0, np.abs(along)),
+            "left_since_reversal": lambda: since_left().since,
+            "right_since_reversal": lambda: since_right().since,
+            "since_reversal": lambda: since().since,
+            "left_direction": lambda: since_left().direction,
+            "right_direction": lambda: since_right().direction,
+            "direction": lambda: since().direction,
+            "reversals": lambda: since().reversals,
+            "left_reversals": lambda: since_left().reversals,
+            "right_reversals": lambda: since_right().reversals,
+            "heading": heading,
+            "x": lambda: places()[0],
+            "y": lambda: places()[1],
+            "channels": lambda: channels or {},
+        }
     )
 
 
@@ -71,13 +127,15 @@ class _Shuttled(NamedTuple):
 
 def _grown(first: float, steps: Floats) -> Span[Floats]:
     """Running sum before and after each step."""
-    sums = np.cumsum(np.concatenate([[first], steps]))
+    sums = np.concatenate([[first], steps])
+    np.cumsum(sums, out=sums)
     return Span(sums[:-1], sums[1:])
 
 
 def _lagged(means: Floats) -> Span[Floats]:
     """Mean of the step before, and of the step; the first step has none before it."""
-    return Span(np.concatenate([means[:1], means[:-1]]), means)
+    both = np.concatenate([means[:1], means])
+    return Span(both[:-1], both[1:])
 
 
 def _shuttled(travel: Floats, flicker: float) -> _Shuttled:

@@ -12,7 +12,7 @@ from typing import NamedTuple
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.drive import Drive, RawStep, Span
 from werrimbi_odom.model.drive_memory import DriveMemory
-from werrimbi_odom.model.drive_of_run import drive_of_run
+from werrimbi_odom.model.drive_of_run import DriveOfRun, drive_of_run
 from werrimbi_odom.model.effects_over_run import after_effects
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, wheels_to_body
 from werrimbi_odom.model.pose import Floats, Pose
@@ -126,7 +126,7 @@ def features(
     raw: WheelTravel[Floats],
     first_counts: tuple[float, float],
     channels: Mapping[str, Span[Floats]] | None = None,
-) -> Drive[Floats]:
+) -> DriveOfRun:
     """What effects may look at in a run.
 
     Parameters

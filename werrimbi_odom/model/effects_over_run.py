@@ -10,12 +10,13 @@ poses of its own making until nothing changes.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import fields
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from werrimbi_odom.model.drive import Drive, Span
+from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun, Some
 from werrimbi_odom.model.effect import after_body_effects, after_wheel_effects
 from werrimbi_odom.model.motion import (
     BodyMotion,
@@ -43,27 +44,34 @@ class AfterEffects(NamedTuple):
     motion: BodyMotion[Floats]
 
 
-class WatchedDrive(Drive[Floats]):
+class WatchedDrive(DriveOfRun):
     """A `Drive` that notes what is asked of it: quantities, and extra channels, by name.
 
-    Copies of it, however made, read all of it, and that is noted too.
+    Copies of it, however made, ask it for what they hold, and that is noted too.
     """
 
     __slots__ = ("asked",)
     asked: set[str]
+
+    @classmethod
+    def by(cls: type[Some], works: Mapping[str, Callable[[], Any]]) -> Some:
+        """The drive whose quantities these functions find, by name."""
+        drive = super().by(works)
+        object.__setattr__(drive, "asked", set())
+        return drive
 
     def __init__(self, **quantities: Any) -> None:
         object.__setattr__(self, "asked", set())
         super().__init__(**quantities)
 
     def __getattribute__(self, name: str) -> Any:
-        value = object.__getattribute__(self, name)
         if name in _QUANTITIES:
             self.asked.add(name)
+        value = object.__getattribute__(self, name)
         return _WatchedChannels(value, self.asked) if name == "channels" else value
 
 
-_QUANTITIES = frozenset(item.name for item in fields(Drive)) - {"channels"}
+_QUANTITIES = frozenset(QUANTITIES) - {"channels"}
 
 
 class _WatchedChannels(Mapping[str, Span[Floats]]):
@@ -83,7 +91,9 @@ class _WatchedChannels(Mapping[str, Span[Floats]]):
 
 def watched(drive: Drive[Floats]) -> WatchedDrive:
     """The same drive, watched."""
-    return WatchedDrive(**{item.name: getattr(drive, item.name) for item in fields(drive)})
+    seen = WatchedDrive.by({name: partial(getattr, drive, name) for name in QUANTITIES})
+    object.__setattr__(seen, "channels", drive.channels)
+    return seen
 
 
 def after_effects(
@@ -179,7 +189,10 @@ def _rows_of(drive: Drive[Floats], steps: slice) -> Drive[Floats]:
             return value[steps]
         return {name: some(span) for name, span in value.items()}
 
-    return Drive(**{item.name: some(getattr(drive, item.name)) for item in fields(drive)})
+    def of(name: str) -> Any:
+        return some(getattr(drive, name))
+
+    return DriveOfRun.by({name: partial(of, name) for name in QUANTITIES})
 
 
 Headings = Callable[[AfterEffects], Floats]
@@ -206,9 +219,9 @@ def driven_from_measured(
     """
     seen = watched(drive)
     found = AfterEffects(*after_effects(robot, raw, seen))
-    plain, placed = wheels_to_body(raw, robot.track), False
     if not seen.asked & POSE:
         return found
+    plain, placed = wheels_to_body(raw, robot.track), False
     for _ in range(_PASSES):
         if seen.asked & PLACE and not placed:
             found, placed = AfterEffects(raw, plain), True

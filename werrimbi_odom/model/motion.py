@@ -51,7 +51,10 @@ def sinc(x: Floats) -> Floats: ...
 def sinc(x: float | Floats) -> float | Floats:
     """sin(x) / x, and 1 at zero (not numpy's sinc, which takes turns of pi)."""
     if isinstance(x, np.ndarray):
-        return np.divide(np.sin(x), x, out=np.ones_like(x), where=x != 0.0)
+        with np.errstate(invalid="ignore"):  # 0 / 0
+            found = np.asarray(np.sin(x) / x)
+        found[x == 0.0] = 1.0
+        return found
     return sinc_of_float(x)
 
 

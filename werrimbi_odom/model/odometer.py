@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import NamedTuple
 
 from werrimbi_odom.model.covariance import (
@@ -40,12 +41,8 @@ class TwistCovariance(NamedTuple):
     """(rad/s)²"""
 
 
-class Estimate(NamedTuple):
-    """Everything the odometer knows after one message.
-
-    Of the pose's error it holds what it needs; `errors` and `covariance` are worked out when they
-    are asked for.
-    """
+class _Estimate(NamedTuple):
+    """What an `Estimate` is worked out of."""
 
     time: float
     """Stamp of the message [s]."""
@@ -67,7 +64,15 @@ class Estimate(NamedTuple):
     stretch: PieceSums
     """The open piece as far as it has been driven."""
 
-    @property
+
+class Estimate(_Estimate):
+    """Everything the odometer knows after one message.
+
+    Of errors and twist it holds what they are worked out of; that is done when they are asked for,
+    and once.
+    """
+
+    @cached_property
     def errors(self) -> Uncertainty[float]:
         """Of the pose, in the odometry frame."""
         return errors_along(self.robot, self.start, self.errors_start, self.stretch, self.pose)
@@ -82,7 +87,7 @@ class Estimate(NamedTuple):
         """Where exact moments are carried: mean of the true position less the pose (x, y) [m]."""
         return self.errors.mean_shift
 
-    @property
+    @cached_property
     def twist(self) -> BodyMotion[float]:
         """Speed forward and to the left [m/s] and yaw rate [rad/s], mean over the last interval.
 
@@ -93,7 +98,7 @@ class Estimate(NamedTuple):
         per_second = 1.0 / self.late.duration
         return BodyMotion(along * per_second, sideways * per_second, turn * per_second)
 
-    @property
+    @cached_property
     def twist_covariance(self) -> TwistCovariance:
         """Of the twist: wheel noise over its interval, quantisation of the two readings."""
         return twist_covariance(self.robot, self.late)

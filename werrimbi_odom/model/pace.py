@@ -71,7 +71,8 @@ class Pace:
 
     def usual_at(self, time: Floats) -> Floats:
         """The usual interval [s] now and after each of n messages without a pause; (n + 1,)."""
-        stamps = np.concatenate([self._stamps, time])
+        before = np.fromiter(self._stamps, dtype=np.float64, count=len(self._stamps))
+        stamps = np.concatenate([before, time])
         last = np.arange(stamps.size - time.size, stamps.size)
         first = np.maximum(last - REMEMBERED, 0)
         return np.concatenate([[self.usual], (time - stamps[first]) / (last - first)])

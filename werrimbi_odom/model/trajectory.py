@@ -93,12 +93,12 @@ def trajectory(
     raw = WheelTravel(steps.left, steps.right)
     first_counts = float(left[steps.first_row]), float(right[steps.first_row])
     rows = np.concatenate([[steps.first_row], steps.row])
-    spans = channel_spans(time[rows], channels or {}, rows)
+    stamps = np.concatenate([time[[steps.first_row]], steps.time])
+    spans = channel_spans(stamps, channels or {}, rows)
     driven_steps = _driven(robot, steps.duration, raw, first_counts, spans, start)
     known_start = known(robot.covariance_order, covariance)
     rule = PieceRule.of(robot, tolerance or PieceTolerance())
     course = course_of(robot, rule, start, known_start, driven_steps, lost_travel(steps))
-    stamps = np.concatenate([time[[steps.first_row]], steps.time])
     x, y, yaw = course.poses
     return Trajectory(
         stamps,

@@ -55,6 +55,9 @@ class OdometryMessage:
         self._twist = self._message.twist.covariance
         for place in _OUT_OF_PLANE:
             self._pose[place] = self._twist[place] = PLANAR_VARIANCE
+        self._transform = TransformStamped(header=self._header, child_frame_id=base_frame)
+        self._transform.transform.rotation = self._orientation
+        self._translation = self._transform.transform.translation
 
     def filled(self, stamp: Stamp, estimate: Estimate, missed: Missed = NOTHING) -> Odometry:
         """The message for an estimate, valid until the next call.
@@ -70,6 +73,11 @@ class OdometryMessage:
         if missed.heading:
             self._fill_slip(missed, estimate.late.duration)
         return self._message
+
+    def transform(self) -> TransformStamped:
+        """The pose that was filled in last as the transform between the frames, for /tf."""
+        self._translation.x, self._translation.y = self._position.x, self._position.y
+        return self._transform
 
     def _fill_covariances(self, estimate: Estimate) -> None:
         xx, xy, xyaw, yy, yyaw, yawyaw = planar.rounded_up(estimate.covariance)
@@ -93,16 +101,6 @@ class OdometryMessage:
         per_second = 1.0 / (duration * duration)
         self._twist[_XX] += missed.along * per_second
         self._twist[_YAWYAW] += missed.heading * per_second
-
-
-def transform_of(odometry: Odometry) -> TransformStamped:
-    """The transform from the odometry frame to the robot's, for /tf."""
-    transform = TransformStamped(header=odometry.header, child_frame_id=odometry.child_frame_id)
-    position = odometry.pose.pose.position
-    transform.transform.translation.x = position.x
-    transform.transform.translation.y = position.y
-    transform.transform.rotation = odometry.pose.pose.orientation
-    return transform
 
 
 def pose_from(

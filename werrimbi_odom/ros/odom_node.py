@@ -33,7 +33,7 @@ from werrimbi_odom.ros.graph import Company, full_name
 from werrimbi_odom.ros.health import Health
 from werrimbi_odom.ros.learning import learning_of, told
 from werrimbi_odom.ros.markers import PieceTrail
-from werrimbi_odom.ros.messages import OdometryMessage, pose_from, transform_of
+from werrimbi_odom.ros.messages import OdometryMessage, pose_from
 from werrimbi_odom.ros.running import run
 from werrimbi_odom.ros.slip import slip_of
 from werrimbi_odom.ros.status import status_of
@@ -116,7 +116,7 @@ class OdomNode(Node):  # type: ignore[misc]
         self._odometry.publish(odometry)
         self._health.published += 1
         if self._send_transform is not None:
-            self._send_transform(transform_of(odometry))
+            self._send_transform(self._message.transform())
         self._keep(self._tracker.finished_by(estimate))
         self._learning.after(self._tracker)
         if missed.heading:

@@ -11,9 +11,10 @@ would leave in the innovations, less what the model can turn already, against wh
 from __future__ import annotations
 
 import itertools
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from functools import partial
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -148,8 +149,7 @@ def dependences(
             tested = _tested([own[here, part] for part in rows], products[:, here])
             if tested is not None:
                 found.append((amount, cell.variable, cell.form, tested))
-    path, drive = path_of(point.model, runs), runs.drive(point.model.robot)
-    shares = {amount: _shares(path, drive.duration, amount) for amount in AMOUNTS}
+    shares = _shares(path_of(point.model, runs), runs.drive(point.model.robot).duration)
     cells = [
         Dependence(
             amount,
@@ -199,42 +199,47 @@ class _Cells(NamedTuple):
 def _changes(runs: Together, point: Point) -> Iterator[tuple[_Cells, Floats]]:
     """Cells with their changes of the legs (m, 3, amounts * k), as many as memory bears at once."""
     path = path_of(point.model, runs)
-    sides = [pushes_of(runs, path, amount, point) for amount in AMOUNTS]
-    both = np.concatenate([left + right for left, right in sides], axis=-1)
-    apart = [index for index, amount in enumerate(AMOUNTS) if amount.channel in _OF_WHEELS]
-    left, right = (
-        np.concatenate([sides[index][side] for index in apart], axis=-1) for side in (0, 1)
-    )
-    of_wheels = [AMOUNTS[index] for index in apart]
-    del sides
+    of_wheels = [amount for amount in AMOUNTS if amount.channel in _OF_WHEELS]
+    both = np.empty((path.motion.turn.size, 3 * len(AMOUNTS)))
+    left, right = pushes_of(runs, path, AMOUNTS, point)
+    for begin in range(0, both.shape[0], _BLOCK):
+        steps = np.arange(begin, min(begin + _BLOCK, both.shape[0]))
+        both[steps] = left(steps) + right(steps)
     for variable in variables_of(runs, point.model):
         for form, (of_left, of_right) in functions_of(variable).items():
             alike = of_left is of_right
             amounts = AMOUNTS if alike else of_wheels
             each = max(1, BATCH // (runs.count * of_left.shape[1]))
             for begin in range(0, len(amounts), each):
-                some = slice(3 * begin, 3 * (begin + each))
                 chosen = amounts[begin : begin + each]
                 if alike:
-                    sums = legs_pushed(runs, of_left, both[:, some])
+                    columns = both[:, 3 * begin : 3 * (begin + each)]
+                    sums = legs_pushed(runs, of_left, columns.__getitem__)
                 else:
-                    sums = legs_pushed(runs, of_left, left[:, some])
-                    sums += legs_pushed(runs, of_right, right[:, some])
+                    left, right = pushes_of(runs, path, chosen, point)
+                    sums = legs_pushed(runs, of_left, left)
+                    sums += legs_pushed(runs, of_right, right)
                 shaped = sums.reshape(runs.count, len(chosen), 3, -1).swapaxes(1, 2)
                 yield _Cells(variable, form, chosen), shaped.reshape(runs.count, 3, -1)
 
 
-def legs_pushed(runs: Together, functions: Floats, pushes: Floats) -> Floats:
-    """Sums over each leg's steps of functions (n, k) times pushes (n, p), as (m, p, k)."""
+Pushes = Callable[[NDArray[np.intp]], Floats]
+"""What unit errors of some steps (...) do to their legs' relative poses, (..., p); worked out when
+asked for, since of all steps it is much."""
+
+
+def legs_pushed(runs: Together, functions: Floats, pushes: Pushes) -> Floats:
+    """Sums over each leg's steps of functions (n, k) times pushes, as (m, p, k)."""
     size = runs.end - runs.begin
-    found = np.zeros((runs.count, pushes.shape[1], functions.shape[1]))
+    width = pushes(np.zeros(0, dtype=np.intp)).shape[-1]
+    found = np.zeros((runs.count, width, functions.shape[1]))
     order = np.argsort(size, kind="stable")
     for alike in np.split(order, np.flatnonzero(np.diff(size[order])) + 1):
         within = np.arange(size[alike[0]])
         for begin in range(0, alike.size, max(1, _BLOCK // max(within.size, 1))):
             legs = alike[begin : begin + max(1, _BLOCK // max(within.size, 1))]
             steps = runs.begin[legs, None] + within
-            found[legs] = pushes[steps].swapaxes(1, 2) @ functions[steps]
+            found[legs] = pushes(steps).swapaxes(1, 2) @ functions[steps]
     return found
 
 
@@ -243,57 +248,68 @@ _BLOCK = 4096
 
 
 def pushes_of(
-    runs: Together, path: DrivenPath, amount: Amount, point: Point
-) -> tuple[Floats, Floats]:
-    """What a unit error of a step does to its leg's relative pose: of left and right wheel, (n, 3).
+    runs: Together, path: DrivenPath, amounts: Sequence[Amount], point: Point
+) -> tuple[Pushes, Pushes]:
+    """What unit errors of steps do to their legs' relative poses: of left wheel, of right wheel.
 
-    Where the amount belongs to the robot, the second is zero.
+    Three coordinates for each of the amounts, one amount after the other, (..., 3 a). Where an
+    amount belongs to the robot, the second is zero.
     """
     robot = point.model.robot
     levers = runs.of_steps(
         point.model, "levers", lambda: _levers(runs, path, view_of(robot.effects))
     )
-    nothing = np.zeros((path.motion.turn.size, 3))
-    left, right = _bases(path, runs.drive(robot).duration, amount)
+    bases = _bases(path, runs.drive(robot).duration)
+
+    def pushed(own: _Levers, amount: Amount, at: NDArray[np.intp], side: Side) -> Floats:
+        if amount.channel == _OTHER[side] or (side == "right" and not amount.of_wheels):
+            return np.zeros((*at.shape, 3))
+        base = bases[_base_of(amount, side)][at]
+        base = np.abs(base) if amount.per == "path" else base
+        if amount.of_wheels:
+            return own.seen(0.5 * base, (-base if side == "left" else base) / robot.track)
+        if amount.channel == "along":
+            return own.seen(base, None)
+        if amount.channel == "sideways":
+            return own.seen(np.asarray(1j * base), None)
+        return own.seen(None, base)
+
+    def of_side(side: Side, at: NDArray[np.intp]) -> Floats:
+        own = _Levers(levers.along[at], levers.turn[at])
+        return np.concatenate([pushed(own, amount, at, side) for amount in amounts], axis=-1)
+
+    return partial(of_side, "left"), partial(of_side, "right")
+
+
+Side = Literal["left", "right"]
+_OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
+
+
+def _bases(path: DrivenPath, duration: Floats) -> dict[str, Floats]:
+    """What errors are in proportion to in each step, (n,); a path is the size of a travel."""
+    (left, right), (along, _, turn) = path.travel, path.motion
+    return {"left": left, "right": right, "along": along, "turn": turn, "duration": duration}
+
+
+def _base_of(amount: Amount, side: Side) -> str:
+    """Which of them it is for one wheel."""
     if amount.of_wheels:
-        return (
-            nothing if amount.channel == "right" else levers.seen(0.5 * left, -left / robot.track),
-            nothing if amount.channel == "left" else levers.seen(0.5 * right, right / robot.track),
-        )
-    base = left
-    if amount.channel == "along":
-        return levers.seen(base, None), nothing
-    if amount.channel == "sideways":
-        return levers.seen(np.asarray(1j * base), None), nothing
-    return levers.seen(None, base), nothing
+        return side
+    return "along" if amount.per in ("travel", "path") else amount.per
 
 
-def _bases(path: DrivenPath, duration: Floats, amount: Amount) -> tuple[Floats, Floats]:
-    """What an error is in proportion to in each step, of left and right wheel, (n,)."""
-    travel, motion = path.travel, path.motion
-    if amount.of_wheels:
-        if amount.per == "travel":
-            return travel.left, travel.right
-        return np.abs(travel.left), np.abs(travel.right)
-    base = {
-        "travel": motion.along,
-        "path": np.abs(motion.along),
-        "turn": motion.turn,
-        "duration": duration,
-    }[amount.per]
-    return base, base
+def _shares(path: DrivenPath, duration: Floats) -> dict[Amount, tuple[Floats, Floats]]:
+    """`Dependence.shares` of all amounts."""
+    sizes = {name: np.abs(base) for name, base in _bases(path, duration).items()}
 
+    def of_side(amount: Amount, side: Side) -> Floats:
+        return np.zeros(0) if amount.channel == _OTHER[side] else sizes[_base_of(amount, side)]
 
-def _shares(path: DrivenPath, duration: Floats, amount: Amount) -> tuple[Floats, Floats]:
-    left, right = _bases(path, duration, amount)
-    return (
-        np.zeros(0) if amount.channel == "right" else np.abs(left),
-        np.zeros(0) if amount.channel == "left" else np.abs(right),
-    )
+    return {amount: (of_side(amount, "left"), of_side(amount, "right")) for amount in AMOUNTS}
 
 
 class _Levers(NamedTuple):
-    """How errors of steps move the end of their leg, in its start's frame; (n,) each."""
+    """How errors of steps move the end of their leg, in its start's frame; of one shape."""
 
     along: NDArray[np.complex128]
     """For a metre along."""
@@ -301,15 +317,15 @@ class _Levers(NamedTuple):
     """For a radian [m]."""
 
     def seen(self, moved: Floats | NDArray[np.complex128] | None, turn: Floats | None) -> Floats:
-        """Relative pose for errors along (sideways imaginary) and in heading, (n, 3)."""
-        found = np.zeros((self.along.size, 3))
+        """Relative pose for errors along (sideways imaginary) and in heading, (..., 3)."""
+        found = np.zeros((*self.along.shape, 3))
         for part, lever in ((moved, self.along), (turn, self.turn)):
             if part is not None:
                 place = lever * part
-                found[:, 0] += place.real
-                found[:, 1] += place.imag
+                found[..., 0] += place.real
+                found[..., 1] += place.imag
         if turn is not None:
-            found[:, 2] = turn
+            found[..., 2] = turn
         return found
 
 

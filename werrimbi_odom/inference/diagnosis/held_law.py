@@ -14,31 +14,26 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
-from werrimbi_odom.inference.diagnosis.lasting import lasting
+from werrimbi_odom.inference.diagnosis.evidence import Dependence
+from werrimbi_odom.inference.diagnosis.lasting import lasting, pattern_of
 from werrimbi_odom.inference.diagnosis.search import Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted, rise_without
 from werrimbi_odom.inference.diagnosis.support import Support, support_of
-from werrimbi_odom.inference.diagnosis.variables import functions_of
 from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     Candidate,
     Score,
-    of_each_run,
     signatures,
     unexplained,
 )
-from werrimbi_odom.inference.fitting.design import Point, unexpected
+from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob
-from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
+from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import LEFT_ASKED, LITTLE_OF_A_LAW, REST_EXPLAINED, SURE
 from werrimbi_odom.model.effect import AppliedEffect
-from werrimbi_odom.model.pose import Floats
 
 
 @dataclass(frozen=True)
@@ -114,7 +109,7 @@ def misfit_of_found(
 def _laws(fit: Fitted, runs: Together) -> Iterator[tuple[AppliedEffect, Support, float]]:
     """Laws of a model with their reach, and by how much each lowers the cost."""
     robot = fit.point.model.robot
-    drive = runs.drive(fit.point.model.laid_out(runs.run_of_step))
+    drive = runs.drive(fit.point.model.laid_out(runs.steps))
     for applied in robot.effects:
         if applied.effect.is_mistake or applied.name in CALIBRATED or not applied.ready:
             continue
@@ -142,25 +137,9 @@ def _gain_beside(
     """What a candidate would still explain if the model could turn a cell's pattern as well."""
     prediction = predict_all(point.model, runs)
     turned, rest = unexplained(runs, point, kind, knobs, prediction)
-    pattern = _pattern(runs, point, kind, cell)
+    pattern = pattern_of(runs, point, kind, cell)
     freer = nuisance(turned.residual(pattern))
     signature = next(signatures(runs, point, kind, knobs, [score.candidate])[1])
     free, left = freer.residual(signature.free), freer.residual(rest)
     found = score_test(signature.flat, free, left)
     return 0.0 if found is None else found.gain
-
-
-def _pattern(runs: Together, point: Point, kind: ReferenceKind, cell: Dependence) -> Floats:
-    """What a dependence of a cell's form does to the whitened innovations, (n, k)."""
-    prediction = predict_all(point.model, runs)
-    path = path_of(point.model, runs)
-    sides = zip(
-        functions_of(cell.variable)[cell.form],
-        pushes_of(runs, path, cell.amount, point),
-        strict=True,
-    )
-    change = np.asarray(sum(legs_pushed(runs, *side) for side in sides))
-    own = unexpected(runs, point, kind, prediction).marks(change)[..., :-1]
-    if cell.variable.per_run:
-        own = of_each_run(runs, own)
-    return np.asarray(own.reshape(3 * runs.count, -1))

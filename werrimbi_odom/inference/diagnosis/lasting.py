@@ -86,24 +86,27 @@ def lasting(
         return
     prediction = predict_all(point.model, runs)
     frame, rest = unexplained(runs, point, kind, knobs, prediction)
-    path = path_of(point.model, runs)
     parts = _parts(runs)
-    found = unexpected(runs, point, kind, prediction)
     for cell in cells:
-        sides = zip(
-            functions_of(cell.variable)[cell.form],
-            pushes_of(runs, path, cell.amount, point),
-            strict=True,
-        )
-        change = sum(legs_pushed(runs, *side) for side in sides)
-        own = found.marks(np.asarray(change))[..., :-1]
-        if cell.variable.per_run:
-            own = of_each_run(runs, own)
-        flat = own.reshape(rest.size, -1)
-        free = frame.residual(flat)
+        free = frame.residual(pattern_of(runs, point, kind, cell))
         p_value = _chance(cell.gain, cell.degrees, free, rest, parts)
         alone = _drive_alone(free, rest, np.repeat(runs.run_of_leg, 3))
         yield Lasting(cell, p_value, None if alone is None else runs.runs[alone].name)
+
+
+def pattern_of(runs: Together, point: Point, kind: ReferenceKind, cell: Dependence) -> Floats:
+    """What a dependence of a cell's form does to the whitened innovations, (3 m, k)."""
+    path = path_of(point.model, runs)
+    sides = zip(
+        functions_of(cell.variable)[cell.form],
+        pushes_of(runs, path, [cell.amount], point),
+        strict=True,
+    )
+    change = np.asarray(sum(legs_pushed(runs, *side) for side in sides))
+    own = unexpected(runs, point, kind).marks(change)[..., :-1]
+    if cell.variable.per_run:
+        own = of_each_run(runs, own)
+    return np.asarray(own.reshape(3 * runs.count, -1))
 
 
 def lasting_columns(runs: Together, gain: float, degrees: int, free: Floats, rest: Floats) -> float:

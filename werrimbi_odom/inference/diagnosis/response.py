@@ -76,7 +76,7 @@ def response(
     prediction = predict_all(point.model, runs)
     frame, rest = unexplained(runs, point, kind, knobs, prediction)
     path = path_of(point.model, runs)
-    of_left, of_right = pushes_of(runs, path, amount, point)
+    of_left, of_right = pushes_of(runs, path, [amount], point)
     left, right = (_marks(side, edges) for side in values)
     change = legs_pushed(runs, left, of_left)
     if values[0] is not values[1] or amount.channel in ("left", "right", "along"):

@@ -60,7 +60,7 @@ class Variable:
 
 def variables_of(runs: Together, model: Model) -> tuple[Variable, ...]:
     """All that was measured, the extra channels of the records among it."""
-    robot = model.laid_out(runs.run_of_step)
+    robot = model.laid_out(runs.steps)
     drive = runs.drive(robot)
     path = path_of(model, runs)
     view = view_of(robot.effects)

@@ -161,13 +161,20 @@ class Model:
         )
         return Model(self.robot, own)
 
-    def laid_out(self, run_of_step: NDArray[np.intp]) -> Robot:
-        """The robot with the runs' own values as arrays over the steps of all runs, (n,)."""
+    def laid_out(self, steps: NDArray[np.intp]) -> Robot:
+        """The robot with the runs' own values as arrays over the steps of all runs, (n,).
+
+        Parameters
+        ----------
+        steps
+            First step of each run, and the number of all; shape (runs + 1,).
+        """
         first = self.own[0] if self.own else {}
         names = [name for name in first if name not in NUISANCES]
         if not names:
             return self.robot
-        values = {name: np.array([own[name] for own in self.own])[run_of_step] for name in names}
+        sizes = np.diff(steps)
+        values = {name: np.repeat([own[name] for own in self.own], sizes) for name in names}
         return changed(self.robot, cast("Mapping[str, float]", values))
 
     def value(self, knob: Knob, index: int = 0) -> float:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,6 +14,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.inference.fitting.knobs import START_YAW, Model
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.model.course import integrated
 from werrimbi_odom.model.covariance import (
     PoseCovariance,
     carried,
@@ -22,8 +24,8 @@ from werrimbi_odom.model.covariance import (
 from werrimbi_odom.model.driving import acts
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.effects_over_run import AfterEffects, driven_from_measured
-from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, wheels_to_body
+from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.robot import Robot
 
@@ -81,7 +83,7 @@ def legs_shown(model: Model, runs: Together, looked_at: Robot | None = None) -> 
     """
     view = view_of(model.robot.effects)
     runs = runs.delayed(view.delay)
-    robot = model.laid_out(runs.run_of_step)
+    robot = model.laid_out(runs.steps)
     path = _path(robot, runs, view, model.start_yaws, looked_at)
     return _shown(path, runs, view, model.drifts)
 
@@ -94,7 +96,7 @@ def predict_all(model: Model, runs: Together) -> Prediction:
 def _predicted(model: Model, runs: Together) -> Prediction:
     view = view_of(model.robot.effects)
     runs = runs.delayed(view.delay)
-    path = path_of(model, runs)
+    path = _path_of(model, runs)
     return Prediction(
         _shown(path, runs, view, model.drifts),
         *_noise_of_legs(path, runs, model.robot.track, view),
@@ -110,13 +112,13 @@ def right_handed(poses: Floats, view: View) -> Floats:
 
 
 def path_of(model: Model, runs: Together) -> DrivenPath:
-    """What the model makes of the steps of all runs (the reference's delay being none)."""
+    """What the model makes of the steps of all runs (the reference's delay being none); kept."""
+    return runs.of_steps(model, "path", lambda: _path_of(model, runs))
 
-    def path() -> DrivenPath:
-        robot = model.laid_out(runs.run_of_step)
-        return _path(robot, runs, view_of(robot.effects), model.start_yaws)
 
-    return runs.of_steps(model, "path", path)
+def _path_of(model: Model, runs: Together) -> DrivenPath:
+    robot = model.laid_out(runs.steps)
+    return _path(robot, runs, view_of(robot.effects), model.start_yaws)
 
 
 def headings_of(
@@ -133,7 +135,7 @@ def headings_of(
             measured[runs.legs[index]] = given - view.yaw
     anchor = anchors(runs, np.isfinite(measured))
     return np.asarray(
-        np.nan_to_num(measured[anchor]) + path.yaw[:-1] - path.yaw[runs.begin[anchor]]
+        np.nan_to_num(measured)[anchor] + path.yaw[:-1] - path.yaw[runs.begin][anchor]
     )
 
 
@@ -143,10 +145,14 @@ def anchors(runs: Together, known: NDArray[np.bool_]) -> NDArray[np.intp]:
     That is the latest leg of the run at whose start something is `known` (m,); with none, its
     first leg.
     """
-    first = runs.legs[:-1]
-    leg = np.searchsorted(runs.begin, np.arange(runs.run_of_step.size), side="right") - 1
+    return runs.known(("anchors", known.tobytes()), lambda runs: _anchors(runs, known))
+
+
+def _anchors(runs: Together, known: NDArray[np.bool_]) -> NDArray[np.intp]:
+    first, run = runs.legs[:-1], runs.run_of_step
+    leg = np.searchsorted(runs.begin, np.arange(run.size), side="right") - 1
     latest = np.where(known, np.arange(runs.count), first[runs.run_of_leg])
-    return np.maximum.accumulate(latest)[np.clip(leg, first[runs.run_of_step], None)]
+    return np.maximum.accumulate(latest)[np.clip(leg, first[run], None)]
 
 
 def _path(
@@ -161,11 +167,20 @@ def _path(
         return _from_motion(raw, wheels_to_body(raw, robot.track))
     drive = runs.drive(looked_at or robot)
 
+    latest: list[Any] = [None, None]
+
+    def led_to(found: AfterEffects) -> DrivenPath:
+        """The path; headings and places of a pass are of one."""
+        if latest[0] is not found:
+            latest[:] = found, _from_motion(*found)
+        path: DrivenPath = latest[1]
+        return path
+
     def headings(found: AfterEffects) -> Floats:
-        return headings_of(_from_motion(*found), runs, view, start_yaws)
+        return headings_of(led_to(found), runs, view, start_yaws)
 
     def places(found: AfterEffects, heading: Floats) -> tuple[Floats, Floats]:
-        return places_of(_from_motion(*found), heading, runs, view)
+        return places_of(led_to(found), heading, runs, view)
 
     return _from_motion(*driven_from_measured(robot, raw, drive, headings, places))
 
@@ -181,22 +196,20 @@ def places_of(
     start = right_handed(runs.start, view)
     known = np.isfinite(start[:, 0]) & np.isfinite(start[:, 1])
     anchor = anchors(runs, known)
-    begin = np.minimum(runs.begin[anchor], heading.size - 1)
+    begin = np.minimum(runs.begin, heading.size - 1)
     frame = heading - path.yaw[:-1]
-    moved = np.exp(1j * frame) * (path.position[:-1] - path.position[begin])
+    moved = np.exp(1j * frame) * (path.position[:-1] - path.position[begin][anchor])
     arm = complex(view.ahead, view.left) * np.exp(1j * heading[begin])
-    placed = np.nan_to_num(start[anchor, 0] + 1j * start[anchor, 1]) / view.scale - arm + moved
+    first = np.nan_to_num(start[:, 0] + 1j * start[:, 1]) / view.scale - arm
+    placed = first[anchor] + moved
     return np.asarray(placed.real), np.asarray(placed.imag)
 
 
 def _from_motion(travel: WheelTravel[Floats], motion: BodyMotion[Floats]) -> DrivenPath:
-    yaw = _summed(motion.turn)
-    dx, dy = displacement(motion, yaw[:-1])
-    return DrivenPath(motion, travel, _summed(dx) + 1j * _summed(dy), yaw)
-
-
-def _summed(steps: Floats) -> Floats:
-    return np.concatenate([[0.0], np.cumsum(steps)])
+    x, y, yaw = integrated(Pose(), motion)
+    position = np.empty(yaw.size, dtype=np.complex128)
+    position.real, position.imag = x, y
+    return DrivenPath(motion, travel, position, yaw)
 
 
 def _shown(path: DrivenPath, runs: Together, view: View, drifts: Floats) -> Floats:
@@ -244,10 +257,10 @@ def _noise_of_legs(
     marker = path.position[runs.end] + complex(view.ahead, view.left) * np.exp(
         1j * path.yaw[runs.end]
     )
-    found = np.zeros((6, 2, runs.count))
+    found, inside = np.zeros((6, 2, runs.count)), runs.inside
     for begin in range(0, leg.size, _BLOCK):
         block = slice(begin, begin + _BLOCK)
-        steps, own_leg = runs.inside[block], leg[block]
+        steps, own_leg = inside[block], leg[block]
         motion = BodyMotion(*(part[steps] for part in path.motion))
         left, right = (np.abs(side[steps]) for side in path.travel)
         none = np.zeros_like(left)

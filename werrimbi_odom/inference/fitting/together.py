@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.legs.cutting import MatchedRun, delayed, joined
 from werrimbi_odom.model.drive import Drive
+from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun
 from werrimbi_odom.model.driving import features
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.motion import WheelTravel
@@ -25,7 +26,6 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.wiring import Wiring
 
-SIDES = ("left", "right")
 MODELS = 8
 """Of which it is remembered what was worked out: a fit comes back to a few only."""
 DELAYS = 4
@@ -108,12 +108,13 @@ class Together:
     @property
     def run_of_step(self) -> NDArray[np.intp]:
         """Index of the run of each step, shape (n,)."""
-        return self.known("run_of_step", _runs_of_steps)
+        return np.repeat(np.arange(len(self.runs)), np.diff(self.steps))
 
     @property
     def inside(self) -> NDArray[np.intp]:
         """Steps that belong to a leg."""
-        return self.known("inside", _steps_in_legs)
+        both = zip(self.runs, self.steps, strict=False)
+        return np.concatenate([np.arange(run.ends[0], run.ends[-1]) + first for run, first in both])
 
     def per_leg(self, values: Floats) -> Floats:
         """Sums over the steps of each leg of values for all steps."""
@@ -169,8 +170,7 @@ class Together:
 
     def raw(self, robot: Robot) -> WheelTravel[Floats]:
         """Travel of all steps before any effect."""
-        left, right = (_joined([getattr(run, side) for run in self.runs]) for side in SIDES)
-        left, right = wiring_of(robot.effects).wheels(left, right)
+        left, right = wiring_of(robot.effects).wheels(*self.known("counts", _counts))
         return WheelTravel(left * robot.left_tick, right * robot.right_tick)
 
     def drive(self, robot: Robot) -> Drive[Floats]:
@@ -179,7 +179,7 @@ class Together:
         key = (*wiring, robot.left_tick, robot.right_tick, robot.track)
         known = self._features.get(key)
         if known is None:
-            known = _joined([_drive_of(run, robot, wiring) for run in self.runs])
+            known = _drives_joined([_drive_of(run, robot, wiring) for run in self.runs])
             _remember(self._features, key, known, DRIVES)
         return known
 
@@ -219,11 +219,22 @@ def laid_out(runs: Sequence[MatchedRun] | Together) -> Together:
     return runs if isinstance(runs, Together) else together(runs)
 
 
-def _drive_of(run: MatchedRun, robot: Robot, wiring: Wiring) -> Drive[Floats]:
+def _drive_of(run: MatchedRun, robot: Robot, wiring: Wiring) -> DriveOfRun:
     left, right = wiring.wheels(run.left, run.right)
     first_counts = wiring.wheels(run.counters.first_left, run.counters.first_right)
     raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
     return features(robot, np.diff(run.time), raw, first_counts, run.channels)
+
+
+def _drives_joined(parts: Sequence[DriveOfRun]) -> DriveOfRun:
+    """Drives laid end to end."""
+    if len(parts) == 1:
+        return parts[0]
+
+    def joined(name: str) -> Any:
+        return _joined([part.found(name) for part in parts])
+
+    return DriveOfRun.by({name: partial(joined, name) for name in QUANTITIES})
 
 
 def _recalled(
@@ -244,13 +255,10 @@ def _recalled(
     return value
 
 
-def _runs_of_steps(runs: Together) -> NDArray[np.intp]:
-    return np.repeat(np.arange(len(runs.runs)), np.diff(runs.steps))
-
-
-def _steps_in_legs(runs: Together) -> NDArray[np.intp]:
-    both = zip(runs.runs, runs.steps, strict=False)
-    return np.concatenate([np.arange(run.ends[0], run.ends[-1]) + first for run, first in both])
+def _counts(runs: Together) -> WheelTravel[Floats]:
+    """Of both wheels in all steps."""
+    counts: WheelTravel[Floats] = _joined([WheelTravel(run.left, run.right) for run in runs.runs])
+    return counts
 
 
 def _starts(sizes: Sequence[int]) -> NDArray[np.intp]:
@@ -274,12 +282,5 @@ def _joined(parts: Sequence[Any]) -> Any:
         return np.concatenate(parts)
     if isinstance(first, tuple):
         return type(first)(*(_joined(list(column)) for column in zip(*parts, strict=True)))
-    if isinstance(first, dict):
-        common = [name for name in first if all(name in part for part in parts)]
-        return {name: _joined([part[name] for part in parts]) for name in common}
-    return type(first)(
-        **{
-            item.name: _joined([getattr(part, item.name) for part in parts])
-            for item in fields(first)
-        }
-    )
+    common = [name for name in first if all(name in part for part in parts)]
+    return {name: _joined([part[name] for part in parts]) for name in common}

@@ -6,12 +6,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from weakref import WeakKeyDictionary, ref
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run import Run, Ticks
 from werrimbi_odom.inference.legs.even_stamps import evened
 from werrimbi_odom.inference.legs.leaps import Leap, bridged
 from werrimbi_odom.model.drive import Span
@@ -24,7 +25,7 @@ ROUNDING = 1e-3
 """Share of a message by which a usual interval may be off in stamps of whole microseconds."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True)
 class Counters:
     """What the encoders counted up to each accepted message; arrays of shape (k,)."""
 
@@ -65,6 +66,11 @@ class Counters:
         return summed(path + turned)
 
 
+_HELD: WeakKeyDictionary[Ticks, tuple[Robot, EncoderLimits | None, ref[Counters]]]
+_HELD = WeakKeyDictionary()
+"""Of runs whose counters somebody holds: parts of a run share them, being numbers for each row."""
+
+
 def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counters:
     """The counters of a run, without the rows that an encoder does not accept.
 
@@ -73,6 +79,14 @@ def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counter
     InputError
         When fewer than two rows can be used, or the clock was set back.
     """
+    *by, held = _HELD.get(run.ticks, (None, None, None))
+    known = held() if held is not None and by == [robot, limits] else None
+    found = known or _counted(run, robot, limits)
+    _HELD[run.ticks] = robot, limits, ref(found)
+    return found
+
+
+def _counted(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counters:
     ticks = run.ticks
     read = evened(ticks.time, ticks.left, ticks.right)
     steps = wheel_steps(robot, read, ticks.left, ticks.right, limits)
