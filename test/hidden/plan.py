@@ -36,12 +36,18 @@ FACTORS = {"2": 2.0, "4": 4.0, "pi": math.pi, "180/pi": 180.0 / math.pi, "1000":
 
 FAMILIES = (
     ("track_width", "turn_dependent_track"),
-    ("unequal_wheel_radii", "wheel_radius_scale", "radius_drift"),
-    ("eccentric_left_wheel", "eccentric_right_wheel"),
-    ("longitudinal_slip",),
+    (
+        "unequal_wheel_radii",
+        "wheel_radius_scale",
+        "radius_drift",
+        "radius_by_channel",
+        "tyre_squash",
+    ),
+    ("eccentric_left_wheel", "eccentric_right_wheel", "oval_left_wheel", "oval_right_wheel"),
+    ("longitudinal_slip", "load_transfer"),
     ("lateral_slip",),
     ("sideways_drift", "reference_yaw_offset"),
-    ("floor_slope",),
+    ("floor_slope", "anisotropic_floor"),
     ("castor_kick", "left_backlash", "right_backlash"),
     ("left_missed_ticks", "right_missed_ticks"),
     ("reference_lever_arm",),

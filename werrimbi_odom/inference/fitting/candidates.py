@@ -134,7 +134,7 @@ def candidates(
             continue
         if effect.name in OF_THE_MEASUREMENT and not (asked or own_scale):
             continue
-        if not set(effect.channels) <= measured:
+        if effect.lacks(measured):
             continue
         if not asked and any(item.as_base for item in effect.parameters.values()):
             continue
