@@ -47,7 +47,9 @@ def load_transfer(
     Ruler      drive ten laps of one circle by the odometry, at a crawl, then fast: the fast ones
                turn less than the crawl by 20 pi * 2 * lateral * speed^2 / base
     Alike      turn_dependent_track, when curves are all driven at one speed: drive slow and fast
-               ones. longitudinal_slip, when driven forwards alone: it turns its sign backwards
+               ones. longitudinal_slip, when driven forwards alone: it turns its sign backwards.
+               tyre_squash, in turns, which are all that a gyro sees: drive fast lines beside a
+               reference of positions
     """
     shifted = lateral * drive.speed.end * drive.yaw_rate.end
     gained = longitudinal * drive.speed.change

@@ -36,7 +36,9 @@ def tyre_squash(
                and backwards alike; turns too, more so with the outer wheel of a fast curve
     Ruler      drive 10 m by the odometry beside a tape, at 0.1 m/s, then fast: fast, it goes less
                far than slowly, by 10 m * coefficient * speed^2
-    Alike      wheel_radius_scale, when driven at one speed: drive slow and fast lines
+    Alike      wheel_radius_scale, when driven at one speed: drive slow and fast lines.
+               load_transfer, in turns, which are all that a gyro sees: drive fast lines beside a
+               reference of positions
     """
     return WheelTravel(
         travel.left * (1.0 - coefficient * drive.left_speed.end * drive.left_speed.end),
