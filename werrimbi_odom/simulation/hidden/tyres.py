@@ -117,7 +117,8 @@ class TyreSquash(Peculiarity):
     Parameters
     ----------
     loss : float
-        Relative loss of radius at 1 m/s; negative: it grows.
+        Relative loss of radius when it turns as a wheel of the first size does at 1 m/s; negative:
+        it grows. What flings a tread outwards, or gives it no time to spring back, is its turning.
     """
 
     loss: float
@@ -127,8 +128,9 @@ class TyreSquash(Peculiarity):
 
         def reshape(engine: Engine, stride: Stride) -> None:
             for wheel, travel in zip(chassis.wheels, (stride.left, stride.right), strict=True):
-                speed = travel / stride.period
-                engine.set_radius(wheel.side, wheel.radius * (1 - self.loss * speed**2))
+                turning = travel / engine.radius(wheel.side) / stride.period
+                loss = self.loss * (turning * wheel.radius) ** 2
+                engine.set_radius(wheel.side, wheel.radius * (1 - loss))
 
         return reshape
 
