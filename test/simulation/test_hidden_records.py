@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from dataclasses import asdict
 from functools import lru_cache
 from pathlib import Path
@@ -225,6 +226,22 @@ def test_random_hides_an_effect_of_the_vocabulary() -> None:
     chosen = {hide("random", seed=s).entry.name for s in range(40)}
     assert len(chosen) > 12
     assert hide("random", seed=1) == hide("random", seed=1)
+
+
+def test_seeds_that_are_written_down_go_on_hiding_what_they_hid() -> None:
+    """In README.md and the demo; effects that came later took others."""
+    assert [hide("random", seed=s).entry.name for s in (6, 126)] == [
+        "castor_kick", "unequal_wheel_radii",
+    ]  # fmt: skip
+
+
+def test_random_hides_every_effect_alike() -> None:
+    drawn = Counter(hide("random", seed=s).entry.name for s in range(1000, 2350))
+    names = {entry.name for entry in CATALOGUE if entry.kind == "effect"}
+    assert set(drawn) == names
+    expected = 1350 / len(names)
+    chi_squared = sum((count - expected) ** 2 / expected for count in drawn.values())
+    assert chi_squared < len(names) - 1 + 3.0 * (2.0 * (len(names) - 1)) ** 0.5
 
 
 def test_a_name_that_is_not_there() -> None:

@@ -44,8 +44,9 @@ def oval_left_wheel(
     """The left wheel is not round: its lever to the floor is longer, and shorter, twice in a turn.
 
     A tyre that stood under its load, a rim that was hit, a wheel printed or cast askew. The wheel
-    leads and lags twice in each of its turns and loses nothing over a half one. The phase belongs
-    to the counter; where that starts anywhere, each drive has a phase of its own.
+    leads and lags twice in each of its turns and loses nothing over a half one; what it is longer
+    round than its mean radius says is calibration. The phase belongs to the counter; where that
+    starts anywhere, each drive has a phase of its own.
 
     Formula    left += amplitude / 2 * change of sin(2 * left wheel's angle + phase)       [m]
     Signature  heading and distance swing twice in each turn of the left wheel, whatever the speed
@@ -74,8 +75,9 @@ def oval_right_wheel(
     """The right wheel is not round: its lever to the floor is longer, and shorter, twice in a turn.
 
     A tyre that stood under its load, a rim that was hit, a wheel printed or cast askew. The wheel
-    leads and lags twice in each of its turns and loses nothing over a half one. The phase belongs
-    to the counter; where that starts anywhere, each drive has a phase of its own.
+    leads and lags twice in each of its turns and loses nothing over a half one; what it is longer
+    round than its mean radius says is calibration. The phase belongs to the counter; where that
+    starts anywhere, each drive has a phase of its own.
 
     Formula    right += amplitude / 2 * change of sin(2 * right wheel's angle + phase)     [m]
     Signature  heading and distance swing twice in each turn of the right wheel, whatever the speed

@@ -266,13 +266,32 @@ def hide(name: str, strength: float | None = None, *, seed: int, number: int = 0
     """
     rng = np.random.default_rng([seed, number, *name.encode()])
     if name == "random":
-        name = str(rng.choice([entry.name for entry in CATALOGUE if entry.kind == "effect"]))
+        name = _any_effect(rng, seed, number)
     entry = find(name)
     drawn = entry.draw(rng)
     strength = drawn if strength is None else strength
     if not math.isfinite(strength) or (entry.null > 0 and strength <= 0):
         raise StrengthError(f"the strength of {entry.name} cannot be {strength:g}")
     return Hidden(entry, strength, entry.make(strength, rng))
+
+
+FIRST = 21
+"""Effects that there were when seeds began to be written down."""
+
+
+def _any_effect(rng: Rng, seed: int, number: int) -> str:
+    """Any effect of the vocabulary, all as likely.
+
+    An effect that comes later takes its share of the seeds (reservoir sampling: Vitter 1985); the
+    other seeds go on hiding what they hid.
+    """
+    names = [entry.name for entry in CATALOGUE if entry.kind == "effect"]
+    chosen = str(rng.choice(names[:FIRST]))
+    for place, name in enumerate(names[FIRST:], start=FIRST):
+        own = np.random.default_rng([seed, number, *b"random", *name.encode()])
+        if own.uniform() < 1.0 / (place + 1):
+            chosen = name
+    return chosen
 
 
 def wished(wish: str, *, seed: int, number: int = 0) -> Hidden:
