@@ -5,22 +5,22 @@ from werrimbi_odom.model.motion import WheelTravel
 
 
 @wheel_effect(
-    growth=Parameter(
-        "s^2/m^2",
+    loss=Parameter(
+        "",
         null=0.0,
-        typical=0.03,
+        typical=0.01,
         bounds=(-0.2, 0.2),
-        says="relative growth of a radius per squared speed of its rim",
+        says="share of both radii that is lost when rolling backwards",
     ),
 )
-def radius_grows_with_speed(travel, drive, growth):
-    """Soft tyres grow with the square of their speed.
+def tread_lies_down(travel, drive, loss):
+    """The tread's blocks stand when the robot goes ahead, and lie down when it goes back.
 
-    Formula    travel *= 1 + growth * speed^2, each wheel for itself
-    Signature  distances too short at speed and right at a crawl; more so on a curve's outer wheel
-    Ruler      drive 10 m by the odometry, slowly, then fast: the tape shows more when fast
+    Formula    travel *= 1 - loss, each wheel for itself, while it rolls backwards
+    Signature  distances right ahead and too long backwards; spins err with one wheel alone
+    Ruler      drive 5 m to and fro by the odometry along a tape: the way back is shorter
     """
     return WheelTravel(
-        travel.left * (1.0 + growth * drive.left_speed.end**2),
-        travel.right * (1.0 + growth * drive.right_speed.end**2),
+        travel.left * (1.0 - loss * (drive.left_speed.end < 0.0)),
+        travel.right * (1.0 - loss * (drive.right_speed.end < 0.0)),
     )

@@ -7,7 +7,7 @@ NAME = "my_robot_effects"
 setup(
     name=NAME,
     version="0.1.0",
-    py_modules=["my_robot_effects", "my_robot_warmth"],
+    py_modules=["my_robot_effects", "my_robot_pressure"],
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{NAME}"]),
         (f"share/{NAME}", ["package.xml"]),
@@ -16,8 +16,8 @@ setup(
     entry_points={
         # From here on werrimbi, robot files and the node know these names.
         "werrimbi_odom.effects": [
-            "radius_grows_with_speed = my_robot_effects:radius_grows_with_speed",
-            "radius_follows_temperature = my_robot_warmth:radius_follows_temperature",
+            "tread_lies_down = my_robot_effects:tread_lies_down",
+            "radii_follow_pressure = my_robot_pressure:radii_follow_pressure",
         ],
     },
 )

@@ -182,7 +182,7 @@ def test_a_draft_is_that_of_the_command(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    simulated = ["simulate", "--out", "d", "--hide", "radius_grows_with_speed", "--seed", "6"]
+    simulated = ["simulate", "--out", "d", "--hide", "one_tyre_backwards", "--seed", "6"]
     assert main(simulated) == 0
     given = ["--robot", "d/robot.yaml", *map(str, sorted(Path("d/train").iterdir()))]
     capsys.readouterr()

@@ -38,7 +38,7 @@ def test_the_whole_example_is_a_file_of_25_lines_that_keeps_the_laws(tmp_path: P
     file = tmp_path / "my_robot_effects.py"
     file.write_text(whole)
     (effect,) = load_file(file)
-    assert effect.name == "radius_grows_with_speed"
+    assert effect.name == "tread_lies_down"
     check_effect(effect)
 
 

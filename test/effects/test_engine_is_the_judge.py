@@ -29,7 +29,7 @@ from werrimbi_odom.simulation.hidden.creep import (
     LongitudinalSlip,
     TurnDependentTrack,
 )
-from werrimbi_odom.simulation.hidden.floor import FloorSlope
+from werrimbi_odom.simulation.hidden.floor import FloorSlope, GrainedFloor
 from werrimbi_odom.simulation.hidden.geometry import (
     TrackWidth,
     UnequalWheelRadii,
@@ -37,7 +37,8 @@ from werrimbi_odom.simulation.hidden.geometry import (
 )
 from werrimbi_odom.simulation.hidden.mount import AskewAxle
 from werrimbi_odom.simulation.hidden.skid import LENGTH, SkidSteer
-from werrimbi_odom.simulation.hidden.wheels import Backlash, EccentricWheel, RadiusDrift
+from werrimbi_odom.simulation.hidden.tyres import LoadTransfer, TyreSquash
+from werrimbi_odom.simulation.hidden.wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift
 
 PER_TURN = 2e5
 BRISK = free(25.0, seed=5, speed=0.7, yaw_rate=2.0, acceleration=1.2, backwards=0.4)
@@ -68,6 +69,15 @@ CASES = [
         made("floor_slope", x=0.02 * math.cos(1.0), y=0.02 * math.sin(1.0)),
         200,
     ),
+    (
+        GrainedFloor(0.02, 0.4),
+        made("anisotropic_floor", along_x=0.02 * math.cos(0.8), diagonal=0.02 * math.sin(0.8)),
+        200,
+    ),
+    (TyreSquash(0.05), made("tyre_squash", coefficient=0.05), 20),
+    (TyreSquash(-0.05), made("tyre_squash", coefficient=-0.05), 20),
+    (LoadTransfer(0.2, 1.0, 0.0), made("load_transfer", lateral=0.2 / 9.81), 20),
+    (LoadTransfer(0.2, 0.0, 0.8), made("load_transfer", longitudinal=0.16 / 9.81), 5),
     (CastorKick(0.03, alternating=False), made("castor_kick", angle=0.03), 20),
     (CastorKick(0.03, alternating=True), made("castor_kick", alternating=0.03), 20),
     (RadiusDrift(1e-3, "metre"), made("radius_drift", per_metre=1e-3), 30),
@@ -133,6 +143,31 @@ def test_an_eccentric_wheel_by_geometry(side: str) -> None:
     after = errors(recording, law.using(amplitude=1.5e-3, phase=-0.7))
     assert after[1] < before[1] / 20
     assert after[0] < before[0] / 5
+
+
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_an_oval_wheel_by_geometry(side: str) -> None:
+    """The engine's lies on its broad side at zero, so its largest radius is a quarter turn away.
+
+    An ellipse is longer round than the circle of its mean radius, which is calibration.
+    """
+    odd = OvalWheel(side, 2e-3)  # type: ignore[arg-type]
+    robot = TrueRobot(
+        left_ticks_per_revolution=PER_TURN,
+        right_ticks_per_revolution=PER_TURN,
+        counters_keep_zero=True,
+    )
+    recording = record(robot, BRISK, seed=1, hidden=[odd])
+    law: Effect = find(f"oval_{side}_wheel")
+    longer = (2e-3 / RADIUS) ** 2 / 4.0
+    round_one = (
+        made("wheel_radius_scale", multiplier=1.0 + 0.5 * longer),
+        made("unequal_wheel_radii", ratio=(1.0 + longer) ** (1.0 if side == "right" else -1.0)),
+    )
+    before = errors(recording, *round_one)
+    after = errors(recording, *round_one, law.using(amplitude=2e-3, phase=math.pi))
+    assert after[1] < before[1] / 10
+    assert after[0] < before[0] / 3
 
 
 @pytest.mark.parametrize("side", ["left", "right"])

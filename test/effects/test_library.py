@@ -26,23 +26,30 @@ VOCABULARY = {
     "wheel_radius_scale": 1.0,
     "eccentric_left_wheel": 0.0,
     "eccentric_right_wheel": 0.0,
+    "oval_left_wheel": 0.0,
+    "oval_right_wheel": 0.0,
+    "tyre_squash": 0.0,
+    "load_transfer": 0.0,
     "longitudinal_slip": 0.0,
     "lateral_slip": 0.0,
     "turn_dependent_track": 0.0,
     "skid_steer": 0.0,  # its offsets; its multiplier, being the base, is 1
     "sideways_drift": 0.0,
     "floor_slope": 0.0,
+    "anisotropic_floor": 0.0,
     "castor_kick": 0.0,
     "left_backlash": 0.0,
     "right_backlash": 0.0,
     "left_missed_ticks": 0.0,
     "right_missed_ticks": 0.0,
     "radius_drift": 0.0,
+    "radius_by_channel": 0.0,
     "reference_lever_arm": 0.0,
     "reference_yaw_offset": 0.0,
     "reference_delay": 0.0,
     "reference_heading_delay": 0.0,
     "reference_scale": 1.0,
+    "reference_gyro_drift": 0.0,
     "encoder_skew": 0.0,
 }
 MISTAKES = ["wheels_swapped", "left_wheel_reversed", "right_wheel_reversed", "reference_mirrored"]
@@ -88,7 +95,9 @@ def test_twins_are_mutual_and_say_what_tells_them_apart() -> None:
             assert twin.do
 
 
-@pytest.mark.parametrize("pair", ["eccentric_{}_wheel", "{}_backlash", "{}_missed_ticks"])
+@pytest.mark.parametrize(
+    "pair", ["eccentric_{}_wheel", "oval_{}_wheel", "{}_backlash", "{}_missed_ticks"]
+)
 def test_mirror_pairs_say_the_same_of_both_sides(pair: str) -> None:
     left, right = find(pair.format("left")), find(pair.format("right"))
     assert left.parameters == right.parameters
@@ -220,6 +229,7 @@ def test_effects_import_the_model_and_numpy_alone() -> None:
                     "__future__",
                     "werrimbi_odom.model.",
                     "werrimbi_odom.effects.functions",
+                    "werrimbi_odom.effects.shapes",
                     "werrimbi_odom.effects.twins",
                 )
                 assert node.module is not None

@@ -11,6 +11,7 @@ import pytest
 
 from test.effects.tracks import RADIUS, REST, TRACK, Plan, line, plan, track, turn
 from werrimbi_odom.effects import find
+from werrimbi_odom.effects.contract.rehearsal import Rehearsal
 from werrimbi_odom.model.effect import view_of, wiring_of
 from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.wiring import Wiring
@@ -166,6 +167,55 @@ def test_fast_half_circles_end_farther_ahead_and_whole_ones_close() -> None:
     assert whole == pytest.approx((0.0, 0.0, 2 * math.pi), abs=1e-6)
 
 
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_an_oval_wheel_swings_twice_a_turn_by_half_its_amplitude(side: str) -> None:
+    """Largest at zero: most is gained an eighth of a turn on, and all given back at a quarter."""
+    law = find(f"oval_{side}_wheel").using(amplitude=2e-3, phase=0.0)
+    there, plain = track(plan(*line(5.0)), law, rate=500.0), track(plan(*line(5.0)), rate=500.0)
+    gained = getattr(there, side) - getattr(plain, side)
+    turned = getattr(plain, side) / RADIUS
+    for angle, lead in ((math.pi / 4, 1e-3), (math.pi / 2, 0.0), (3 * math.pi / 4, -1e-3)):
+        assert np.interp(angle, turned, gained) == pytest.approx(lead, abs=2e-5)
+        assert np.interp(angle + 3 * math.pi, turned, gained) == pytest.approx(lead, abs=2e-5)
+
+
+@pytest.mark.parametrize("coefficient", [0.02, -0.02])
+def test_a_fast_drive_ends_short_by_the_squash(coefficient: float) -> None:
+    law = find("tyre_squash").using(coefficient=coefficient)
+    for way in (10.0, -10.0):
+        slow, fast = (
+            track(Plan(np.array([0.0, 10.0 / v]), np.full(2, way * v / 10.0), np.zeros(2)), law)
+            for v in (0.1, 0.7)
+        )
+        short = abs(slow.end[0]) - abs(fast.end[0])
+        assert short == pytest.approx(10.0 * coefficient * (0.7**2 - 0.1**2), rel=1e-6)
+
+
+def test_ten_fast_laps_turn_less_by_the_load_that_moved() -> None:
+    lateral, laps = 0.01, 20 * math.pi
+    law = find("load_transfer").using(lateral=lateral)
+    crawl, fast = (track(circle(v, 1.0, laps), law).end[2] for v in (0.01, 0.8))
+    assert crawl - fast == pytest.approx(laps * 2 * lateral * 0.8**2 / TRACK, rel=1e-3)
+    assert track(plan(*turn(4.0)), law).end[2] == pytest.approx(4.0, abs=1e-9)
+
+
+def test_what_a_start_costs_forwards_it_gives_backwards() -> None:
+    """Unlike slip, which costs way both ways: the load goes to the rear wherever the robot goes."""
+    load, slip = (
+        find("load_transfer").using(longitudinal=0.02),
+        find("longitudinal_slip").using(coefficient=0.02),
+    )
+    for way, law, gained in (
+        (1.0, load, -1.0),
+        (1.0, slip, -1.0),
+        (-1.0, load, 1.0),
+        (-1.0, slip, -1.0),
+    ):
+        there = track(plan(*line(3.0 * way, 0.6)), law).at(3.0)[0]
+        plain = track(plan(*line(3.0 * way, 0.6))).at(3.0)[0]
+        assert abs(there) - abs(plain) == pytest.approx(gained * 0.02 * 0.6**2 / 2, rel=1e-6)
+
+
 # -- body and floor ---------------------------------------------------------------------------
 
 
@@ -189,6 +239,43 @@ def test_a_slope_carries_to_one_side_of_the_room(rate: float, start_yaw: float) 
     assert there.end[0] - plain.end[0] == pytest.approx(0.01 * path + 1e-3 * plain.time[-1])
     assert there.end[1] - plain.end[1] == pytest.approx(-0.02 * path)
     assert there.end[2] == plain.end[2]
+
+
+def test_lines_along_the_grain_are_longer_than_across() -> None:
+    along_x, diagonal = 0.003, 0.004
+    law = find("anisotropic_floor").using(along_x=along_x, diagonal=diagonal)
+    grain = 0.5 * math.atan2(diagonal, along_x)
+    for way in (5.0, -5.0):
+        longer, shorter = (
+            math.hypot(*track(plan(*line(way)), law, start_yaw=yaw).end[:2])
+            for yaw in (grain, grain + math.pi / 2)
+        )
+        assert longer - shorter == pytest.approx(10.0 * math.hypot(along_x, diagonal))
+    there = track(plan(*turn(4.0)), law)
+    assert there.end == pytest.approx((0.0, 0.0, 4.0), abs=1e-12)
+
+
+def test_radii_follow_the_columns_that_are_there() -> None:
+    law = find("radius_by_channel").apply
+    rehearsal = Rehearsal.of(("Hub_Temperature_C", "payload_kg", "motor_a"))
+    drive, travel = rehearsal.drive, rehearsal.travel
+    warm, load = (drive.channels[name].mean for name in ("Hub_Temperature_C", "payload_kg"))
+    swollen = law(travel, drive, temperature=1e-3, payload=-2e-3)
+    grown = 1 + 1e-3 * (warm - 20.0) - 2e-3 * load
+    np.testing.assert_allclose(swollen.left, travel.left * grown, rtol=1e-14)
+    np.testing.assert_allclose(swollen.right, travel.right * grown, rtol=1e-14)
+    bare = Rehearsal.of(("motor_a",))
+    kept = law(bare.travel, bare.drive, temperature=1e-3, payload=-2e-3)
+    np.testing.assert_array_equal(kept.left, bare.travel.left)
+
+
+def test_two_thermometers_count_by_their_mean() -> None:
+    law = find("radius_by_channel").apply
+    rehearsal = Rehearsal.of(("left_temperature_c", "right_temperature_c"))
+    drive, travel = rehearsal.drive, rehearsal.travel
+    mean = 0.5 * sum(drive.channels[name].mean for name in drive.channels)
+    swollen = law(travel, drive, temperature=1e-3, payload=0.0)
+    np.testing.assert_allclose(swollen.left, travel.left * (1 + 1e-3 * (mean - 20.0)), rtol=1e-14)
 
 
 @pytest.mark.parametrize(("values", "kicks"), [({"angle": 0.01}, 3), ({"alternating": 0.01}, -1)])

@@ -9,14 +9,15 @@ import math
 import numpy as np
 import pytest
 
-from test.effects.tracks import TRACK, gone, line, plan, relative, shown, track
+from test.effects.tracks import TRACK, gone, line, plan, relative, shown, track, turn, wheels_of
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.effects.contract.rehearsal import Rehearsal
+from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import AppliedEffect, Effect, wiring_of
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pose import Floats
 
-HARD = Rehearsal.of()
+HARD = Rehearsal.of(("hub_temperature_c", "payload_kg"))
 END = float(HARD.duration.sum())
 
 
@@ -24,7 +25,8 @@ def measured(*effects: AppliedEffect, every: float = 0.25) -> Floats:
     """Relative poses that a reference shows of a drive with everything in it."""
     raw = WheelTravel(*wiring_of(effects).wheels(HARD.left, HARD.right))
     time = np.arange(1.0, END - 1.0, every)
-    return relative(*shown(gone(HARD.duration, raw, effects), effects, time))
+    there = gone(HARD.duration, raw, effects, channels=HARD.measured)
+    return relative(*shown(there, effects, time))
 
 
 def test_a_crab_is_a_marker_mounted_askew() -> None:
@@ -119,6 +121,8 @@ CONTINUOUS = [
     for effect in LIBRARY
     if not effect.is_mistake and effect.name != "reference_scale"  # base and radii together
 ]
+NOISE = np.array([1e-3, 1e-3, 2e-3])
+"""Of a good reference [m, m, rad]: in its units two effects are alike, or not."""
 CALIBRATION = ("track_width", "unequal_wheel_radii", "wheel_radius_scale")
 
 
@@ -136,7 +140,7 @@ def sensitivities(effect: Effect) -> Floats:
             AppliedEffect(effect, effect.from_fit({**start, name: start[name] + sign * step}))
             for sign in (1.0, -1.0)
         )
-        columns.append((measured(ahead) - measured(behind)).ravel())
+        columns.append(((measured(ahead) - measured(behind)) / NOISE).ravel())
     table = np.array(columns).T
     return np.asarray(table / np.linalg.norm(table, axis=0))
 
@@ -207,3 +211,31 @@ def test_play_of_one_wheel_is_no_castor() -> None:
     way = plan(*line(1.0), *line(-1.0))
     play = track(way, find("left_backlash").using(travel=4e-3)).end
     assert play[2] == pytest.approx(-2e-3 / TRACK)
+
+
+def test_forwards_alone_slip_is_load_that_moves_to_the_rear() -> None:
+    slip = find("longitudinal_slip").using(coefficient=0.02)
+    load = find("load_transfer").using(longitudinal=0.02)
+    times = np.linspace(0.2, 6.0, 20)
+    for sense, alike in ((1.0, True), (-1.0, False)):
+        way = plan((0.5, 0.6 * sense, 0.0), (2.0, 0.2 * sense, 0.0), (3.0, 0.7 * sense, 0.0))
+        one, other = (relative(*shown(track(way, law), (law,), times)) for law in (slip, load))
+        assert np.allclose(one, other, atol=1e-12) == alike
+
+
+def test_at_one_speed_a_squashed_tyre_is_a_smaller_one() -> None:
+    squash = find("tyre_squash").using(coefficient=0.1)
+    smaller = find("wheel_radius_scale").using(multiplier=1.0 - 0.1 * 0.4**2)
+    np.testing.assert_allclose(end_of((squash,), 0.4)[1:], end_of((smaller,), 0.4)[1:], atol=1e-12)
+
+
+def test_a_thermometer_that_rises_all_the_time_is_a_clock() -> None:
+    duration, raw = wheels_of(plan(*line(3.0), *turn(2.0), *line(-2.0)), 50.0)
+    time = np.concatenate([[0.0], np.cumsum(duration)])
+    rising = {"hub_temperature_c": Span(20.0 + 0.1 * time[:-1], 20.0 + 0.1 * time[1:])}
+    warm = gone(
+        duration, raw, (find("radius_by_channel").using(temperature=1e-3),), channels=rising
+    )
+    drift = gone(duration, raw, (find("radius_drift").using(per_second=1e-4),))
+    np.testing.assert_allclose(warm.x, drift.x, atol=1e-12)
+    np.testing.assert_allclose(warm.yaw, drift.yaw, atol=1e-12)

@@ -4,10 +4,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
+from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.driving import features
 from werrimbi_odom.model.effect import AppliedEffect, view_of
 from werrimbi_odom.model.effects_over_run import driven
@@ -105,10 +107,11 @@ def gone(
     effects: tuple[AppliedEffect, ...],
     start_yaw: float = 0.0,
     first_counts: tuple[float, float] = (0.0, 0.0),
+    channels: Mapping[str, Span[Floats]] | None = None,
 ) -> Track:
     """The same from counted travel."""
     robot = Robot(TRACK, RADIUS, TICKS, TICKS, effects=effects)
-    drive = features(robot, duration, raw, first_counts)
+    drive = features(robot, duration, raw, first_counts, channels)
     travel, motion = driven(robot, raw, drive, Pose(yaw=start_yaw))
 
     def summed(first: float, steps: Floats) -> Floats:
@@ -135,6 +138,7 @@ def shown(track: Track, effects: tuple[AppliedEffect, ...], at: Floats) -> tuple
         view.ahead, view.left
     )
     yaw = np.interp(seen - view.heading_delay, track.time, track.yaw) + view.yaw
+    yaw = yaw + 0.5 * view.wander * (at - at[0]) ** 2
     position = view.scale * position
     return (np.conj(position), -yaw) if view.mirrored else (position, yaw)
 

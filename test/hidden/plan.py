@@ -31,17 +31,24 @@ OLD = 0
 CALIBRATION = ("track_width", "unequal_wheel_radii", "wheel_radius_scale")
 EFFECTS = tuple(entry.name for entry in CATALOGUE if entry.kind == "effect")
 OUTSIDERS = tuple(entry.name for entry in CATALOGUE if entry.kind == "outside")
+OF_A_GYRO = tuple(entry.name for entry in CATALOGUE if entry.kind == "gyro")
 MISTAKES = tuple(entry.name for entry in CATALOGUE if entry.kind == "mistake")
 FACTORS = {"2": 2.0, "4": 4.0, "pi": math.pi, "180/pi": 180.0 / math.pi, "1000": 1000.0}
 
 FAMILIES = (
     ("track_width", "turn_dependent_track"),
-    ("unequal_wheel_radii", "wheel_radius_scale", "radius_drift"),
-    ("eccentric_left_wheel", "eccentric_right_wheel"),
-    ("longitudinal_slip",),
+    (
+        "unequal_wheel_radii",
+        "wheel_radius_scale",
+        "radius_drift",
+        "radius_by_channel",
+        "tyre_squash",
+    ),
+    ("eccentric_left_wheel", "eccentric_right_wheel", "oval_left_wheel", "oval_right_wheel"),
+    ("longitudinal_slip", "load_transfer"),
     ("lateral_slip",),
     ("sideways_drift", "reference_yaw_offset"),
-    ("floor_slope",),
+    ("floor_slope", "anisotropic_floor"),
     ("castor_kick", "left_backlash", "right_backlash"),
     ("left_missed_ticks", "right_missed_ticks"),
     ("reference_lever_arm",),
@@ -128,10 +135,15 @@ def plan(start: int, sizes: Sizes) -> list[HiddenSet]:
 
 
 def effects(start: int, sizes: Sizes) -> list[HiddenSet]:
-    """Each effect of the vocabulary, weak and strong."""
-    return [
+    """Each effect of the vocabulary, weak and strong; what a gyro does is seen by one."""
+    found = [
         HiddenSet("effect", (name,), start + 1000 + 20 * number + seed)
         for number, name in enumerate(EFFECTS)
+        for seed in range(sizes.effects)
+    ]
+    return found + [
+        HiddenSet("effect", (name,), start + 1900 + seed, seen="gyro")
+        for name in OF_A_GYRO
         for seed in range(sizes.effects)
     ]
 

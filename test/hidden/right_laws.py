@@ -4,70 +4,64 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.effects.functions import cos
-from werrimbi_odom.effects.shapes import mean_cos, mean_sin, mean_square, share_inside, standing
-from werrimbi_odom.model.drive import Drive, Span
+from werrimbi_odom.effects.shapes import mean_cos, mean_sin, share_inside, standing
+from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Effect, Parameter, body_effect, wheel_effect
 from werrimbi_odom.model.motion import BodyMotion, Number, WheelTravel
 
 HALF_BASE = 0.175
 """Of the robot of `werrimbi simulate` [m]."""
 
-AMPLITUDE = Parameter("m", null=0.0, typical=5e-4, bounds=(0.0, 0.02), says="lead of the wheel")
-PHASE = Parameter("rad", 0.0, 1.0, (-3.1415927, 3.1415927), "of the oval", per_run=True)
+GROWTH = Parameter("1/kPa", 0.0, 3e-4, (-0.01, 0.01), "relative growth of the radius")
 
 
-@wheel_effect(
-    channels=("wheel_temperature_c",),
-    expansion=Parameter("1/K", 0.0, 1e-3, (-0.01, 0.01), "relative growth of the radii per kelvin"),
-)
-def right_law_of_temperature(
-    travel: WheelTravel[Number], drive: Drive[Number], expansion: float
-) -> WheelTravel[Number]:
-    """Wheels swell with warmth."""
-    growth = expansion * (drive.channels["wheel_temperature_c"].mean - 22.0)
-    return WheelTravel(travel.left * (1.0 + growth), travel.right * (1.0 + growth))
-
-
-@wheel_effect(
-    channels=("payload_kg",),
-    yielding=Parameter("1/kg", 0.0, 2e-3, (-0.02, 0.02), "relative loss of radius per kilogram"),
-)
-def right_law_of_payload(
-    travel: WheelTravel[Number], drive: Drive[Number], yielding: float
-) -> WheelTravel[Number]:
-    """Tyres give way under a payload."""
-    growth = -yielding * drive.channels["payload_kg"].mean
-    return WheelTravel(travel.left * (1.0 + growth), travel.right * (1.0 + growth))
-
-
-@wheel_effect(growth=Parameter("s^2/m^2", 0.0, 0.03, (-0.5, 0.5), "relative growth at 1 m/s"))
-def right_law_of_speed(
+@wheel_effect(channels=("left_tyre_kpa",), growth=GROWTH)
+def right_law_of_the_left_pressure(
     travel: WheelTravel[Number], drive: Drive[Number], growth: float
 ) -> WheelTravel[Number]:
-    """Soft tyres grow with the square of their speed."""
-    left, right = mean_square(drive.left_speed), mean_square(drive.right_speed)
-    return WheelTravel(travel.left * (1.0 + growth * left), travel.right * (1.0 + growth * right))
+    """The left tyre leaks."""
+    beyond = drive.channels["left_tyre_kpa"].mean - 180.0
+    return travel._replace(left=travel.left * (1.0 + growth * beyond))
 
 
-@wheel_effect(quadrature=("amplitude", "phase"), amplitude=AMPLITUDE, phase=PHASE)
-def right_law_of_the_left_oval(
-    travel: WheelTravel[Number], drive: Drive[Number], amplitude: float, phase: float
+@wheel_effect(channels=("right_tyre_kpa",), growth=GROWTH)
+def right_law_of_the_right_pressure(
+    travel: WheelTravel[Number], drive: Drive[Number], growth: float
 ) -> WheelTravel[Number]:
-    """A left wheel pressed out of round."""
-    return travel._replace(left=travel.left + _twice_a_turn(drive.left_angle, amplitude, phase))
+    """The right tyre leaks."""
+    beyond = drive.channels["right_tyre_kpa"].mean - 180.0
+    return travel._replace(right=travel.right * (1.0 + growth * beyond))
 
 
-@wheel_effect(quadrature=("amplitude", "phase"), amplitude=AMPLITUDE, phase=PHASE)
-def right_law_of_the_right_oval(
-    travel: WheelTravel[Number], drive: Drive[Number], amplitude: float, phase: float
+@body_effect(
+    channels=("payload_kg",),
+    broadening=Parameter("1/kg", 0.0, 3e-3, (-0.05, 0.05), "relative growth of the base"),
+)
+def right_law_of_the_payload(
+    motion: BodyMotion[Number], drive: Drive[Number], broadening: float
+) -> BodyMotion[Number]:
+    """A payload presses tyres broad."""
+    wider = 1.0 + broadening * drive.channels["payload_kg"].mean
+    return motion._replace(turn=motion.turn / wider)
+
+
+LOSS = Parameter("", 0.0, 0.01, (-0.1, 0.1), "share of the radius that is lost backwards")
+
+
+@wheel_effect(loss=LOSS)
+def right_law_of_the_left_tread(
+    travel: WheelTravel[Number], drive: Drive[Number], loss: float
 ) -> WheelTravel[Number]:
-    """A right wheel pressed out of round."""
-    return travel._replace(right=travel.right + _twice_a_turn(drive.right_angle, amplitude, phase))
+    """The left tyre is mounted against its tread."""
+    return travel._replace(left=travel.left * (1.0 - loss * (drive.left_speed.end < 0.0)))
 
 
-def _twice_a_turn(angle: Span[Number], amplitude: float, phase: float) -> Number:
-    return amplitude * (cos(2.0 * angle.start + phase) - cos(2.0 * angle.end + phase))
+@wheel_effect(loss=LOSS)
+def right_law_of_the_right_tread(
+    travel: WheelTravel[Number], drive: Drive[Number], loss: float
+) -> WheelTravel[Number]:
+    """The right tyre is mounted against its tread."""
+    return travel._replace(right=travel.right * (1.0 - loss * (drive.right_speed.end < 0.0)))
 
 
 RATE = Parameter("rad/m", 0.0, 0.02, (-0.5, 0.5), "heading gained per metre")
@@ -108,21 +102,19 @@ def right_law_of_the_spot(
 
 
 RIGHT_LAWS: dict[str, tuple[Effect, ...]] = {
-    "radius_follows_temperature": (right_law_of_temperature,),
-    "radius_follows_payload": (right_law_of_payload,),
-    "radius_grows_with_speed": (right_law_of_speed,),
     "slippery_spot": (right_law_of_the_spot,),
     "cable_pull": (right_law_of_the_cable,),
-    "oval_wheel": (right_law_of_the_left_oval, right_law_of_the_right_oval),
+    "one_tyre_by_pressure": (right_law_of_the_left_pressure, right_law_of_the_right_pressure),
+    "base_by_payload": (right_law_of_the_payload,),
+    "one_tyre_backwards": (right_law_of_the_left_tread, right_law_of_the_right_tread),
 }
 """By the names of what can be hidden; of several the likeliest is right."""
 
 DEPENDS_ON = {
-    "radius_follows_temperature": ("wheel_temperature_c",),
-    "radius_follows_payload": ("payload_kg",),
-    "radius_grows_with_speed": ("speed", "wheel_speed"),
     "slippery_spot": ("position",),
     "cable_pull": ("heading",),
-    "oval_wheel": ("left_wheel_angle_twice", "right_wheel_angle_twice"),
+    "one_tyre_by_pressure": ("left_tyre_kpa", "right_tyre_kpa"),
+    "base_by_payload": ("payload_kg",),
+    "one_tyre_backwards": ("direction",),
 }
 """The variables that are right."""

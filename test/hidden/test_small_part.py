@@ -23,7 +23,7 @@ pytest.importorskip("mujoco", reason="hidden sets need the physics engine (pip i
 EFFECT = HiddenSet("effect", ("castor_kick=0.02",), 21, "short")
 CLEAN = HiddenSet("clean", (), 11, "short")
 CALIBRATION = HiddenSet("calibration", ("track_width=1.02",), 12, "short")
-OUTSIDER = HiddenSet("outsider", ("radius_follows_payload=0.004",), 11, "short")
+OUTSIDER = HiddenSet("outsider", ("base_by_payload=0.006",), 11, "short")
 TWO = HiddenSet("pair", ("reference_delay=0.06", "castor_kick=0.025"), 13, "short")
 MISTAKE = HiddenSet("mistake", ("right_wheel_reversed",), 14, "short")
 

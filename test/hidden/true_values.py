@@ -13,6 +13,9 @@ from werrimbi_odom.effects.library import LIBRARY
 
 Given = Mapping[str, Any]
 
+GRAVITY = 9.81
+"""[m/s^2]"""
+
 _VALUES: dict[str, Callable[[Given], dict[str, float]]] = {
     "track_width": lambda it: {"multiplier": it["multiplier"]},
     "unequal_wheel_radii": lambda it: {"ratio": it["ratio"]},
@@ -47,6 +50,21 @@ _VALUES: dict[str, Callable[[Given], dict[str, float]]] = {
     "reference_delay": lambda it: {"delay": it["delay"]},
     "reference_heading_delay": lambda it: {"delay": it["heading_delay"]},
     "encoder_skew": lambda it: {"delay": it["delay"]},
+    "oval_left_wheel": lambda it: {"amplitude": it["amplitude"]},
+    "oval_right_wheel": lambda it: {"amplitude": it["amplitude"]},
+    "radius_by_channel": lambda it: {
+        "temperature": it.get("expansion", 0.0),
+        "payload": -it.get("yielding", 0.0),
+    },
+    "tyre_squash": lambda it: {"coefficient": it["loss"]},
+    "load_transfer": lambda it: {
+        "lateral": it["softness"] * it["height"] / GRAVITY,
+        "longitudinal": it["softness"] * it["length"] / GRAVITY,
+    },
+    "anisotropic_floor": lambda it: {
+        "along_x": it["gain"] * math.cos(2.0 * it["grain"]),
+        "diagonal": it["gain"] * math.sin(2.0 * it["grain"]),
+    },
 }
 
 

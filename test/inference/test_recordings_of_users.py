@@ -192,7 +192,8 @@ def test_a_radius_that_falls_with_speed_is_drafted_backwards_too(tmp_path: Path)
     (squash,) = load_file(tmp_path / "squash.py")
     truth = replace(ROBOT, effects=(squash.using(growth=-0.08),))
     runs = runs_of(truth, [1, 2, 3, 4])
-    found = draft_effect(diagnose(runs, ROBOT, LIBRARY, holdout=[run_of(truth, 5)]))
+    library = [effect for effect in LIBRARY if effect.name != "tyre_squash"]
+    found = draft_effect(diagnose(runs, ROBOT, library, holdout=[run_of(truth, 5)]))
     cell = found.dependence
     assert (cell.name, found.form, cell.amount.per) == ("wheel_speed", "square", "travel")
     applied = found.fit.point.model.robot.effects[-1]

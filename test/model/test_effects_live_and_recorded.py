@@ -12,7 +12,7 @@ import pytest
 from test.model.drives import ROBOT, Ticks, read
 from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter
+from werrimbi_odom.model.effect import Effect, Parameter
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.odometer import Estimate, Odometer
 from werrimbi_odom.model.robot import Robot
@@ -26,7 +26,9 @@ TYPICAL = {
         }
     )
     for effect in LIBRARY
+    if not effect.lacks(())
 }
+"""Those that the counters alone can run; for the others see the channels below."""
 TOGETHER = (
     "wheels_swapped",
     "right_missed_ticks",
@@ -73,7 +75,9 @@ def test_live_and_recorded_agree(effects: tuple[str, ...]) -> None:
     assert_alike(estimates(Odometer(robot), drive()), trajectory(robot, *drive()))
 
 
-@pytest.mark.parametrize("name", [e.name for e in LIBRARY if e.stage in ("wheels", "body")])
+@pytest.mark.parametrize(
+    "name", [e.effect.name for e in TYPICAL.values() if e.effect.stage in ("wheels", "body")]
+)
 def test_every_effect_moves_the_robot_elsewhere(name: str) -> None:
     """Else the test above would say nothing."""
     plain, with_it = (
@@ -202,15 +206,23 @@ LADEN = Effect(
 )
 
 
-def laden(*more: AppliedEffect) -> Robot:
-    return replace(ROBOT, effects=(LADEN.using(loss=2e-3), *more))
+OWN, OURS = LADEN.using(loss=2e-3), find("radius_by_channel").using(payload=-2e-3)
+MISSING = {
+    "laden": "needs the measured channel payload_kg, a column",
+    "radius_by_channel": "channel whose name has one of temperature, payload in it, a column",
+}
 
 
-def test_an_effect_sees_its_channel_live_and_recorded() -> None:
+@pytest.fixture(params=[OWN, OURS], ids=MISSING)
+def laden(request: pytest.FixtureRequest) -> Robot:
+    return replace(ROBOT, effects=(request.param,))
+
+
+def test_an_effect_sees_its_channel_live_and_recorded(laden: Robot) -> None:
     ticks = drive()
     payload = np.interp(ticks.time, [ticks.time[100], ticks.time[200]], [0.0, 20.0])
-    recorded = trajectory(laden(), *ticks, channels={"payload_kg": payload})
-    odometer = Odometer(laden())
+    recorded = trajectory(laden, *ticks, channels={"payload_kg": payload})
+    odometer = Odometer(laden)
     live = []
     for row, kilograms in enumerate(payload.tolist()):
         message = (float(column[row]) for column in ticks)
@@ -223,18 +235,21 @@ def test_an_effect_sees_its_channel_live_and_recorded() -> None:
     )
 
 
-def test_a_gap_in_a_channel_is_interpolated() -> None:
+def test_a_gap_in_a_channel_is_interpolated(laden: Robot) -> None:
     ticks = drive()
     payload = np.linspace(0.0, 20.0, ticks.time.size)
     gaps = np.where(np.arange(payload.size) % 5 == 0, payload, np.nan)
-    full, holed = (trajectory(laden(), *ticks, channels={"payload_kg": p}) for p in (payload, gaps))
+    full, holed = (trajectory(laden, *ticks, channels={"payload_kg": p}) for p in (payload, gaps))
     np.testing.assert_allclose(holed.x, full.x, atol=1e-3)
     assert np.isfinite(holed.x).all()
 
 
 @pytest.mark.parametrize("channels", [{}, {"payload_kg": np.full(400, np.nan)}])
-def test_a_channel_that_was_not_measured_is_an_error(channels: dict[str, np.ndarray]) -> None:
-    with pytest.raises(InputError, match="laden needs the measured channel payload_kg, a column"):
-        trajectory(laden(), *drive(), channels=channels)
-    with pytest.raises(InputError, match="laden needs the measured channel payload_kg"):
-        estimates(Odometer(laden()), drive())
+def test_a_channel_that_was_not_measured_is_an_error(
+    laden: Robot, channels: dict[str, np.ndarray]
+) -> None:
+    missing = MISSING[laden.effects[0].name]
+    with pytest.raises(InputError, match=missing):
+        trajectory(laden, *drive(), channels=channels)
+    with pytest.raises(InputError, match=missing):
+        estimates(Odometer(laden), drive())

@@ -25,8 +25,8 @@ from werrimbi_odom.model.trajectory import trajectory
 ROOT = Path(__file__).parents[2]
 EXAMPLE = ROOT / "example" / "my_robot"
 HOLDING = {
-    "effects": ["radius_grows_with_speed"],
-    "radius_grows_with_speed": {"growth": 0.1},
+    "effects": ["tread_lies_down"],
+    "tread_lies_down": {"loss": 0.1},
 }
 
 
@@ -84,44 +84,43 @@ def test_the_node_runs_it_by_its_name(launch: Any, robot: dict[str, Any]) -> Non
     counts = np.array(time), np.array(left), np.array(right)
     with_it, plain = (
         trajectory(Robot(0.35, 0.05, 2000.0, 1000.0, effects=effects), *counts)
-        for effects in ((effect.using(growth=0.1),), ())
+        for effects in ((effect.using(loss=0.1),), ())
     )
     assert last.x == pytest.approx(with_it.x[-1], abs=1e-9)
     assert last.y == pytest.approx(with_it.y[-1], abs=1e-9)
     assert np.hypot(last.x - plain.x[-1], last.y - plain.y[-1]) > 1e-3
-    assert node.report()[2]["effect radius_grows_with_speed"] == "growth 0.1 s^2/m^2"
+    assert node.report()[2]["effect tread_lies_down"] == "loss 0.1"
 
 
 @pytest.mark.usefixtures("installed")
-def test_the_node_says_that_it_has_no_thermometer(
+def test_the_node_says_that_it_has_no_gauge(
     run_node: Any, robot: dict[str, Any], tmp_path: Path
 ) -> None:
-    done = run_node(robot | {"effects": ["radius_follows_temperature"]})
+    done = run_node(robot | {"effects": ["radii_follow_pressure"]})
     assert done.returncode == 2
-    assert "looks at the measured channel wheel_temperature_c, which the node does" in done.stderr
+    assert "looks at the measured channel tyre_pressure_kpa, which the node does" in done.stderr
 
 
 @pytest.mark.usefixtures("installed")
 def test_the_command_line_knows_both(tmp_path: Path) -> None:
-    told = werrimbi("explain", "radius_follows_temperature")
+    told = werrimbi("explain", "radii_follow_pressure")
     assert told.returncode == 0, told.stderr
-    assert "swell with warmth" in told.stdout
+    assert "stretch with their pressure" in told.stdout
     text = (EXAMPLE / "robot.yaml").read_text()
-    warm = "    effects: [radius_grows_with_speed, radius_follows_temperature]\n"
-    text = text.replace(next(line for line in text.splitlines(True) if "effects:" in line), warm)
+    both = "    effects: [tread_lies_down, radii_follow_pressure]\n"
+    text = text.replace(next(line for line in text.splitlines(True) if "effects:" in line), both)
     file = tmp_path / "robot.yaml"
-    file.write_text(text + "    radius_follows_temperature: {expansion: 0.001}\n")
+    file.write_text(text + "    radii_follow_pressure: {stretch: 0.001}\n")
     (tmp_path / "run").mkdir()
-    rows = "".join(f"{0.1 * n!r},{100 * n},{100 * n},32.0\n" for n in range(11))
-    header = "t_s,left_ticks,right_ticks,wheel_temperature_c\n"
+    rows = "".join(f"{0.1 * n!r},{-100 * n},{-100 * n},190.0\n" for n in range(11))
+    header = "t_s,left_ticks,right_ticks,tyre_pressure_kpa\n"
     (tmp_path / "run" / "ticks.csv").write_text(header + rows)
     words = ["odom", "--robot", file, tmp_path / "run", "--out", tmp_path / "odom.csv"]
     done = werrimbi(*words)
     assert done.returncode == 0, done.stderr
     travel = 1000 * 2.0 * np.pi * 0.05 / 2000.0
-    speed = travel / 1.0
     x = float((tmp_path / "odom.csv").read_text().splitlines()[-1].split(",")[1])
-    assert x == pytest.approx(travel * (1.0 + 0.03 * speed**2) * 1.01, rel=1e-9)
+    assert x == pytest.approx(-travel * (1.0 - 0.03) * 1.01, rel=1e-9)
 
 
 def test_without_it_a_robot_file_that_names_it_says_what_is_unknown(tmp_path: Path) -> None:
@@ -130,13 +129,13 @@ def test_without_it_a_robot_file_that_names_it_says_what_is_unknown(tmp_path: Pa
     words = ["odom", "--robot", EXAMPLE / "robot.yaml", tmp_path / "run", "--out", tmp_path / "o"]
     done = werrimbi(*words)
     assert done.returncode == 2
-    assert "robot.yaml, line 8: unknown effect radius_grows_with_speed" in done.stderr
+    assert "robot.yaml, line 8: unknown effect tread_lies_down" in done.stderr
 
 
 def test_what_the_docs_show_is_the_file_and_both_effects_keep_the_laws() -> None:
     page = (ROOT / "docs" / "effects.md").read_text(encoding="utf-8")
     whole = (EXAMPLE / "my_robot_effects.py").read_text(encoding="utf-8")
     assert f"```python\n{whole}```" in page
-    for name in ("my_robot_effects.py", "my_robot_warmth.py"):
+    for name in ("my_robot_effects.py", "my_robot_pressure.py"):
         (effect,) = load_file(EXAMPLE / name)
         check_effect(effect)

@@ -129,7 +129,7 @@ def test_the_phase_belongs_to_the_counter_only_where_that_keeps_its_zero() -> No
 
 
 def test_an_oval_wheel_errs_twice_a_turn() -> None:
-    path = drive(OvalWheel("left", 0.02), BRISK).true_path
+    path = drive(OvalWheel("left", 0.02 * RADIUS), BRISK).true_path
     left, right = rolled(path)
     _, plain = errors(path, left, right)
     # An ellipse's hub is above its contact but for ovality * r * sin(2 q), half of it each way;

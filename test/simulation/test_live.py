@@ -35,7 +35,7 @@ START = Pose(0.0, 0.0, 0.0)
     "wish",
     [
         *("left_backlash=0.004", "right_missed_ticks=0.05", "encoder_skew=0.015"),
-        *("wheels_swapped", "reference_delay=-0.08", "radius_follows_payload"),
+        *("wheels_swapped", "reference_delay=-0.08", "base_by_payload"),
     ],
 )
 def test_live_and_recorded_are_one(wish: str) -> None:

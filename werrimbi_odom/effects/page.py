@@ -125,6 +125,7 @@ def as_json(effect: Effect) -> dict[str, Any]:
         **{name.lower(): page.sections.get(name) for name in SECTIONS},
         "twin_effects": [twin.name for twin in effect.indistinguishable_from],
         "channels": list(effect.channels),
+        "one_of_channels": list(effect.one_of_channels),
         "parameters": {
             name: {
                 "unit": item.unit,

@@ -110,7 +110,7 @@ def check_channels(robot: Robot, channels: Mapping[str, object]) -> None:
         When a channel is not; the message names it and the effect.
     """
     for applied in robot.effects:
-        missing = [name for name in applied.effect.channels if name not in channels]
+        missing = applied.effect.lacks(channels)
         if missing:
             known = f" (there are {', '.join(channels)})" if channels else ""
             raise InputError(

@@ -18,7 +18,7 @@ from __future__ import annotations
 
 import inspect
 import math
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
@@ -78,6 +78,8 @@ class Effect:
         Extra measured channels that it looks at; without them it cannot be applied.
     sketch : Sketch, optional
         A drawing of it, for reports.
+    one_of_channels : tuple of str
+        Words, one of which must be in the name of a measured channel; likewise.
     """
 
     name: str
@@ -89,6 +91,16 @@ class Effect:
     quadrature: tuple[str, str] | None = None
     channels: tuple[str, ...] = ()
     sketch: Sketch | None = None
+    one_of_channels: tuple[str, ...] = ()
+
+    def lacks(self, measured: Iterable[str]) -> tuple[str, ...]:
+        """Channels that it looks at and that were not measured, in words; empty: it can act."""
+        there = tuple(measured)
+        missing = tuple(name for name in self.channels if name not in there)
+        wanted = self.one_of_channels
+        if wanted and not any(word in name.lower() for word in wanted for name in there):
+            missing += (f"whose name has one of {', '.join(wanted)} in it",)
+        return missing
 
     @property
     def twins(self) -> tuple[str, ...]:
@@ -200,12 +212,13 @@ def wheel_effect(
     twins: Sequence[Twin | str] = (),
     quadrature: tuple[str, str] | None = None,
     channels: tuple[str, ...] = (),
+    one_of_channels: tuple[str, ...] = (),
     sketch: Sketch | None = None,
     pose: bool = False,  # asked for once; what a law looks at is now found by running it
     **parameters: Parameter,
 ) -> Callable[[Apply], Effect]:
     """Declare ``f(travel, drive, **parameters) -> WheelTravel`` as an effect on the wheels."""
-    return _declared("wheels", parameters, 2, twins, sketch, quadrature, channels)
+    return _declared("wheels", parameters, 2, twins, sketch, quadrature, channels, one_of_channels)
 
 
 def body_effect(
@@ -243,6 +256,7 @@ def _declared(
     sketch: Sketch | None,
     quadrature: tuple[str, str] | None = None,
     channels: tuple[str, ...] = (),
+    one_of_channels: tuple[str, ...] = (),
 ) -> Callable[[Apply], Effect]:
     def declare(apply: Apply) -> Effect:
         name = apply.__name__
@@ -262,7 +276,16 @@ def _declared(
             )
         others = tuple(Twin(each) if isinstance(each, str) else each for each in twins)
         return Effect(
-            name, stage, dict(parameters), apply, doc, others, quadrature, channels, sketch
+            name,
+            stage,
+            dict(parameters),
+            apply,
+            doc,
+            others,
+            quadrature,
+            channels,
+            sketch,
+            one_of_channels,
         )
 
     return declare

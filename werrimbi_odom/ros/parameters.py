@@ -271,10 +271,10 @@ def _take_of_effect(effects: Named, name: str, value: object) -> None:
 def _without_channels(effects: Named) -> list[str]:
     """What cannot run live: a node has nothing but the counters."""
     return [
-        f"effect {effect.name} looks at the measured channel {', '.join(effect.channels)}, which "
+        f"effect {effect.name} looks at the measured channel {', '.join(effect.lacks(()))}, which "
         "the node does not have; it works on recorded runs alone. Take it out of effects"
         for effect in effects.effects
-        if effect.channels
+        if effect.lacks(())
     ]
 
 

@@ -37,7 +37,7 @@ def check_effect(effect: Effect) -> None:
         else:
             _views(effect)
     else:
-        drive = Rehearsal.of(effect.channels)
+        drive = Rehearsal.of((*effect.channels, *effect.one_of_channels))
         for law in LAWS:
             law(effect, drive)
 

@@ -181,12 +181,11 @@ def _calibrations_wanted(effects: Sequence[Effect], set_up: SetUp) -> set[str]:
 
 def _refuse_unmeasured(effect: Effect, runs: Sequence[Run]) -> None:
     for run in runs:
-        for channel in effect.channels:
-            if channel not in run.ticks.channels:
-                raise InputError(
-                    f"{effect.name} looks at the measured channel {channel}, a column of "
-                    f"ticks.csv, and {run.name} has none"
-                )
+        for channel in effect.lacks(run.ticks.channels):
+            raise InputError(
+                f"{effect.name} looks at the measured channel {channel}, a column of "
+                f"ticks.csv, and {run.name} has none"
+            )
 
 
 def _stated(judge: Judge, told: str) -> float | None:

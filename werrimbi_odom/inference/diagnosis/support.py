@@ -57,7 +57,7 @@ def askable(effects: Sequence[Effect], runs: Together, robot: Robot) -> tuple[Ef
     if not runs.own_axes:
         return tuple(effects)
     drive = runs.drive(robot)
-    return tuple(each for each in effects if each.channels or not _on_the_floor(each, drive))
+    return tuple(each for each in effects if each.lacks(()) or not _on_the_floor(each, drive))
 
 
 def _on_the_floor(effect: Effect, drive: Drive[Floats]) -> bool:

@@ -31,6 +31,9 @@ from werrimbi_odom.model.pose import Floats
 BESIDE_POSITIONS = ("reference_heading_delay",)
 """Effects that are of headings against positions: of headings alone they are another effect."""
 
+OF_HEADINGS_ALONE = ("reference_gyro_drift",)
+"""Effects of a reference that measures nothing else: a gyro."""
+
 OF_THE_MEASUREMENT = ("reference_scale",)
 """Effects that all three multipliers together do as well: never tried beside them."""
 
@@ -134,7 +137,7 @@ def candidates(
             continue
         if effect.name in OF_THE_MEASUREMENT and not (asked or own_scale):
             continue
-        if not set(effect.channels) <= measured:
+        if effect.lacks(measured):
             continue
         if not asked and any(item.as_base for item in effect.parameters.values()):
             continue
@@ -166,8 +169,8 @@ def signatures(
     tried: Sequence[Candidate],
 ) -> tuple[Floats, Iterator[Signature]]:
     """Innovations (n,) that `knobs` cannot explain, and what each candidate does to them."""
-    if runs.headings_alone:
-        tried = [candidate for candidate in tried if candidate.name not in BESIDE_POSITIONS]
+    others = BESIDE_POSITIONS if runs.headings_alone else OF_HEADINGS_ALONE
+    tried = [candidate for candidate in tried if candidate.name not in others]
     prediction = predict_all(point.model, runs)
     columns, owners = [], []
     for number, candidate in enumerate(tried):

@@ -27,7 +27,12 @@ from werrimbi_odom.inference.chances import noncentrality
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import askable
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED, OF_THE_MEASUREMENT, Candidate
+from werrimbi_odom.inference.fitting.candidates import (
+    CALIBRATED,
+    OF_HEADINGS_ALONE,
+    OF_THE_MEASUREMENT,
+    Candidate,
+)
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import STEP
 from werrimbi_odom.inference.fitting.together import together
@@ -79,7 +84,8 @@ def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[D
         if not effect.is_mistake
         and effect.name not in OF_THE_MEASUREMENT
         and effect.name not in held
-        and set(effect.channels) <= measured
+        and not effect.lacks(measured)
+        and (effect.name not in OF_HEADINGS_ALONE or diagnosis.runs.headings_alone)
         and base_name(effect) is None
     ]
     asked = {each.name for each in askable(effects, diagnosis.runs, robot)}

@@ -39,7 +39,12 @@ def _needed(name: str, values: Values) -> list[float]:
     return [value for key, value in values.items() if key != "phase" or name not in _WITHOUT_PHASE]
 
 
-_WITHOUT_PHASE = ("eccentric_left_wheel", "eccentric_right_wheel")
+_WITHOUT_PHASE = (
+    "eccentric_left_wheel",
+    "eccentric_right_wheel",
+    "oval_left_wheel",
+    "oval_right_wheel",
+)
 
 
 def _length(metres: float) -> str:
@@ -117,6 +122,36 @@ def _drift(values: Values, robot: Robot) -> str:
     return f"{_length(longer)} {_more(longer)} after a drive of 20 m in a minute"
 
 
+def _by_channel(values: Values, robot: Robot) -> str:
+    parts = [
+        f"{_length(TURNS * robot.wheel_radius * values[name] * 10.0)} "
+        f"{_more(values[name])} at 10 {unit} more"
+        for name, unit in (("temperature", "K"), ("payload", "kg"))
+        if values[name]
+    ]
+    return " and ".join(parts)
+
+
+def _squash(values: Values, robot: Robot) -> str:
+    lost = 10.0 * values["coefficient"] * (FAST**2 - SLOW**2)
+    return f"{_length(lost)} {_more(-lost)} at {FAST} m/s than at {SLOW} m/s"
+
+
+def _transfer(values: Values, robot: Robot) -> str:
+    short = TURNS * 2.0 * values["lateral"] * FAST**2 / robot.track
+    return f"{_angle(short)} {_more(-short)} in ten laps at {FAST} m/s"
+
+
+def _grain(values: Values, robot: Robot) -> str:
+    gain = math.hypot(values["along_x"], values["diagonal"])
+    along = math.degrees(0.5 * math.atan2(values["diagonal"], values["along_x"]))
+    side = "left" if along >= 0.0 else "right"
+    return (
+        f"{_length(10.0 * gain)} more on 5 m along the grain than across, which lies "
+        f"{abs(along):.0f}° {side} of the room's x"
+    )
+
+
 def _missed(values: Values, robot: Robot) -> str:
     speed = f"above {values['above']:.2f} m/s"
     return f"{100.0 * values['fraction']:.2g} turns too few of a hundred {speed}"
@@ -139,6 +174,12 @@ _EXPECTED: dict[str, Callable[[Values, Robot], str]] = {
     "right_backlash": lambda values, robot: _length(values["travel"]),
     "eccentric_left_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
     "eccentric_right_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
+    "oval_left_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
+    "oval_right_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
+    "radius_by_channel": _by_channel,
+    "tyre_squash": _squash,
+    "load_transfer": _transfer,
+    "anisotropic_floor": _grain,
     "longitudinal_slip": lambda values, robot: (
         f"{_length(0.5 * values['coefficient'] * FAST**2)} at {FAST} m/s"
     ),
@@ -148,6 +189,9 @@ _EXPECTED: dict[str, Callable[[Values, Robot], str]] = {
     "sideways_drift": lambda values, robot: _aside(values["angle"], 5.0),
     "reference_yaw_offset": lambda values, robot: _angle(values["angle"]),
     "reference_scale": lambda values, robot: f"{3600.0 * values['multiplier']:.0f}° of 3600°",
+    "reference_gyro_drift": lambda values, robot: (
+        f"{_angle(values['rate'] * 60.0**2 / 8.0)} at the middle of a minute"
+    ),
     "reference_heading_delay": lambda values, robot: f"{_angle(2.0 * values['delay'])} at 1 rad/s",
     "encoder_skew": lambda values, robot: f"{_length(values['delay'] * FAST)} at {FAST} m/s",
 }

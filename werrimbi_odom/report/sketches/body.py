@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 
 from werrimbi_odom.report.sketches.parts import (
@@ -78,6 +79,75 @@ def _eccentric(side: str) -> Parts:
         line((165, 85), (315, 85), colour=GREY),
         wave(165, 85, 150, 24, colour=colour),
         words(240, 130, "turns of the wheel", colour=GREY),
+    ]
+
+
+def _oval(side: str) -> Parts:
+    colour = BLUE if side == "left" else ORANGE
+    shape = [
+        (80 + 46 * math.cos(at) + 4 * math.sin(at), 84 + 36 * math.sin(at) + 4 * math.cos(at))
+        for at in (math.tau * step / 48 for step in range(49))
+    ]
+    return [
+        floor(125, 145),
+        line(*shape, colour=colour),
+        circle(80, 84, 41, colour=GREY, dash=DASH),
+        circle(80, 84, 4, colour=INK, fill=INK),
+        arc(80, 84, 54, 150, 100, colour=GREY, head=True),
+        line((165, 85), (315, 85), colour=GREY),
+        wave(165, 85, 150, 20, colour=colour, turns=4.0),
+        words(240, 130, "turns of the wheel", colour=GREY),
+    ]
+
+
+def _squash() -> Parts:
+    return [
+        floor(120),
+        circle(75, 82, 38, colour=BLUE),
+        words(75, 86, "slow", colour=BLUE),
+        arrow((120, 60), (150, 60), colour=GREY),
+        arc(235, 88, 38, -57, 237, colour=ORANGE),
+        line((214, 120), (256, 120), colour=ORANGE, width=3),
+        words(235, 92, "fast", colour=ORANGE),
+        arrow((280, 60), (328, 60), colour=GREY),
+        arrow((290, 84), (290, 119), both=True),
+    ]
+
+
+def _by_channel() -> Parts:
+    return [
+        floor(125),
+        circle(70, 85, 40, colour=ORANGE),
+        circle(70, 93, 32, colour=GREY, dash=DASH),
+        line((150, 120), (150, 40), colour=GREY),
+        line((150, 120), (320, 120), colour=GREY),
+        line((150, 100), (190, 60), (235, 92), (280, 52), (318, 70), colour=ORANGE),
+        words(235, 40, "a column of ticks.csv", colour=GREY),
+    ]
+
+
+def _load() -> Parts:
+    return [
+        floor(122),
+        oblong(170, 66, 110, 28, fill=GREY),
+        oblong(112, 92, 22, 60, colour=BLUE),
+        oblong(228, 96, 26, 52, colour=ORANGE),
+        words(60, 92, "inner", colour=BLUE),
+        words(280, 92, "outer", colour=ORANGE),
+        arrow((140, 34), (205, 34)),
+        words(132, 30, "load", colour=ORANGE, anchor="end"),
+    ]
+
+
+def _carpet() -> Parts:
+    ribs = [line((25, y), (185, y), colour=GREY, width=1.0) for y in range(24, 138, 14)]
+    return [
+        *ribs,
+        robot(75, 94, size=0.7),
+        arrow((100, 94), (190, 94), colour=GREEN),
+        words(200, 98, "along it: more", colour=GREEN, anchor="start"),
+        arrow((75, 70), (75, 20)),
+        words(200, 34, "across it: less", colour=ORANGE, anchor="start"),
     ]
 
 
@@ -204,12 +274,17 @@ DRAWINGS: Mapping[str, Callable[..., Parts]] = {
     "unequal": _unequal_radii,
     "radius": _radius_scale,
     "eccentric": _eccentric,
+    "oval": _oval,
+    "squash": _squash,
+    "load": _load,
+    "by_channel": _by_channel,
     "slip_ahead": _longitudinal_slip,
     "slip_outwards": _lateral_slip,
     "two_bases": _turn_dependent,
     "skid": _skid_steer,
     "sideways": _sideways_drift,
     "slope": _floor_slope,
+    "carpet": _carpet,
     "castor": _castor_kick,
     "backlash": _backlash,
     "shrinking": _radius_drift,

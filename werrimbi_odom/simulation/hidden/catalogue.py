@@ -14,17 +14,23 @@ import numpy as np
 
 from .counters import EncoderSkew, MissedTicks, WheelReversed, WheelsSwapped
 from .creep import CastorKick, LateralSlip, LongitudinalSlip, TurnDependentTrack
-from .floor import CablePull, FloorSlope, SlipperySpot
+from .floor import CablePull, FloorSlope, GrainedFloor, SlipperySpot
 from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
-from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount
-from .outside import RadiusFollowsPayload, RadiusFollowsTemperature, RadiusGrowsWithSpeed
+from .mount import AskewAxle, GyroWarmsUp, ReferenceDelay, ReferenceMirrored, ReferenceMount
+from .outside import BaseByPayload, OneTyreBackwards, OneTyreByPressure
 from .peculiarity import Peculiarity
 from .skid import skid_steer
-from .wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift
+from .tyres import (
+    LoadTransfer,
+    RadiusFollowsPayload,
+    RadiusFollowsTemperature,
+    TyreSquash,
+)
+from .wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift, Side
 
 Rng = np.random.Generator
 Make = Callable[[float, Rng], Peculiarity]
-Kind = Literal["effect", "mistake", "outside", "robot"]
+Kind = Literal["effect", "mistake", "outside", "robot", "gyro"]
 
 
 class UnknownEffectError(ValueError):
@@ -54,9 +60,9 @@ class Entry:
         Strength at which there is no effect.
     signed : bool
         Whether both signs of that distance occur.
-    kind : "effect", "mistake", "outside" or "robot"
-        In the library's vocabulary, a mistake of set-up, nothing that the library knows, or another
-        kind of robot.
+    kind : "effect", "mistake", "outside", "robot" or "gyro"
+        In the library's vocabulary, a mistake of set-up, nothing that the library knows, another
+        kind of robot, or an effect that is one where a gyro is the reference.
     """
 
     name: str
@@ -130,6 +136,23 @@ def _radius_drift(per_drive: float, rng: Rng) -> RadiusDrift:
     return RadiusDrift(per_drive / 60.0, "second")
 
 
+def _by_channel(per_swing: float, rng: Rng) -> Peculiarity:
+    """A swing is 10 K or 10 kg."""
+    if _either(rng):
+        return RadiusFollowsTemperature(per_swing / 10.0)
+    return RadiusFollowsPayload(abs(per_swing) / 10.0)
+
+
+def _load_transfer(softness: float, rng: Rng) -> LoadTransfer:
+    """Wheels in the middle, with a castor before or behind, or none of it along."""
+    height, length = rng.uniform((0.6, -0.8), (1.2, 0.8))
+    return LoadTransfer(softness, float(height), float(length) * _either(rng))
+
+
+def _one_side(rng: Rng) -> Side:
+    return "left" if _either(rng) else "right"
+
+
 def _slippery_spot(loss: float, rng: Rng) -> SlipperySpot:
     x, y, radius = rng.uniform((-0.8, -0.8, 0.3), (0.8, 0.8, 0.6))
     return SlipperySpot(loss, float(x), float(y), float(radius))
@@ -182,6 +205,18 @@ CATALOGUE: tuple[Entry, ...] = (
             0.15, "reference's yaw later than its position", signed=False),
     Entry("encoder_skew", lambda s, rng: EncoderSkew(s), "s", 0.002, 0.02,
             "right counter read later than the left one"),
+    Entry("oval_left_wheel", lambda s, rng: OvalWheel("left", s), "m", 6e-4, 2.5e-3,
+            "half the difference of the left wheel's radii", signed=False),
+    Entry("oval_right_wheel", lambda s, rng: OvalWheel("right", s), "m", 6e-4, 2.5e-3,
+            "half the difference of the right wheel's radii", signed=False),
+    Entry("radius_by_channel", _by_channel, "per swing", 0.005, 0.02,
+            "growth of both radii in 10 K or 10 kg, measured"),
+    Entry("tyre_squash", lambda s, rng: TyreSquash(s), "1", 0.01, 0.06,
+            "loss of each radius at 1 m/s"),
+    Entry("load_transfer", _load_transfer, "1", 0.05, 0.3,
+            "loss of a radius under half the robot's weight", signed=False),
+    Entry("anisotropic_floor", lambda s, rng: GrainedFloor(s, _anywhere(rng)), "1", 0.003, 0.02,
+            "way gained along the floor's grain, and lost across", signed=False),
     _mistake("wheels_swapped", lambda rng: WheelsSwapped(), "left and right exchanged"),
     _mistake("left_wheel_reversed", lambda rng: WheelReversed("left"),
              "left counter with the wrong sign"),
@@ -189,18 +224,18 @@ CATALOGUE: tuple[Entry, ...] = (
              "right counter with the wrong sign"),
     _mistake("reference_mirrored", lambda rng: ReferenceMirrored(exchanged=_either(rng)),
              "reference's frame left-handed"),
-    Entry("radius_follows_temperature", lambda s, rng: RadiusFollowsTemperature(s), "1/K", 3e-4,
-            2e-3, "growth of both radii per kelvin, measured", kind="outside"),
-    Entry("radius_follows_payload", lambda s, rng: RadiusFollowsPayload(s), "1/kg", 5e-4, 4e-3,
-            "loss of both radii per kilogram, measured", signed=False, kind="outside"),
-    Entry("radius_grows_with_speed", lambda s, rng: RadiusGrowsWithSpeed(s), "1", 0.01, 0.06,
-            "growth of each radius at 1 m/s", signed=False, kind="outside"),
+    Entry("one_tyre_by_pressure", lambda s, rng: OneTyreByPressure(_one_side(rng), s), "1/kPa",
+            1e-4, 6e-4, "growth of one radius per kilopascal, measured", kind="outside"),
+    Entry("base_by_payload", lambda s, rng: BaseByPayload(s), "1/kg", 1.5e-3, 6e-3,
+            "growth of the base per kilogram, measured", signed=False, kind="outside"),
+    Entry("one_tyre_backwards", lambda s, rng: OneTyreBackwards(_one_side(rng), s), "1", 0.004,
+            0.02, "share of one radius lost when rolling backwards", signed=False, kind="outside"),
     Entry("slippery_spot", _slippery_spot, "1", 0.03, 0.3,
             "share of the travel lost on a spot of the floor", signed=False, kind="outside"),
     Entry("cable_pull", lambda s, rng: CablePull(s, _anywhere(rng)), "rad/m", 0.005, 0.05,
             "turning towards one direction of the room", signed=False, kind="outside"),
-    Entry("oval_wheel", lambda s, rng: OvalWheel("left" if _either(rng) else "right", s), "1",
-            0.01, 0.05, "out-of-roundness of one wheel", signed=False, kind="outside"),
+    Entry("reference_gyro_drift", lambda s, rng: GyroWarmsUp(s), "rad/s^2", 3e-5, 3e-4,
+            "growth of the gyro's bias each second", kind="gyro"),
     Entry("skid_steer", skid_steer, "1", 0.3, 1.5, "turning by four skidding wheels over the true",
             null=1.0, signed=False, kind="robot"),
 )
@@ -231,13 +266,32 @@ def hide(name: str, strength: float | None = None, *, seed: int, number: int = 0
     """
     rng = np.random.default_rng([seed, number, *name.encode()])
     if name == "random":
-        name = str(rng.choice([entry.name for entry in CATALOGUE if entry.kind == "effect"]))
+        name = _any_effect(rng, seed, number)
     entry = find(name)
     drawn = entry.draw(rng)
     strength = drawn if strength is None else strength
     if not math.isfinite(strength) or (entry.null > 0 and strength <= 0):
         raise StrengthError(f"the strength of {entry.name} cannot be {strength:g}")
     return Hidden(entry, strength, entry.make(strength, rng))
+
+
+FIRST = 21
+"""Effects that there were when seeds began to be written down."""
+
+
+def _any_effect(rng: Rng, seed: int, number: int) -> str:
+    """Any effect of the vocabulary, all as likely.
+
+    An effect that comes later takes its share of the seeds (reservoir sampling: Vitter 1985); the
+    other seeds go on hiding what they hid.
+    """
+    names = [entry.name for entry in CATALOGUE if entry.kind == "effect"]
+    chosen = str(rng.choice(names[:FIRST]))
+    for place, name in enumerate(names[FIRST:], start=FIRST):
+        own = np.random.default_rng([seed, number, *b"random", *name.encode()])
+        if own.uniform() < 1.0 / (place + 1):
+            chosen = name
+    return chosen
 
 
 def wished(wish: str, *, seed: int, number: int = 0) -> Hidden:

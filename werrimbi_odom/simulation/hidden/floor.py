@@ -41,6 +41,32 @@ class FloorSlope(Peculiarity):
 
 
 @dataclass(frozen=True)
+class GrainedFloor(Peculiarity):
+    """A ribbed floor: a wheel rolls on the ribs' crests along them, and over each of them across.
+
+    Parameters
+    ----------
+    gain : float
+        Share by which the way along the grain is longer than the mean; across it is shorter.
+    grain : float
+        Its direction in the world [rad].
+    """
+
+    gain: float
+    grain: float
+
+    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+        """More way along the grain, by how much of the motion lies along it and how much across."""
+
+        def shift(stride: Stride) -> Shift:
+            along = (stride.left + stride.right) / 2
+            off = stride.pose.yaw - self.grain
+            return Shift(self.gain * along * (math.cos(off) ** 2 - math.sin(off) ** 2), 0.0, 0.0)
+
+        return shift
+
+
+@dataclass(frozen=True)
 class SlipperySpot(Peculiarity):
     """An oil stain: a wheel on it travels less than it rolls. Outside the library.
 

@@ -1,129 +1,124 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Wheels whose radius follows something that the library holds no effect for."""
+"""What is odd about a robot and lies outside the library; of the floor's, see `floor`."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..chassis import Chassis
-from ..engine import Engine, Reshaper, Stride
+from ..engine import Engine, Reshaper, Shift, Shifter, Stride
 from ..recording import Recording
 from ..robot import TrueRobot
 from .peculiarity import Peculiarity
+from .tyres import with_channel
+from .wheels import Side
 
 Floats = NDArray[np.float64]
 
 
-def _with_channel(recording: Recording, name: str, values: Floats) -> Recording:
-    return replace(recording, channels={**recording.channels, name: values})
-
-
 @dataclass(frozen=True)
-class RadiusFollowsTemperature(Peculiarity):
-    """Both wheels swell with warmth, which is measured (`wheel_temperature_c`, to 0.1 K).
+class OneTyreByPressure(Peculiarity):
+    """One tyre leaks and is pumped up by its valve; its pressure is measured (SIDE_tyre_kpa).
 
     Parameters
     ----------
-    expansion : float
-        Relative growth per kelvin above 22 degrees Celsius [1/K].
+    side : "left" or "right"
+    per_kpa : float
+        Relative growth of that wheel's radius per kilopascal above 180 [1/kPa].
     """
 
-    expansion: float
+    side: Side
+    per_kpa: float
 
-    def _temperature(self, rng: np.random.Generator) -> tuple[float, float, float, float]:
-        """Of a run: mean [C], swing [K], angular frequency [rad/s], phase [rad]."""
-        mean, swing, period, phase = rng.uniform(
-            (16.0, 3.0, 20.0, 0.0), (30.0, 9.0, 60.0, 2 * np.pi)
-        )
-        return float(mean), float(swing), float(2 * np.pi / period), float(phase)
+    def _pressure(self, rng: np.random.Generator) -> tuple[Floats, Floats]:
+        """Of a run: times [s] and pressures [kPa], straight in between."""
+        times = np.concatenate(([0.0], np.cumsum(rng.uniform(6.0, 18.0, 60))))
+        return times, rng.uniform(160.0, 200.0, len(times))
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
-        """Resize the wheels as the temperature says."""
-        mean, swing, frequency, phase = self._temperature(rng)
+        """Resize the one wheel as the pressure says."""
+        times, pressures = self._pressure(rng)
+        wheel = chassis.left if self.side == "left" else chassis.right
 
         def reshape(engine: Engine, stride: Stride) -> None:
-            warmth = mean + swing * np.sin(frequency * stride.time + phase) - 22.0
-            for wheel in chassis.wheels:
-                engine.set_radius(wheel.side, wheel.radius * float(1 + self.expansion * warmth))
+            beyond = float(np.interp(stride.time, times, pressures)) - 180.0
+            engine.set_radius(self.side, wheel.radius * (1 + self.per_kpa * beyond))
 
         return reshape
 
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
-        """Write the thermometer's column."""
-        mean, swing, frequency, phase = self._temperature(rng)
-        measured = mean + swing * np.sin(frequency * recording.t_s + phase)
-        measured += 0.1 * rng.standard_normal(len(measured))
-        return _with_channel(recording, "wheel_temperature_c", measured)
+        """Write the gauge's column."""
+        measured = np.interp(recording.t_s, *self._pressure(rng))
+        measured = measured + 0.3 * rng.standard_normal(len(measured))
+        return with_channel(recording, f"{self.side}_tyre_kpa", measured)
 
 
 @dataclass(frozen=True)
-class RadiusFollowsPayload(Peculiarity):
-    """Both tyres give way under a payload, which is weighed (`payload_kg`, to 50 g).
+class BaseByPayload(Peculiarity):
+    """A payload presses the tyres broad, so that the robot turns as on a wider base.
+
+    It is weighed (`payload_kg`, to 50 g).
 
     Parameters
     ----------
-    yielding : float
-        Relative loss of radius per kilogram [1/kg].
+    broadening : float
+        Relative growth of the base per kilogram [1/kg].
     """
 
-    yielding: float
+    broadening: float
 
     def _loads(self, rng: np.random.Generator) -> tuple[Floats, Floats]:
-        """Of a run: times of change [s] and payloads from then on [kg]."""
+        """Of a run: times [s] and payloads [kg], straight in between."""
         times = np.concatenate(([0.0], np.cumsum(rng.uniform(8.0, 20.0, 60))))
         return times, rng.uniform(0.0, 10.0, len(times))
 
-    @staticmethod
-    def _load(at: Floats | float, times: Floats, loads: Floats) -> Floats:
-        """Loading takes a second."""
-        knots = np.column_stack((times[1:], times[1:] + 1.0)).ravel()
-        values = np.column_stack((loads[:-1], loads[1:])).ravel()
-        return np.asarray(np.interp(at, knots, values))
-
-    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
-        """Resize the wheels as the load says."""
+    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+        """Take back the turning that the wider base does not make."""
         times, loads = self._loads(rng)
 
-        def reshape(engine: Engine, stride: Stride) -> None:
-            load = float(self._load(stride.time, times, loads))
-            for wheel in chassis.wheels:
-                engine.set_radius(wheel.side, wheel.radius * (1 - self.yielding * load))
+        def shift(stride: Stride) -> Shift:
+            load = float(np.interp(stride.time, times, loads))
+            turn = (stride.right - stride.left) / robot.wheel_separation
+            return Shift(0.0, 0.0, turn * (1 / (1 + self.broadening * load) - 1))
 
-        return reshape
+        return shift
 
     def recording(
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
         """Write the scale's column."""
-        measured = self._load(recording.t_s, *self._loads(rng))
+        measured = np.interp(recording.t_s, *self._loads(rng))
         measured = measured + 0.05 * rng.standard_normal(len(measured))
-        return _with_channel(recording, "payload_kg", measured)
+        return with_channel(recording, "payload_kg", measured)
 
 
 @dataclass(frozen=True)
-class RadiusGrowsWithSpeed(Peculiarity):
-    """A soft tyre grows with the square of its speed.
+class OneTyreBackwards(Peculiarity):
+    """One tyre is mounted against its tread, whose blocks lie down when it rolls backwards.
 
     Parameters
     ----------
-    growth : float
-        Relative growth at 1 m/s.
+    side : "left" or "right"
+    loss : float
+        Share of its radius that is lost while it rolls backwards.
     """
 
-    growth: float
+    side: Side
+    loss: float
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
-        """Resize each wheel by its own speed."""
+        """Resize the one wheel by the sense in which it rolls."""
+        wheel = chassis.left if self.side == "left" else chassis.right
 
         def reshape(engine: Engine, stride: Stride) -> None:
-            for wheel, travel in zip(chassis.wheels, (stride.left, stride.right), strict=True):
-                speed = travel / stride.period
-                engine.set_radius(wheel.side, wheel.radius * (1 + self.growth * speed**2))
+            travel = stride.left if self.side == "left" else stride.right
+            if abs(travel) > 1e-6:
+                engine.set_radius(self.side, wheel.radius * (1 - self.loss * (travel < 0.0)))
 
         return reshape

@@ -47,22 +47,23 @@ class EccentricWheel(Peculiarity):
 
 @dataclass(frozen=True)
 class OvalWheel(Peculiarity):
-    """A wheel pressed out of round: an error twice a turn, which is outside the library.
+    """A wheel pressed out of round: an error twice a turn.
 
     Parameters
     ----------
     side : "left" or "right"
-    ovality : float
-        (largest - smallest radius) / (2 radius).
+    amplitude : float
+        Half the difference between its largest and its smallest radius [m].
     """
 
     side: Side
-    ovality: float
+    amplitude: float
 
     def chassis(self, chassis: Chassis) -> Chassis:
         """An ellipsoid in the sphere's place."""
-        wheel = replace(getattr(chassis, self.side), ovality=self.ovality)
-        return with_wheel(chassis, self.side, wheel)
+        wheel: WheelPlan = getattr(chassis, self.side)
+        oval = replace(wheel, ovality=self.amplitude / wheel.radius)
+        return with_wheel(chassis, self.side, oval)
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,176 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Tyres whose radius follows warmth, a payload, their speed or the load on them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..chassis import Chassis
+from ..engine import Engine, Reshaper, Shift, Shifter, Stride
+from ..recording import Recording
+from ..robot import TrueRobot
+from .peculiarity import Peculiarity
+
+Floats = NDArray[np.float64]
+
+GRAVITY = 9.81
+"""[m/s^2]"""
+
+
+def with_channel(recording: Recording, name: str, values: Floats) -> Recording:
+    """The record with one more column."""
+    return replace(recording, channels={**recording.channels, name: values})
+
+
+@dataclass(frozen=True)
+class RadiusFollowsTemperature(Peculiarity):
+    """Both wheels swell with warmth, which is measured (`wheel_temperature_c`, to 0.1 K).
+
+    Parameters
+    ----------
+    expansion : float
+        Relative growth per kelvin above 20 degrees Celsius [1/K].
+    """
+
+    expansion: float
+
+    def _temperature(self, rng: np.random.Generator) -> tuple[float, float, float, float]:
+        """Of a run: mean [C], swing [K], angular frequency [rad/s], phase [rad]."""
+        mean, swing, period, phase = rng.uniform(
+            (16.0, 3.0, 20.0, 0.0), (30.0, 9.0, 60.0, 2 * np.pi)
+        )
+        return float(mean), float(swing), float(2 * np.pi / period), float(phase)
+
+    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
+        """Resize the wheels as the temperature says."""
+        mean, swing, frequency, phase = self._temperature(rng)
+
+        def reshape(engine: Engine, stride: Stride) -> None:
+            warmth = mean + swing * np.sin(frequency * stride.time + phase) - 20.0
+            for wheel in chassis.wheels:
+                engine.set_radius(wheel.side, wheel.radius * float(1 + self.expansion * warmth))
+
+        return reshape
+
+    def recording(
+        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
+    ) -> Recording:
+        """Write the thermometer's column."""
+        mean, swing, frequency, phase = self._temperature(rng)
+        measured = mean + swing * np.sin(frequency * recording.t_s + phase)
+        measured += 0.1 * rng.standard_normal(len(measured))
+        return with_channel(recording, "wheel_temperature_c", measured)
+
+
+@dataclass(frozen=True)
+class RadiusFollowsPayload(Peculiarity):
+    """Both tyres give way under a payload, which is weighed (`payload_kg`, to 50 g).
+
+    Parameters
+    ----------
+    yielding : float
+        Relative loss of radius per kilogram [1/kg].
+    """
+
+    yielding: float
+
+    def _loads(self, rng: np.random.Generator) -> tuple[Floats, Floats]:
+        """Of a run: times of change [s] and payloads from then on [kg]."""
+        times = np.concatenate(([0.0], np.cumsum(rng.uniform(8.0, 20.0, 60))))
+        return times, rng.uniform(0.0, 10.0, len(times))
+
+    @staticmethod
+    def _load(at: Floats | float, times: Floats, loads: Floats) -> Floats:
+        """Loading takes a second."""
+        knots = np.column_stack((times[1:], times[1:] + 1.0)).ravel()
+        values = np.column_stack((loads[:-1], loads[1:])).ravel()
+        return np.asarray(np.interp(at, knots, values))
+
+    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
+        """Resize the wheels as the load says."""
+        times, loads = self._loads(rng)
+
+        def reshape(engine: Engine, stride: Stride) -> None:
+            load = float(self._load(stride.time, times, loads))
+            for wheel in chassis.wheels:
+                engine.set_radius(wheel.side, wheel.radius * (1 - self.yielding * load))
+
+        return reshape
+
+    def recording(
+        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
+    ) -> Recording:
+        """Write the scale's column."""
+        measured = self._load(recording.t_s, *self._loads(rng))
+        measured = measured + 0.05 * rng.standard_normal(len(measured))
+        return with_channel(recording, "payload_kg", measured)
+
+
+@dataclass(frozen=True)
+class TyreSquash(Peculiarity):
+    """A soft tyre rides lower with the square of its speed, or higher.
+
+    Parameters
+    ----------
+    loss : float
+        Relative loss of radius when it turns as a wheel of the first size does at 1 m/s; negative:
+        it grows. What flings a tread outwards, or gives it no time to spring back, is its turning.
+    """
+
+    loss: float
+
+    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
+        """Resize each wheel by its own speed."""
+
+        def reshape(engine: Engine, stride: Stride) -> None:
+            for wheel, travel in zip(chassis.wheels, (stride.left, stride.right), strict=True):
+                turning = travel / engine.radius(wheel.side) / stride.period
+                loss = self.loss * (turning * wheel.radius) ** 2
+                engine.set_radius(wheel.side, wheel.radius * (1 - loss))
+
+        return reshape
+
+
+@dataclass(frozen=True)
+class LoadTransfer(Peculiarity):
+    """Springy tyres under a centre of mass that is not on the floor: the load moves, they give way.
+
+    The balance of torques says what moves: the mass times the acceleration of the axle's middle
+    times the height, over the distance between the tyres (or between axle and skid); half the
+    weight of the robot on one tyre presses it by `softness` of its radius.
+
+    Parameters
+    ----------
+    softness : float
+        Relative loss of a radius under half the robot's weight.
+    height : float
+        Of the centre of mass over half the base, for the lateral part.
+    length : float
+        Of the same height over the distance from axle to skid, for the one along; negative where
+        the skid is behind driven wheels that carry less as the robot gains speed; 0: none.
+    """
+
+    softness: float
+    height: float
+    length: float
+
+    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+        """Each wheel falls behind, or gets ahead, by what its radius lost or gained."""
+        before = 0.0
+
+        def shift(stride: Stride) -> Shift:
+            nonlocal before
+            speed = (stride.left + stride.right) / 2 / stride.period
+            turning = (stride.right - stride.left) / robot.wheel_separation / stride.period
+            ahead, before = (speed - before) / stride.period, speed
+            to_the_rear = self.length * ahead / GRAVITY
+            to_the_right = self.height * speed * turning / GRAVITY
+            left = -self.softness * (to_the_rear - to_the_right) * stride.left
+            right = -self.softness * (to_the_rear + to_the_right) * stride.right
+            return Shift((left + right) / 2, 0.0, (right - left) / robot.wheel_separation)
+
+        return shift
