@@ -5,9 +5,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.model.drive import ROLLBACK, Drive, Span
 from werrimbi_odom.model.motion import BodyMotion, displacement
@@ -60,6 +62,34 @@ def drive_of_run(
         x=_grown(0.0, dx),
         y=_grown(0.0, dy),
         channels=channels or {},
+    )
+
+
+def with_speeds_of_messages(drive: Drive[Floats], message: NDArray[np.intp]) -> Drive[Floats]:
+    """The same with each step's speeds those of the message that it is a part of.
+
+    Where a message is cut in two, at an instant that somebody else measured, the counters say no
+    more of either part: a mean over a part has the error of where it was cut in it, so that a stamp
+    which is off would make the robot fast and far ahead at once, as wheels that slip do.
+
+    Parameters
+    ----------
+    message : ndarray, shape (n,)
+        Number of the message in which each step ends, counted from any.
+    """
+    message = message - message[0]
+    lasted = np.bincount(message, drive.duration)
+
+    def of_messages(span: Span[Floats]) -> Span[Floats]:
+        gone = np.bincount(message, span.end * drive.duration)
+        return _lagged((gone / np.where(lasted > 0.0, lasted, 1.0))[message])
+
+    return replace(
+        drive,
+        speed=of_messages(drive.speed),
+        yaw_rate=of_messages(drive.yaw_rate),
+        left_speed=of_messages(drive.left_speed),
+        right_speed=of_messages(drive.right_speed),
     )
 
 
