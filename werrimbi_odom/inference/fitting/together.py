@@ -102,6 +102,11 @@ class Together:
         return self.headings_alone or self.own_axes
 
     @property
+    def headings_laid(self) -> bool:
+        """Whether headings are a gyro's that were laid upon those of a localiser."""
+        return any(run.measured.gyro is not None for run in self.runs)
+
+    @property
     def own_axes(self) -> bool:
         """Whether references begin with axes of their own, so that no direction is common."""
         return any(run.measured.own_axes for run in self.runs)
