@@ -92,6 +92,8 @@ class Diagnosis:
     rivals_of_held: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Where nothing is missing: effects that would do as well in the place of one that the file
     holds, by its name."""
+    rivals_of_others: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    """The same of those that were found beside the first one."""
 
     @property
     def of_another_drive(self) -> bool:
@@ -182,6 +184,7 @@ def told(
         Sides(start.holdout_yaw, last.holdout_yaw, "rad"),
         judge.left_out,
         (ReferenceRemark("another_drive", 0.0),) if another else remarks_on(judge.train),
+        rivals_of_others=_rivals_of_others(found, rivals, rounds, final),
     )
 
 
@@ -240,6 +243,19 @@ def _rivals(
         named = list(dict.fromkeys([first, *near]))
         return tuple(named) if len(named) > 1 else ()
     return ()
+
+
+def _rivals_of_others(
+    found: tuple[str, ...], rivals: tuple[str, ...], rounds: tuple[Round, ...], final: Fitted
+) -> dict[str, tuple[str, ...]]:
+    """What the runs cannot tell from each effect beside the first one, by its name."""
+    beside = [name for name in final.names if name in found[1:] and name not in rivals]
+    told = {name: _rivals(name, rounds, final, ())[1:] for name in beside}
+    others = {
+        name: tuple(each for each in near if each not in (*found, *rivals))
+        for name, near in told.items()
+    }
+    return {name: near for name, near in others.items() if near}
 
 
 def own_scale_instead(name: str, final: Fitted, given: Robot, laid: Together) -> tuple[str, ...]:

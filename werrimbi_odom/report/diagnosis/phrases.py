@@ -59,6 +59,9 @@ def also(told: Told, name: str) -> list[str]:
         what += f" Headings alone cannot tell it from {listed(own, 'or')}."
     if effect is not None and effect.twins:
         what += f" To the reference it is one with {listed(effect.twins, 'or')}, on any drive."
+    rivals = told.diagnosis.rivals_of_others.get(name, ())
+    if rivals:
+        what += f" These drives cannot tell it from {listed(rivals, 'or')}, in its place."
     return [f"- Also {name}: {size}{sure}.{what}"]
 
 
