@@ -45,9 +45,7 @@ def json_of(
         ],
         "rivals": list(diagnosis.rivals),
         "rivals_by_halves": list(diagnosis.torn),
-        "rivals_of_others": {
-            name: list(each) for name, each in diagnosis.rivals_of_others.items()
-        },
+        "rivals_of_others": {name: list(each) for name, each in diagnosis.rivals_of_others.items()},
         "rivals_of_held": {name: list(each) for name, each in diagnosis.rivals_of_held.items()},
         "depends_on": [_cell(cell) for cell in significant(diagnosis)],
         "next_manoeuvre": None if manoeuvre is None else asdict(manoeuvre),
