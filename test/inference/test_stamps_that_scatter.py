@@ -42,3 +42,14 @@ def test_stamps_that_scatter_are_no_slip() -> None:
     which = [knob.name for knob in found.free].index("longitudinal_slip.coefficient")
     size = found.point.model.value(found.free[which])
     assert abs(size) < 3.0 * np.sqrt(found.covariance[which, which])
+
+
+def test_speeds_of_the_body_add_up_to_its_path_and_turn() -> None:
+    """Else what is off by a share of the turn would not be the base alone: a gyro sees as much."""
+    robot = TRUE.entered()
+    runs = together(match_finely([scattered(1)], robot, 1.0))
+    seen, travel = runs.drive(robot), runs.raw(robot)
+    turned = (travel.right - travel.left) / robot.track
+    assert np.allclose(seen.yaw_rate.end * seen.duration, turned, rtol=0.0, atol=1e-12)
+    gone = 0.5 * (travel.left + travel.right)
+    assert np.allclose(seen.speed.end * seen.duration, gone, rtol=0.0, atol=1e-12)

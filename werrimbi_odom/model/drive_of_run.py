@@ -65,12 +65,13 @@ def drive_of_run(
     )
 
 
-def with_speeds_of_messages(drive: Drive[Floats], message: NDArray[np.intp]) -> Drive[Floats]:
-    """The same with each step's speeds those of the message that it is a part of.
+def with_wheels_of_messages(drive: Drive[Floats], message: NDArray[np.intp]) -> Drive[Floats]:
+    """The same with each step's speeds of the wheels those of the message that it is a part of.
 
     Where a message is cut in two, at an instant that somebody else measured, the counters say no
     more of either part: a mean over a part has the error of where it was cut in it, so that a stamp
-    which is off would make the robot fast and far ahead at once, as wheels that slip do.
+    which is off would make the robot fast and far ahead at once, as wheels that slip do. Those of
+    the body stay the step's: what they add up to is the robot's path and turn, to the last digit.
 
     Parameters
     ----------
@@ -86,8 +87,6 @@ def with_speeds_of_messages(drive: Drive[Floats], message: NDArray[np.intp]) -> 
 
     return replace(
         drive,
-        speed=of_messages(drive.speed),
-        yaw_rate=of_messages(drive.yaw_rate),
         left_speed=of_messages(drive.left_speed),
         right_speed=of_messages(drive.right_speed),
     )

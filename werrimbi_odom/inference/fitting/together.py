@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.legs.cutting import MatchedRun, delayed, joined
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.drive_of_run import with_speeds_of_messages
+from werrimbi_odom.model.drive_of_run import with_wheels_of_messages
 from werrimbi_odom.model.driving import features
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.motion import WheelTravel
@@ -231,7 +231,7 @@ def _drive_of(run: MatchedRun, robot: Robot, wiring: Wiring) -> Drive[Floats]:
     raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
     drive = features(robot, np.diff(run.time), raw, first_counts, run.channels)
     middle = 0.5 * (run.time[1:] + run.time[:-1])
-    return with_speeds_of_messages(drive, run.counters.message_at(middle))
+    return with_wheels_of_messages(drive, run.counters.message_at(middle))
 
 
 def _recalled(
