@@ -162,6 +162,7 @@ def _said(folder: Path, field: Mapping[str, Any], name: str) -> Line:
         "verdict": said["verdict"],
         "found": [each["effect"] for each in said["found"]],
         "rivals": said["rivals"],
+        "rivals_of_others": said["rivals_of_others"],
         "seen_from": {
             each["effect"]: each["seen_from"]
             for each in reversed(said["could_have_been_seen"])
@@ -242,13 +243,14 @@ def how(hidden: Sequence[str], name: str, said: Line) -> str:
         return "wrong"
     right = expected(hidden, name)
     allowed = right | (OWN_SCALE if name == "gyro" else set())
-    rivals = set(said["rivals"])
-    sure = set(said["found"]) - rivals
-    if sure - allowed or (rivals and not rivals & allowed):
+    one_of = [{name, *near} for name, near in said.get("rivals_of_others", {}).items()]
+    one_of += [set(said["rivals"])] if said["rivals"] else []
+    sure = set(said["found"]).difference(*one_of)
+    if sure - allowed or any(not each & allowed for each in one_of):
         return "wrong"
     if not hidden or sure & right:
         return "named"
-    return "ambiguous" if rivals & right else "missed"
+    return "ambiguous" if any(each & right for each in one_of) else "missed"
 
 
 def could_be_seen(hidden: str, strength: float, said: Line) -> bool:

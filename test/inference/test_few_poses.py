@@ -104,6 +104,21 @@ def test_rivals_are_not_forgotten_when_one_of_them_is_added(
     assert json_of(later, None)["rivals_of_held"] == {first.rivals[0]: list(others)}
 
 
+def test_what_is_found_beside_another_thing_has_its_rivals_too(
+    runs: list[Run], first: Diagnosis
+) -> None:
+    """By a gyro whose scale was the first finding, counters read late were certain for play."""
+    small = replace(PLAIN, left_wheel_radius_multiplier=0.9, right_wheel_radius_multiplier=0.9)
+    found = diagnosed(runs, small)
+    assert found.found[0] == "wheel_radius_scale"
+    (beside,) = set(found.found) & set(first.rivals)
+    assert set(first.rivals) == {beside, *found.rivals_of_others[beside]}
+    said = json_of(found, None)
+    assert said["rivals_of_others"] == {beside: list(found.rivals_of_others[beside])}
+    words = " ".join(as_text(words_of(Told(found, None, ()), NextSteps())).split())
+    assert "These drives cannot tell it from" in words
+
+
 def test_drives_that_tell_have_no_rivals_to_recall() -> None:
     robot = replace(PLAIN, effects=(KICKING,))
     runs = [run_of(robot, seed, 40) for seed in range(4)]

@@ -12,12 +12,13 @@ import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects.collection import all_effects, find
+from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.fitting.filtering import Legs, Unexpected
-from werrimbi_odom.inference.fitting.wandering import Wander, filtered_wandering
+from werrimbi_odom.inference.fitting.wandering import LaidHeading, Wander, filtered_wandering
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.pose import Floats
 
@@ -88,6 +89,11 @@ def wander_of(legs: Legs) -> Wander:
     return Wander(np.array([[4e-10, 4e-10, 9e-10]]), kept[None], no_gap, 0.0)
 
 
+def whitened(found: Unexpected) -> Floats:
+    root = np.linalg.inv(np.linalg.cholesky(found.covariance[0]))
+    return np.asarray((root @ found.value[0][..., None])[..., 0])
+
+
 def cost(found: Unexpected) -> float:
     solved = np.linalg.solve(found.covariance[0], found.value[0][..., None])[..., 0]
     return float(np.sum(found.value[0] * solved) + np.linalg.slogdet(found.covariance[0])[1].sum())
@@ -131,9 +137,13 @@ def test_the_filter_is_the_likelihood_of_all_poses_together() -> None:
     )
 
 
-def test_innovations_change_as_their_derivatives_say() -> None:
+@pytest.mark.parametrize("laid", [False, True], ids=["localiser", "gyro laid upon it"])
+def test_innovations_change_as_their_derivatives_say(laid: bool) -> None:
     legs = line(12)
     wander = wander_of(legs)
+    if laid:
+        turn, duration = np.linspace(-0.3, 0.3, 12), np.full(12, 0.8)
+        wander = wander._replace(laid=LaidHeading(turn, duration, np.array([1e-7])))
     random = np.random.default_rng(9)
     direction = random.standard_normal((12, 3, 1))
 
@@ -143,6 +153,26 @@ def test_innovations_change_as_their_derivatives_say() -> None:
 
     told = filtered_wandering(legs, wander).ways.innovations(direction)[..., 0]
     np.testing.assert_allclose((value(1e-6) - value(-1e-6)) / 2e-6, told, atol=2e-4)
+
+
+def test_a_laid_heading_may_be_off_by_an_angle_a_drift_and_a_scale() -> None:
+    """All three together are no surprise after a while; of a localiser they go on being one."""
+    legs, turn = line(40), np.full(40, 0.2)
+    legs = legs._replace(relative=legs.relative + turn[:, None] * [0.0, 0.0, 1.0])
+    true = np.concatenate([[0.0], np.cumsum(turn)])
+    step = 0.25 * np.exp(1j * true[:-1])
+    place = np.concatenate([[0j], np.cumsum(step)])
+    yaw = 1.01 * true + 0.02 + 5e-4 * np.arange(41)
+    poses = np.stack([place.real, place.imag, yaw], axis=1)
+    legs = legs._replace(start=poses[:-1], finish=poses[1:])
+    wander = wander_of(legs)
+    told = LaidHeading(turn, np.full(40, 1.0), np.array([1e-12]))
+    late = [
+        np.abs(whitened(filtered_wandering(legs, each))[-10:]).max()
+        for each in (wander._replace(laid=told), wander)
+    ]
+    assert late[0] < 1.0
+    assert late[1] > 10.0
 
 
 def test_after_a_jump_the_pose_is_where_the_wheels_brought_it() -> None:
@@ -194,6 +224,35 @@ def test_a_localiser_shows_a_wrong_base(runs: list[Run]) -> None:
     others = [find(name) for name in ("castor_kick", "floor_slope", "lateral_slip")]
     found = diagnose(runs[:3], robot, others, "local_map")
     assert (found.verdict, found.effect) == ("named", "track_width")
+
+
+def with_gyro(seeds: range, robot: WhiteNoiseRobot, scale: float) -> list[Run]:
+    """A localiser's places, and headings of a gyro of another scale that were laid upon its own."""
+    found = []
+    for seed in seeds:
+        random = np.random.default_rng([seed, 6])
+        way = wandering(random, 100.0)
+        run = drive(robot, way, random, sigma_xy=WHITE[0], sigma_yaw=5e-4, every=5)
+        true = run.reference
+        assert true is not None
+        nothing = np.full(true.time.size, np.nan)
+        shown = scale * np.unwrap(true.yaw) + 2e-3 * true.time
+        seen = localised(replace(run, name=f"run_{seed}"), random, jumps=1)
+        assert seen.reference is not None
+        both, _ = merged("", seen.reference, Reference(true.time, nothing, nothing, shown))
+        found.append(replace(seen, reference=both))
+    return found
+
+
+@pytest.mark.parametrize("wide", [1.0, 1.03])
+def test_a_gyros_scale_is_no_wide_base_and_hides_none(wide: float) -> None:
+    """One drive tells neither the angle by which it is laid nor its scale to a percent."""
+    robot = replace(TRUE.entered(), wheel_separation_multiplier=1.0 / wide)
+    drives = with_gyro(range(6), TRUE, 1.004)
+    names = ("track_width", "castor_kick", "longitudinal_slip", "eccentric_left_wheel")
+    found = diagnose(drives, robot, [find(name) for name in names], "local_map")
+    assert found.effect == (None if wide == 1.0 else "track_width")
+    assert found.verdict == ("none" if wide == 1.0 else "named")
 
 
 @pytest.mark.evidence

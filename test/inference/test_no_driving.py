@@ -119,6 +119,22 @@ def test_a_localiser_that_jumps_just_before_does_not_make_it_longer(seed: int) -
     assert span(jumped)[:2] == pytest.approx((begin, end), abs=NEAR)
 
 
+@pytest.mark.parametrize("seed", [2, 5, 9, 12])
+def test_a_localiser_that_wanders_does_not_make_it_longer(seed: int) -> None:
+    """By 8 mm and 4 mrad in half a second; in one of these the robot stands where it is let go."""
+    run, begin, end = held(run_of(ROBOT, seed), 30.0, 36.0)
+    assert run.reference is not None
+    columns = (run.reference.x, run.reference.y, np.unwrap(run.reference.yaw))
+    time = np.arange(run.reference.time[0], run.reference.time[-1], 0.1)
+    wander, random = np.zeros(3), np.random.default_rng([seed, 5])
+    seen = []
+    for now in time:
+        wander = 0.993 * wander + [3.5e-3, 3.5e-3, 1.8e-3] * random.standard_normal(3)
+        seen.append([np.interp(now, run.reference.time, each) for each in columns] + wander)
+    found = span(replace(run, reference=Reference(time, *np.array(seen).T)))
+    assert found[:2] == pytest.approx((begin, end), abs=NEAR)
+
+
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("which", ["poses", "yaw"])
 def test_a_robot_that_is_carried_is_found_within_half_a_second(seed: int, which: str) -> None:

@@ -10,6 +10,7 @@ from functools import cache, partial
 from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.model.drive import ROLLBACK, Drive, Span
 from werrimbi_odom.model.motion import BodyMotion, displacement
@@ -117,6 +118,32 @@ def drive_of_run(
             "channels": lambda: channels or {},
         }
     )
+
+
+def with_wheels_of_messages(drive: DriveOfRun, message: NDArray[np.intp]) -> DriveOfRun:
+    """The same with each step's speeds of the wheels those of the message that it is a part of.
+
+    Where a message is cut in two, at an instant that somebody else measured, the counters say no
+    more of either part: a mean over a part has the error of where it was cut in it, so that a stamp
+    which is off would make the robot fast and far ahead at once, as wheels that slip do. Those of
+    the body stay the step's: what they add up to is the robot's path and turn, to the last digit.
+
+    Parameters
+    ----------
+    message : ndarray, shape (n,)
+        Number of the message in which each step ends, counted from any.
+    """
+    message = message - message[0]
+
+    def of_messages(name: str) -> Span[Floats]:
+        duration = drive.found("duration")
+        lasted = np.bincount(message, duration)
+        gone = np.bincount(message, drive.found(name).end * duration)
+        return _lagged((gone / np.where(lasted > 0.0, lasted, 1.0))[message])
+
+    works = {name: partial(drive.found, name) for name in QUANTITIES}
+    sides = ("left_speed", "right_speed")
+    return DriveOfRun.by(works | {name: partial(of_messages, name) for name in sides})
 
 
 class _Shuttled(NamedTuple):

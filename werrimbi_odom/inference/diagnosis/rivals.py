@@ -47,15 +47,15 @@ def rivals_of(
 
 
 def rivals_of_others(
-    found: Sequence[str], rounds: tuple[Round, ...], final: Fitted
+    found: Sequence[str], rivals: Sequence[str], rounds: tuple[Round, ...], final: Fitted
 ) -> dict[str, tuple[str, ...]]:
     """The same of each further effect, in the round that took it; none that was found as well."""
     others = {}
     for name in found[1:]:
-        if name in final.names:
+        if name in final.names and name not in rivals:
             near = _near(name, rounds[final.names.index(name)])
-            others[name] = tuple(other for other in near if other not in found)
-    return {name: rivals for name, rivals in others.items() if rivals}
+            others[name] = tuple(other for other in near if other not in (*found, *rivals))
+    return {name: near for name, near in others.items() if near}
 
 
 def _near(name: str, this: Round) -> tuple[str, ...]:

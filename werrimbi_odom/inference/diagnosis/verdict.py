@@ -187,7 +187,7 @@ def told(
         start.to(last),
         Sides(start.holdout_median, last.holdout_median, start.unit),
         Sides(start.holdout_yaw, last.holdout_yaw, "rad"),
-        rivals_of_others(found, rounds, final),
+        rivals_of_others(found, rivals, rounds, final),
         judge.left_out,
         (ReferenceRemark("another_drive", 0.0),) if another else remarks_on(judge.train),
     )

@@ -20,7 +20,7 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.filtering import UNMEASURED, Legs, filtered
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.together import Together
-from werrimbi_odom.inference.fitting.wandering import Wander, filtered_wandering
+from werrimbi_odom.inference.fitting.wandering import LaidHeading, Wander, filtered_wandering
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
@@ -150,7 +150,11 @@ def innovations(
     legs = Legs(prediction.relative, noise, start, finish, reading, begins, skip, begun)
     if kind == "local_map":
         kept = np.exp(-np.sqrt(variances.reversion)[:, None] * runs.duration)
-        found = filtered_wandering(legs, Wander(variances.wandered(), kept, runs.gap, heading))
+        laid = None
+        if runs.headings_laid:
+            laid = LaidHeading(prediction.turn, runs.duration, variances.walk_yaw)
+        wander = Wander(variances.wandered(), kept, runs.gap, heading, laid)
+        found = filtered_wandering(legs, wander)
     else:
         found = filtered(legs)
     known = np.isfinite(finish) & ~skip[:, None]

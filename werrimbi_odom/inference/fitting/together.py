@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.legs.cutting import MatchedRun, delayed, joined
 from werrimbi_odom.model.drive import Drive
-from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun
+from werrimbi_odom.model.drive_of_run import QUANTITIES, DriveOfRun, with_wheels_of_messages
 from werrimbi_odom.model.driving import features
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.motion import WheelTravel
@@ -99,6 +99,11 @@ class Together:
         Matches say how well each scan was seen, and nothing of when.
         """
         return self.headings_alone or self.own_axes
+
+    @property
+    def headings_laid(self) -> bool:
+        """Whether headings are a gyro's that were laid upon those of a localiser."""
+        return any(run.measured.gyro is not None for run in self.runs)
 
     @property
     def own_axes(self) -> bool:
@@ -223,7 +228,9 @@ def _drive_of(run: MatchedRun, robot: Robot, wiring: Wiring) -> DriveOfRun:
     left, right = wiring.wheels(run.left, run.right)
     first_counts = wiring.wheels(run.counters.first_left, run.counters.first_right)
     raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
-    return features(robot, np.diff(run.time), raw, first_counts, run.channels)
+    drive = features(robot, np.diff(run.time), raw, first_counts, run.channels)
+    middle = 0.5 * (run.time[1:] + run.time[:-1])
+    return with_wheels_of_messages(drive, run.counters.message_at(middle))
 
 
 def _drives_joined(parts: Sequence[DriveOfRun]) -> DriveOfRun:

@@ -58,6 +58,16 @@ class Counters:
         """Counts at any times, (n, 2): left and right; see `between_messages`."""
         return between_messages(time, self.time, self.left, self.right)
 
+    @property
+    def nodes(self) -> NDArray[np.intp]:
+        """Messages at which there is a node: every so many, and the last."""
+        last = self.time.size - 1
+        return np.append(np.arange(0, last, self.every), last)
+
+    def message_at(self, time: Floats) -> NDArray[np.intp]:
+        """Between which two nodes some instants lie: the number of the later one."""
+        return np.searchsorted(self.time[self.nodes], time)
+
     def way(self, robot: Robot, leg: float, turn: float) -> Floats:
         """What was gone up to each message, in legs: path over `leg` [m], turning over `turn`."""
         left, right = np.diff(self.left) * robot.left_tick, np.diff(self.right) * robot.right_tick
@@ -149,8 +159,7 @@ def nodes_at(
         Of the nodes (k + 1,), the counts between them (k,) and (k,), the nodes of `at` (n,), and
         what other channels measured at the start and end of each step.
     """
-    last = counters.time.size - 1
-    kept = np.append(np.arange(0, last, counters.every), last)
+    kept = counters.nodes
     known, left, right = (part[kept] for part in (counters.time, counters.left, counters.right))
     place = np.searchsorted(known, at)
     new = np.unique(at[known[np.minimum(place, known.size - 1)] != at])

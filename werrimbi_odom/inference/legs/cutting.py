@@ -380,12 +380,13 @@ def _gaps_between(record: Record, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
 
 
 def _poses(reference: Reference, rows: NDArray[np.intp]) -> Reference:
-    if rows.size == reference.time.size:
-        return Reference(
-            reference.time, reference.x, reference.y, reference.yaw, own_axes=reference.own_axes
-        )
-    columns = (reference.time, reference.x, reference.y, reference.yaw)
-    return Reference(*(part[rows] for part in columns), own_axes=reference.own_axes)
+    columns = [reference.time, reference.x, reference.y, reference.yaw]
+    if rows.size < reference.time.size:
+        columns = [part[rows] for part in columns]
+    gyro = reference.gyro
+    if gyro is not None:
+        gyro = gyro._replace(turned=gyro.turned[rows])
+    return Reference(*columns, own_axes=reference.own_axes, gyro=gyro)
 
 
 def _typical(sigma: Floats | None) -> float | None:

@@ -134,9 +134,11 @@ def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> 
     beyond = off / np.maximum(max(NO_DRIVING_OFF, rough) * maximum_filter1d(gross, reach), least)
     if turns:  # of a way even a gentle one is most of what both wheels could do
         beyond = np.where(_stopped(found, low, high, least), np.maximum(beyond, 1.01), beyond)
-    # At rest a place wanders in two coordinates, on the way along it in one: medians, by sigma.
+    # Noise must not make a stretch longer: where it hardly moves, a place wanders in two
+    # coordinates, on the way along it in one (medians, by sigma); and it seldom halves what is.
     at_rest = 1.0 if turns else np.sqrt(2.0 * np.log(2.0)) * MEDIAN_TO_SIGMA
-    unsure = 0.5 * least * np.where(rolls, 1.0, at_rest)
+    halved = np.abs(windows.measured) < 0.5 * np.abs(expected)
+    unsure = least * np.where(halved, 0.5, np.where(np.abs(expected) > least, 1.0, at_rest))
     edge = found.off > np.maximum(NO_DRIVING_EDGE * gross, unsure)
     moves = np.abs(expected) > np.maximum(NO_DRIVING_EDGE * gross, least)
     return _Seen(found, beyond, edge, moves & keeps, enough)

@@ -89,6 +89,13 @@ what it wandered before. Chosen: it follows the robot by what it sees, and lags 
 its map (5 cm) and some degrees until it has converged; one that is off by more jumps back, and is
 seen to."""
 
+LAID_YAW, LAID_SCALE, LAID_DRIFT = 0.03, 0.03, 1e-3
+"""How well a gyro's headings are laid upon a localiser's, drive by drive: angle [rad], the gyro's
+scale, and a steady drift [rad/s]; standard deviations. Chosen: a localiser errs by a degree for a
+quarter of a minute, and after a jump by five, so the mean of a minute's is good to a degree or two,
+and its slope to that over half a minute. Gyros of robots are made to 1 to 3 %; each drive says that
+much and no more, for what some drives of one robot say together is not each drive's own."""
+
 FAR_ABOVE_NOISE = 2.5
 """How many times what noise promises, with the softest wheels there are, the errors of legs must be
 for a model to be wrong whatever its likelihood says. Errors of ten legs that are noise are as large

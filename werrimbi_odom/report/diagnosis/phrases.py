@@ -61,7 +61,7 @@ def also(told: Told, name: str) -> list[str]:
     if rivals := [
         each for each in told.diagnosis.rivals_of_others.get(name, ()) if each not in twins
     ]:
-        what += f" These drives cannot tell it from {listed(rivals, 'or')}."
+        what += f" These drives cannot tell it from {listed(rivals, 'or')}, in its place."
     if effect is not None and effect.twins:
         what += f" To the reference it is one with {listed(effect.twins, 'or')}, on any drive."
     return [f"- Also {name}: {size}{sure}.{what}"]

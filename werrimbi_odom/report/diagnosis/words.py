@@ -243,8 +243,13 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
         lines.append(
             f"Nearest in the library is {best.effect}: errors fall from "
             f"{error_words(best.holdout.before, best.holdout.unit)} to "
-            f"{error_words(best.holdout.after, best.holdout.unit)} with it. The above "
-            "explains far more than it does, so that is not what it is."
+            f"{error_words(best.holdout.after, best.holdout.unit)} with it. "
+            + (
+                "Yet parts of these drives do not agree on it, or chance could do as much: look "
+                "there first, and drive more."
+                if best.holdout.after < 0.5 * best.holdout.before
+                else "The above explains far more than it does, so that is not what it is."
+            )
         )
     lines += _at_bounds(diagnosis)
     lines.append("Next: write it as an effect of your own, from what these drives show:")
