@@ -49,7 +49,6 @@ VOCABULARY = {
     "reference_delay": 0.0,
     "reference_heading_delay": 0.0,
     "reference_scale": 1.0,
-    "reference_gyro_drift": 0.0,
     "encoder_skew": 0.0,
 }
 MISTAKES = ["wheels_swapped", "left_wheel_reversed", "right_wheel_reversed", "reference_mirrored"]

@@ -31,7 +31,6 @@ OLD = 0
 CALIBRATION = ("track_width", "unequal_wheel_radii", "wheel_radius_scale")
 EFFECTS = tuple(entry.name for entry in CATALOGUE if entry.kind == "effect")
 OUTSIDERS = tuple(entry.name for entry in CATALOGUE if entry.kind == "outside")
-OF_A_GYRO = tuple(entry.name for entry in CATALOGUE if entry.kind == "gyro")
 MISTAKES = tuple(entry.name for entry in CATALOGUE if entry.kind == "mistake")
 FACTORS = {"2": 2.0, "4": 4.0, "pi": math.pi, "180/pi": 180.0 / math.pi, "1000": 1000.0}
 
@@ -135,15 +134,10 @@ def plan(start: int, sizes: Sizes) -> list[HiddenSet]:
 
 
 def effects(start: int, sizes: Sizes) -> list[HiddenSet]:
-    """Each effect of the vocabulary, weak and strong; what a gyro does is seen by one."""
-    found = [
+    """Each effect of the vocabulary, weak and strong."""
+    return [
         HiddenSet("effect", (name,), start + 1000 + 20 * number + seed)
         for number, name in enumerate(EFFECTS)
-        for seed in range(sizes.effects)
-    ]
-    return found + [
-        HiddenSet("effect", (name,), start + 1900 + seed, seen="gyro")
-        for name in OF_A_GYRO
         for seed in range(sizes.effects)
     ]
 

@@ -192,30 +192,6 @@ def test_a_gyro_gives_base_and_delay_and_nothing_else_at_any_rate(
     assert found.holdout.after < 0.2 * found.holdout.before
 
 
-@pytest.mark.parametrize("rate", [8e-5, -8e-5])
-def test_a_gyro_that_warms_up_is_named_and_its_bias_alone_is_not(rate: float) -> None:
-    """A bias that stays belongs to each drive; one that grows alike in all is a law."""
-
-    def warm(run: Run, bias: float) -> Run:
-        assert run.reference is not None
-        since = run.reference.time - run.reference.time[0]
-        bent = run.reference.yaw + bias * since + 0.5 * rate * since**2
-        nothing = np.full(since.size, np.nan)
-        return replace(run, reference=Reference(run.reference.time, nothing, nothing, bent))
-
-    biases = (4e-3, -2e-3, 1e-3)
-    runs = [warm(gyro_drive(seed, every=5), bias) for seed, bias in enumerate(biases, 40)]
-    given = replace(NOMINAL, wheel_separation_multiplier=1.1)
-    found = diagnose(runs, given, LIBRARY, "incremental")
-    assert (found.verdict, found.effect, found.found) == (
-        "named", "reference_gyro_drift", ("reference_gyro_drift",)
-    )  # fmt: skip
-    own = values_of(found, "reference_gyro_drift")["rate"]
-    assert abs(own.value - rate) < 3.0 * own.std < abs(rate)
-    known = replace(given, effects=(find("reference_gyro_drift").using(rate=rate),))
-    assert diagnose(runs, known, LIBRARY, "incremental").verdict == "none"
-
-
 @pytest.mark.parametrize("scale", [1.02, pytest.param(0.85, marks=pytest.mark.evidence)])
 def test_a_gyros_own_scale_is_told_beside_the_base_and_not_as_certain(scale: float) -> None:
     """By headings alone no drive can tell them; where positions are measured too, it can."""

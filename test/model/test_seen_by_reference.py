@@ -110,14 +110,3 @@ def test_the_covariance_is_that_of_the_point_shown(view: View) -> None:
     hand = np.diag([1.0, -1.0, -1.0]) if view.mirrored else np.eye(3)
     expected = hand @ jacobian @ cov @ jacobian.T @ hand.T
     np.testing.assert_allclose(seen.covariance.matrix()[row], expected, rtol=1e-9, atol=1e-18)
-
-
-def test_a_gyro_that_warms_up_bends_away_from_the_line_between_its_ends() -> None:
-    """The page's own check: a robot that stands for a minute."""
-    rate, rest = 1e-4, np.zeros(3000)
-    still = trajectory(ROBOT, *read(ROBOT, 50.0, rest, rest))
-    yaw = shown(still, View(wander=rate)).yaw
-    half, time = yaw.size // 2, still.time - still.time[0]
-    assert 0.5 * (yaw[0] + yaw[-1]) - yaw[half] == pytest.approx(
-        rate * time[-1] ** 2 / 8.0, rel=1e-3
-    )

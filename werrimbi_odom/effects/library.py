@@ -18,7 +18,6 @@ from werrimbi_odom.effects.oval_wheel import oval_left_wheel, oval_right_wheel
 from werrimbi_odom.effects.radius_by_channel import radius_by_channel
 from werrimbi_odom.effects.radius_drift import radius_drift
 from werrimbi_odom.effects.reference_clock import reference_delay, reference_heading_delay
-from werrimbi_odom.effects.reference_gyro_drift import reference_gyro_drift
 from werrimbi_odom.effects.reference_mirrored import reference_mirrored
 from werrimbi_odom.effects.reference_mount import reference_lever_arm, reference_yaw_offset
 from werrimbi_odom.effects.reference_scale import reference_scale
@@ -65,7 +64,6 @@ LIBRARY: tuple[Effect, ...] = (
     reference_delay,
     reference_heading_delay,
     reference_scale,
-    reference_gyro_drift,
     encoder_skew,
     wheels_swapped,
     left_wheel_reversed,

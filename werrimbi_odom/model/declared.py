@@ -132,7 +132,6 @@ DRAWINGS: Mapping[str, int] = {
     "track": 0,
     "two_bases": 0,
     "unequal": 0,
-    "wander": 0,
     "wrong_sign": 1,
     "yaw_offset": 0,
 }

@@ -24,5 +24,3 @@ class View(NamedTuple):
     """Its frame is left-handed."""
     scale: float = 1.0
     """What it shows over what was: of ways, or where headings alone are measured, of turns."""
-    wander: float = 0.0
-    """Where headings alone are measured, their drift grows by this each second [rad/s^2]."""

@@ -44,8 +44,6 @@ def shown(driven: Trajectory, view: View) -> Path:
         return axle
     seen = delayed(axle, view.delay)
     yaw = delayed(axle, view.delay + view.heading_delay).yaw + view.yaw
-    if view.wander != 0.0:
-        yaw = yaw + 0.5 * view.wander * (driven.time - driven.time[0]) ** 2
     dx, dy = _turned(view.ahead, view.left, seen.yaw)
     point = Path(driven.time, seen.x + dx, seen.y + dy, yaw, carried(seen.covariance, dx, dy))
     point = _scaled(point, view.scale)

@@ -51,9 +51,6 @@ class ReferenceSensor:
     delay: float = 0.0
     heading_delay: float = 0.0
     mirrored: Literal["no", "y_down", "exchanged"] = "no"
-    warming: tuple[float, float] = (0.0, 300.0)
-    """Bias that the heading gathers as its sensor gets warm [rad/s], and in what time by a share of
-    1 - 1/e [s]: that of a gyro, which is switched on as a drive begins."""
 
     def times(self, end: float, rng: np.random.Generator) -> Floats:
         """Times of the samples until `end` [s], started anywhere in the first 0.3 s."""
@@ -72,8 +69,6 @@ class ReferenceSensor:
         y += np.sin(heading) * self.mount.x + np.cos(heading) * self.mount.y - self.frame.y
         yaw = np.interp(at - self.heading_delay, path.t_s, path.yaw_rad)
         yaw += self.mount.yaw - self.frame.yaw
-        bias, warm = self.warming
-        yaw += bias * (at + warm * np.expm1(-at / warm))
         cos, sin = math.cos(self.frame.yaw), math.sin(self.frame.yaw)
         x, y = cos * x + sin * y, cos * y - sin * x
         if self.mirrored == "y_down":

@@ -31,9 +31,6 @@ from werrimbi_odom.model.pose import Floats
 BESIDE_POSITIONS = ("reference_heading_delay",)
 """Effects that are of headings against positions: of headings alone they are another effect."""
 
-OF_HEADINGS_ALONE = ("reference_gyro_drift",)
-"""Effects of a reference that measures nothing else: a gyro."""
-
 OF_THE_MEASUREMENT = ("reference_scale",)
 """Effects that all three multipliers together do as well: never tried beside them."""
 
@@ -169,8 +166,8 @@ def signatures(
     tried: Sequence[Candidate],
 ) -> tuple[Floats, Iterator[Signature]]:
     """Innovations (n,) that `knobs` cannot explain, and what each candidate does to them."""
-    others = BESIDE_POSITIONS if runs.headings_alone else OF_HEADINGS_ALONE
-    tried = [candidate for candidate in tried if candidate.name not in others]
+    if runs.headings_alone:
+        tried = [candidate for candidate in tried if candidate.name not in BESIDE_POSITIONS]
     prediction = predict_all(point.model, runs)
     columns, owners = [], []
     for number, candidate in enumerate(tried):

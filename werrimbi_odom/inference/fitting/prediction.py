@@ -225,19 +225,11 @@ def _shown(path: DrivenPath, runs: Together, view: View, drifts: Floats) -> Floa
     shown = np.exp(-1j * first) * (moved + (np.exp(1j * turn) - 1.0) * point)
     turned = turn + last - first
     if runs.headings_alone:
-        turned = view.scale * turned + _wandered(runs, view.wander)
+        turned = view.scale * turned
     else:
         shown = view.scale * shown
     drift = drifts[runs.run_of_leg] * runs.duration
     return np.stack([shown.real, shown.imag, turned + drift], axis=-1)
-
-
-def _wandered(runs: Together, wander: float) -> Floats | float:
-    """What a drift that grows by `wander` each second of its run adds to each leg's turn [rad]."""
-    if wander == 0.0:
-        return 0.0
-    ends = [run.time[run.ends] - run.time[run.ends[0]] for run in runs.runs]
-    return 0.5 * wander * np.concatenate([np.diff(since * since) for since in ends])
 
 
 def _late(path: DrivenPath, runs: Together, nodes: NDArray[np.intp], delay: float) -> Floats:

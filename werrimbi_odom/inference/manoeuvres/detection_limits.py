@@ -29,7 +29,6 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import askable
 from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
-    OF_HEADINGS_ALONE,
     OF_THE_MEASUREMENT,
     Candidate,
 )
@@ -85,7 +84,6 @@ def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[D
         and effect.name not in OF_THE_MEASUREMENT
         and effect.name not in held
         and not effect.lacks(measured)
-        and (effect.name not in OF_HEADINGS_ALONE or diagnosis.runs.headings_alone)
         and base_name(effect) is None
     ]
     asked = {each.name for each in askable(effects, diagnosis.runs, robot)}

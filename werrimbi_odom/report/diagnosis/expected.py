@@ -189,9 +189,6 @@ _EXPECTED: dict[str, Callable[[Values, Robot], str]] = {
     "sideways_drift": lambda values, robot: _aside(values["angle"], 5.0),
     "reference_yaw_offset": lambda values, robot: _angle(values["angle"]),
     "reference_scale": lambda values, robot: f"{3600.0 * values['multiplier']:.0f}° of 3600°",
-    "reference_gyro_drift": lambda values, robot: (
-        f"{_angle(values['rate'] * 60.0**2 / 8.0)} at the middle of a minute"
-    ),
     "reference_heading_delay": lambda values, robot: f"{_angle(2.0 * values['delay'])} at 1 rad/s",
     "encoder_skew": lambda values, robot: f"{_length(values['delay'] * FAST)} at {FAST} m/s",
 }

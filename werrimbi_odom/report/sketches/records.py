@@ -75,20 +75,6 @@ def _yaw_offset() -> Parts:
     ]
 
 
-def _wander() -> Parts:
-    bent = [(40 + 24 * step, 120 - 4 * step - 0.55 * step * step) for step in range(11)]
-    return [
-        line((40, 120), (300, 120), colour=GREY),
-        line((40, 120), (40, 22), colour=GREY),
-        line((40, 120), (290, 78), colour=BLUE),
-        line(*bent, colour=ORANGE, width=2.5),
-        words(296, 100, "true", colour=BLUE, anchor="end"),
-        words(210, 50, "the gyro's", colour=ORANGE, anchor="end"),
-        words(50, 30, "heading", colour=GREY, anchor="start"),
-        words(300, 136, "time", colour=GREY, anchor="end"),
-    ]
-
-
 def _scale() -> Parts:
     return [
         robot(60, 85),
@@ -163,7 +149,6 @@ DRAWINGS: Mapping[str, Callable[..., Parts]] = {
     "yaw_offset": _yaw_offset,
     "mirrored": _mirrored,
     "scale": _scale,
-    "wander": _wander,
     "late": _late,
     "swapped": _swapped,
     "wrong_sign": _reversed,

@@ -16,7 +16,7 @@ from .counters import EncoderSkew, MissedTicks, WheelReversed, WheelsSwapped
 from .creep import CastorKick, LateralSlip, LongitudinalSlip, TurnDependentTrack
 from .floor import CablePull, FloorSlope, GrainedFloor, SlipperySpot
 from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
-from .mount import AskewAxle, GyroWarmsUp, ReferenceDelay, ReferenceMirrored, ReferenceMount
+from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount
 from .outside import BaseByPayload, OneTyreBackwards, OneTyreByPressure
 from .peculiarity import Peculiarity
 from .skid import skid_steer
@@ -30,7 +30,7 @@ from .wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift, Side
 
 Rng = np.random.Generator
 Make = Callable[[float, Rng], Peculiarity]
-Kind = Literal["effect", "mistake", "outside", "robot", "gyro"]
+Kind = Literal["effect", "mistake", "outside", "robot"]
 
 
 class UnknownEffectError(ValueError):
@@ -60,9 +60,9 @@ class Entry:
         Strength at which there is no effect.
     signed : bool
         Whether both signs of that distance occur.
-    kind : "effect", "mistake", "outside", "robot" or "gyro"
-        In the library's vocabulary, a mistake of set-up, nothing that the library knows, another
-        kind of robot, or an effect that is one where a gyro is the reference.
+    kind : "effect", "mistake", "outside" or "robot"
+        In the library's vocabulary, a mistake of set-up, nothing that the library knows, or another
+        kind of robot.
     """
 
     name: str
@@ -234,8 +234,6 @@ CATALOGUE: tuple[Entry, ...] = (
             "share of the travel lost on a spot of the floor", signed=False, kind="outside"),
     Entry("cable_pull", lambda s, rng: CablePull(s, _anywhere(rng)), "rad/m", 0.005, 0.05,
             "turning towards one direction of the room", signed=False, kind="outside"),
-    Entry("reference_gyro_drift", lambda s, rng: GyroWarmsUp(s), "rad/s^2", 3e-5, 3e-4,
-            "growth of the gyro's bias each second", kind="gyro"),
     Entry("skid_steer", skid_steer, "1", 0.3, 1.5, "turning by four skidding wheels over the true",
             null=1.0, signed=False, kind="robot"),
 )

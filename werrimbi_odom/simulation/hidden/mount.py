@@ -76,21 +76,3 @@ class ReferenceMirrored(Peculiarity):
     def reference(self, sensor: ReferenceSensor) -> ReferenceSensor:
         """Mirror what it writes."""
         return replace(sensor, mirrored="exchanged" if self.exchanged else "y_down")
-
-
-@dataclass(frozen=True)
-class GyroWarmsUp(Peculiarity):
-    """The heading's sensor is a gyro whose bias grows as it gets warm, and settles in the end.
-
-    Parameters
-    ----------
-    rate : float
-        Growth of the bias at the beginning of a drive [rad/s^2].
-    """
-
-    rate: float
-
-    def reference(self, sensor: ReferenceSensor) -> ReferenceSensor:
-        """Switch it on with each drive."""
-        warm = sensor.warming[1]
-        return replace(sensor, warming=(sensor.warming[0] + self.rate * warm, warm))
