@@ -37,6 +37,7 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import Support, askable, support_of
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, chance, told
 from werrimbi_odom.inference.events.events import Happened, Side, events_among, without
+from werrimbi_odom.inference.events.noise import noise_of_most
 from werrimbi_odom.inference.fitting.candidates import Score
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.together import Together, together
@@ -92,11 +93,13 @@ def diagnose(
     """
 
 
+    known = (sigma_xy, sigma_yaw)
+
     def search(show: Show) -> tuple[Diagnosis, Happened]:
         found, judge = _searched(
-            runs, holdout, robot, effects, kind, leg, limits, (sigma_xy, sigma_yaw), show
+            runs, holdout, robot, effects, kind, leg, limits, known, show
         )
-        return found, _happened(found, judge, kind)
+        return found, _happened(found, judge, kind, known)
 
     found, happened = search(show)
     for _ in range(EVENT_ROUNDS):
@@ -111,12 +114,19 @@ def diagnose(
     return replace(found, happened=happened)
 
 
-def _happened(found: Diagnosis, judge: Judge, kind: ReferenceKind) -> Happened:
+def _happened(
+    found: Diagnosis,
+    judge: Judge,
+    kind: ReferenceKind,
+    known: tuple[float | None, float | None],
+) -> Happened:
     """What happened at an instant beside the model with everything found."""
     if found.of_another_drive:
         return Happened()
-    point = found.final.point
-    home = replace(judge.at_home(point.model), variances=point.variances)
+    sigma = sigmas_known(found.runs.runs, kind, *known)
+    noise = noise_of_most(found.runs, found.final.point, kind, sigma)
+    point = replace(found.final.point, variances=noise)
+    home = replace(judge.at_home(point.model), variances=noise)
     fitted, kept = ([run.path for run in some] for some in (judge.fitted_on, judge.kept_back))
     return events_among(
         [

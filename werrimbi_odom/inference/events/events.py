@@ -154,12 +154,15 @@ def _groups(steps: Steps) -> list[list[int]]:
 def _event(steps: Steps, group: list[int], side: Side) -> Event | None:
     """What some steps come to, if it is sudden and large."""
     runs = steps.runs
+    spike = all(steps.found[index].shape == "spike" for index in group)
+    # Beside a step a spike says how its time parts between two intervals, and is none of its size.
+    group = [index for index in group if spike or steps.found[index].shape != "spike"]
     legs = [steps.found[index].leg for index in group]
     first = legs[0]
     run = int(runs.run_of_leg[first])
     scatter = float(steps.scatter[run])
-    sizes, spread = _net(steps, group, np.zeros((steps.white.size, 0)), scatter)
-    beside, spread_beside = _net(steps, group, steps.creeping(first), scatter)
+    sizes, spread = _net(steps, group, scatter, beside=False)
+    beside, spread_beside = _net(steps, group, scatter, beside=True)
     stds = np.sqrt(np.diag(spread))
     large = np.abs(sizes) > EVENT_LARGE * steps.noise[first] * np.sqrt(scatter)
     sudden = np.abs(beside) > EVENT_BESIDE * np.sqrt(np.diag(spread_beside))
@@ -168,7 +171,6 @@ def _event(steps: Steps, group: list[int], side: Side) -> Event | None:
     if not told.any():
         return None
     channel = int(np.argmax(np.where(told, np.abs(sizes) / stds, 0.0)))
-    spike = all(steps.found[index].shape == "spike" for index in group)
     jumped = all(steps.found[index].shape != "robot" for index in group) or _beyond_any_push(
         sizes, len(group), float(runs.duration[first])
     )
@@ -210,18 +212,26 @@ def _fitted(steps: Steps) -> Floats:
     return np.asarray(np.linalg.lstsq(steps.columns, steps.white, rcond=None)[0].reshape(-1, 3))
 
 
-def _net(steps: Steps, group: list[int], beside: Floats, scatter: float) -> tuple[Floats, Floats]:
+def _net(steps: Steps, group: list[int], scatter: float, *, beside: bool) -> tuple[Floats, Floats]:
     """What the steps of a group come to (3,) in the first one's axes, and its covariance.
 
-    All steps are fitted together, and `beside` (n, k) with them; a metre and a radian are as much
-    as any may be, so that what nothing is told of has that deviation.
+    All steps are fitted together, and with them, where asked, what creeps in beside it. A metre and
+    a radian are as much as any may be, so that what nothing is told of has that deviation.
     """
-    columns = np.concatenate([steps.columns, beside], axis=-1)
+    legs = [steps.found[index].leg for index in group]
+    first, shape = steps.found[group[0]].leg, steps.found[group[0]].shape
+    others = np.ones(len(steps.found), dtype=np.bool_)
+    others[group] = False
+    own = steps.about(legs) if shape == "robot" else steps.columns[:, _columns(group[:1])]
+    parts = [own, steps.columns[:, _columns(np.flatnonzero(others).tolist())]]
+    columns = np.concatenate([*parts, steps.creeping(first)] if beside else parts, axis=-1)
     square = columns.T @ columns / scatter
     covariance = np.linalg.inv(square + np.eye(square.shape[0]))
     solution = covariance @ (columns.T @ steps.white) / scatter
-    first = np.linalg.inv(steps.axes[steps.found[group[0]].leg])
     summed = np.zeros((3, columns.shape[1]))
-    for index in group:
-        summed[:, 3 * index : 3 * index + 3] = first @ steps.axes[steps.found[index].leg]
+    summed[:, : own.shape[1]] = np.tile(np.eye(3), own.shape[1] // 3)
     return summed @ solution, summed @ covariance @ summed.T
+
+
+def _columns(steps: Sequence[int]) -> list[int]:
+    return [3 * step + axis for step in steps for axis in range(3)]

@@ -11,10 +11,12 @@ backwards; what the best of them explain is taken off, and the rest is asked aga
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above, chi2_median
@@ -70,21 +72,34 @@ class Steps:
     many: bool
     """Whether there are more than were looked for."""
 
-    def creeping(self, leg: int, span: float = EVENT_SLOW) -> Floats:
-        """An error that grows evenly over `span` [s] to either side of a leg, (3 m, 3)."""
+    def creeping(self, leg: int) -> Floats:
+        """A step that takes all the time about a leg (`EVENT_SLOW`), (3 m, 3)."""
         runs = self.runs
-        run = runs.run_of_leg[leg]
-        own = np.flatnonzero((runs.run_of_leg == run) & ~runs.gap)
-        end = runs.ends_at
-        near = own[np.abs(end[own] - end[leg]) <= max(span, 3.0 * runs.duration[leg])]
-        change = np.zeros((runs.count, self.states, 3))
-        change[near, :3] = self.axes[near] / near.size
-        return self.told.shown(change).reshape(self.white.size, 3)
+        own = np.flatnonzero((runs.run_of_leg == runs.run_of_leg[leg]) & ~runs.gap)
+        since = np.abs(runs.ends_at[own] - runs.ends_at[leg])
+        near = own[since <= max(EVENT_SLOW, 3.0 * runs.duration[leg])]
+        return self.spread(near, np.full(near.size, leg)) / near.size
 
-    @property
-    def states(self) -> int:
-        """Of the filter."""
-        return 3 if self.told.ways is None else self.told.ways.carry.shape[-1]
+    def about(self, legs: Sequence[int]) -> Floats:
+        """Steps in some legs and in those next to them, each of its own size, (3 m, 3 k).
+
+        In the axes of the first. However the step parts between them, they hold all of it.
+        """
+        runs = self.runs
+        first, last = min(legs) - 1, max(legs) + 1
+        near = [
+            self.spread(np.array([leg]), np.array([legs[0]]))
+            for leg in range(max(first, 0), min(last + 1, runs.count))
+            if runs.run_of_leg[leg] == runs.run_of_leg[legs[0]] and not runs.gap[leg]
+        ]
+        return np.concatenate(near, axis=-1)
+
+    def spread(self, legs: NDArray[np.intp], axes_of: NDArray[np.intp]) -> Floats:
+        """The same unit steps in several legs, in the axes of other legs, (3 m, 3)."""
+        states = 3 if self.told.ways is None else self.told.ways.carry.shape[-1]
+        change = np.zeros((self.runs.count, states, 3))
+        change[legs, :3] = self.axes[axes_of if self.told.ways is not None else legs]
+        return self.told.shown(change).reshape(self.white.size, 3)
 
 
 def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:

@@ -63,3 +63,7 @@ a robot's length, at which its first or its last wheel meets a threshold, and a 
 EVENTS_ALIKE, ALIKE_SHARE = 4, 0.6
 """Events that must have something in common for it to be said, and what share of all they must be.
 Chosen: of three two are at the same place too easily; and what is told of all holds for most."""
+
+NOISE_TRIMMED = 25.0
+"""Squared deviation of a leg, in units of the usual, above which it says nothing of the noise:
+chi-squared of three degrees is beyond it in one leg of 60000, and its loss makes no noise less."""
