@@ -215,7 +215,9 @@ def test_a_covariance_a_third_of_the_true_sigma_is_said_to_be_too_small(
     assert status.level == DiagnosticStatus.WARN
     assert status.message.startswith("the covariance is too small, the errors are larger")
     figures = {name: kept[-1].data for name, kept in comparing.figures.items() if kept}
-    assert figures["nees"] > figures["nees_high"]  # which legs are in the window depends on the machine
+    assert (
+        figures["nees"] > figures["nees_high"]
+    )  # which legs are in the window depends on the machine
     assert figures["coverage"] < 0.9
     assert "the covariance is too small" in comparing.stop()
 

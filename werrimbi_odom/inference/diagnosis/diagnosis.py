@@ -91,14 +91,10 @@ def diagnose(
     InputError
         When a run has no usable reference or no ticks, or is in degrees or millimetres.
     """
-
-
     known = (sigma_xy, sigma_yaw)
 
     def search(show: Show) -> tuple[Diagnosis, Happened]:
-        found, judge = _searched(
-            runs, holdout, robot, effects, kind, leg, limits, known, show
-        )
+        found, judge = _searched(runs, holdout, robot, effects, kind, leg, limits, known, show)
         return found, _happened(found, judge, kind, known)
 
     found, happened = search(show)

@@ -90,7 +90,7 @@ class Diagnosis:
     """What is suspect about the reference of the fitted runs."""
     misfit: Misfit | None = None
     """What is left because a law's form is not quite nature's, or beside everything found."""
-    happened: Happened = Happened()
+    happened: Happened = field(default_factory=Happened)
     """What no law explains, for it happened at an instant."""
     rivals_of_held: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Where nothing is missing: effects that would do as well in the place of one that the file

@@ -65,7 +65,7 @@ def alike(
         return None
     found: list[Alike] = []
     nowhere = (float("nan"), float("nan"))
-    tried: list[tuple[Common, tuple[float, float], list[Floats], list[Floats]]] = []
+    tried: list[tuple[Common, tuple[float, float], list[NDArray[np.bool_]], list[Floats]]] = []
     time = [runs.duration * ~runs.gap for runs, _ in sides]
     way = [told.length * ~runs.gap for runs, told in sides]
     for what in ("reversal", "start or stop"):
@@ -78,7 +78,7 @@ def alike(
                 x, y = here[leg]
                 if not np.isfinite(x + y):
                     continue
-                across: list[tuple[Common, tuple[float, float], list[Floats]]] = [
+                across: list[tuple[Common, tuple[float, float], list[NDArray[np.bool_]]]] = [
                     ("x", (x, float("nan")), [abs(p[:, 0] - x) < NEAR_BAND for p in places]),
                     ("y", (float("nan"), y), [abs(p[:, 1] - y) < NEAR_BAND for p in places]),
                     ("place", (x, y), [np.hypot(*(p - (x, y)).T) < NEAR_PLACE for p in places]),
@@ -97,7 +97,7 @@ def alike(
     return best if common else None
 
 
-def _after(runs: Together, told: Prediction, *, stops: bool) -> Floats:
+def _after(runs: Together, told: Prediction, *, stops: bool) -> NDArray[np.bool_]:
     """Intervals about a reversal, or about a start or a stop; (m,)."""
     found = np.zeros(runs.count, dtype=np.bool_)
     end = runs.ends_at

@@ -66,11 +66,25 @@ class Event:
     """Of as much by chance, all instants and channels counted."""
 
 
+class Way(NamedTuple):
+    """Where a drive was measured, n poses."""
+
+    run: Path
+    held_out: bool
+    time: Floats
+    """(n,) [s]"""
+    x: Floats
+    y: Floats
+
+
 @dataclass(frozen=True, slots=True)
 class Happened:
     """All events of some drives."""
 
     events: tuple[Event, ...] = ()
+    """Drive by drive, in the order of time."""
+    ways: tuple[Way, ...] = ()
+    """Of the drives; none where nothing happened."""
     alike: Alike | None = None
     """What they have in common."""
     many: bool = False
@@ -106,8 +120,15 @@ def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Happened:
         looked.append((runs, predict_all(side.point.model, runs)))
         many |= steps.many
         time += float(runs.duration[~runs.gap].sum())
+    if not events:
+        return Happened()
     many |= len(events) * RARE > time
-    return Happened(tuple(events), alike(legs, looked), many)
+    ways = [
+        Way(path, side.held_out, run.measured.time, run.measured.x, run.measured.y)
+        for side, (runs, _) in zip(sides, looked, strict=True)
+        for run, path in zip(runs.runs, side.paths, strict=True)
+    ]
+    return Happened(tuple(events), tuple(ways), alike(legs, looked), many)
 
 
 def without(run: Run, happened: Happened) -> Run:

@@ -78,7 +78,7 @@ class Steps:
         own = np.flatnonzero((runs.run_of_leg == runs.run_of_leg[leg]) & ~runs.gap)
         since = np.abs(runs.ends_at[own] - runs.ends_at[leg])
         near = own[since <= max(EVENT_SLOW, 3.0 * runs.duration[leg])]
-        return self.spread(near, np.full(near.size, leg)) / near.size
+        return np.asarray(self.spread(near, np.full(near.size, leg)) / near.size)
 
     def about(self, legs: Sequence[int]) -> Floats:
         """Steps in some legs and in those next to them, each of its own size, (3 m, 3 k).
@@ -99,7 +99,7 @@ class Steps:
         states = 3 if self.told.ways is None else self.told.ways.carry.shape[-1]
         change = np.zeros((self.runs.count, states, 3))
         change[legs, :3] = self.axes[axes_of if self.told.ways is not None else legs]
-        return self.told.shown(change).reshape(self.white.size, 3)
+        return np.asarray(self.told.shown(change).reshape(self.white.size, 3))
 
 
 def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
@@ -170,7 +170,7 @@ def _asked(shape: Shape, shocks: Shocks, axes: Floats) -> tuple[Floats, Floats]:
     score, known = shocks.score[:, own], shocks.known[:, own, own]
     if shape == "spike":
         both = shocks.both[:, own, own]
-        follows = both.any(axis=(1, 2))[:, None]
+        follows = np.any(both != 0.0, axis=(1, 2), keepdims=True)[:, :, 0]
         score = np.where(follows, score - np.roll(score, -1, axis=0), 0.0)
         after = np.roll(known, -1, axis=0)
         known = (known + after - both - both.swapaxes(-1, -2)) * follows[..., None]

@@ -107,8 +107,12 @@ class Innovations:
         return np.asarray(self._root() @ self._change(slopes))
 
     def shocks(self, white: Floats) -> Shocks:
-        """What they say, as far as some `white` (m, 3) of them is left, of what comes to the states
-        in one leg alone, for every leg.
+        """What they say of a change of the states in one leg alone, for every leg.
+
+        Parameters
+        ----------
+        white : ndarray, shape (m, 3)
+            What of the whitened ones is left.
         """
         back = self._root().swapaxes(-1, -2)
         weighed, precision = (back @ white[..., None])[..., 0], back @ self._root()
@@ -183,9 +187,7 @@ def innovations(
     reading = _reading(robot, variances, runs, prediction, adds_up=kind == "incremental")
     if kind == "incremental":
         noise[..., 2, 2] += variances.yaw[:, None] * runs.intervals
-    legs = Legs(
-        prediction.relative, noise, start, finish, reading, begins, skip, begun, stretch
-    )
+    legs = Legs(prediction.relative, noise, start, finish, reading, begins, skip, begun, stretch)
     if kind == "local_map":
         kept = np.exp(-np.sqrt(variances.reversion)[:, None] * runs.duration)
         found = filtered_wandering(legs, Wander(variances.wandered(), kept, runs.gap, heading))
