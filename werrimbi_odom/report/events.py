@@ -40,10 +40,15 @@ def events_words(happened: Happened, track: float) -> list[str]:
         lines.append(f"So {'is' if rest == 1 else 'are'} {rest} more, in the report and the JSON.")
     if happened.alike is not None:
         lines.append(alike_words(happened.alike))
-    if happened.accidents:
+    if happened.kind == "incremental" and math.isfinite(events[0].place[0]):
+        lines.append(
+            "To a reference whose errors add up a step of the robot and a match that failed are "
+            "one and the same."
+        )
+    if happened.left_out:
         they = "It is" if len(events) == 1 else "They are"
         lines.append(f"{they} left out of fits and errors, before and after alike.")
-    else:
+    elif not happened.accidents:
         lines.append("They stay in the fits, for what repeats itself is no accident.")
     return lines
 
@@ -103,7 +108,7 @@ def events_json(happened: Happened, track: float) -> list[dict[str, Any]]:
             "y_m": event.place[1],
             "stays": event.stays,
             "held_out": event.held_out,
-            "left_out": happened.accidents,
+            "left_out": happened.left_out,
             "p_value": event.p_value,
         }
         for event in happened.events

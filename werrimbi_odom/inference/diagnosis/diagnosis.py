@@ -99,14 +99,14 @@ def diagnose(
 
     found, happened = search(show)
     for _ in range(EVENT_ROUNDS):
-        if not happened.accidents:
+        if not happened.left_out:
             break
         both = [[without(run, happened) for run in some] for some in (runs, holdout)]
         if both == [list(runs), list(holdout)]:
             break
         runs, holdout = both
         again, happened = search(silent)
-        found = again if happened.accidents else found
+        found = again if happened.accidents or not happened.events else found
     return replace(found, happened=happened)
 
 

@@ -89,11 +89,22 @@ class Happened:
     """What they have in common."""
     many: bool = False
     """Whether there are more than accidents are."""
+    kind: ReferenceKind = "absolute"
+    """Of the reference."""
 
     @property
     def accidents(self) -> bool:
-        """Whether they are left out of fits: what repeats itself is a law, and stays in."""
+        """Whether they have nothing in common: what repeats itself is a law, and stays in fits."""
         return bool(self.events) and self.alike is None and not self.many
+
+    @property
+    def left_out(self) -> bool:
+        """Whether they are left out of fits.
+
+        The jumps of a reference that wanders are left out already, by its own filter, which lets
+        its error begin anew: a step of the robot would be another thing.
+        """
+        return self.accidents and self.kind != "local_map"
 
 
 class Side(NamedTuple):
@@ -128,7 +139,7 @@ def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Happened:
         for side, (runs, _) in zip(sides, looked, strict=True)
         for run, path in zip(runs.runs, side.paths, strict=True)
     ]
-    return Happened(tuple(events), tuple(ways), alike(legs, looked), many)
+    return Happened(tuple(events), tuple(ways), alike(legs, looked), many, kind)
 
 
 def without(run: Run, happened: Happened) -> Run:

@@ -125,6 +125,12 @@ def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
     shocks = told.shocks(white)
     view = _of_view(view_of(model.robot.effects), headings=runs.headings_alone)
     axes = shocks.enter[:, :3] @ view
+    # The reference errs in what it measures: positions alone have no heading to err in.
+    of_shape: dict[Shape, Floats] = {
+        "robot": axes,
+        "spike": axes * told.known[:, :, None],
+        "reference": axes * told.known[:, :, None],
+    }
     shapes: tuple[Shape, ...] = ("robot",)
     if told.ways is not None and not runs.headings_alone:
         shapes += ("reference",) if kind == "local_map" else ("spike",)
@@ -135,7 +141,7 @@ def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
     scatter = np.ones(len(runs.runs))
     left = white
     while True:
-        gains = {shape: _gain(*_asked(shape, shocks, axes)) for shape in shapes}
+        gains = {shape: _gain(*_asked(shape, shocks, of_shape[shape])) for shape in shapes}
         scatter = _scatter(runs, gains["robot"], told)
         new = _peaks(runs, gains, scatter, tests)
         if not new or len(steps) + len(new) > MOST_EVENTS:
@@ -143,7 +149,8 @@ def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
         steps += [step for step, _ in new]
         chances += [chance for _, chance in new]
         change = np.concatenate(
-            [_change(step, axes, shocks.enter.shape[1]) for step, _ in new], axis=-1
+            [_change(step, of_shape[step.shape], shocks.enter.shape[1]) for step, _ in new],
+            axis=-1,
         )
         columns = np.concatenate([columns, told.shown(change).reshape(white.size, -1)], axis=-1)
         solution = np.linalg.lstsq(columns, white.ravel(), rcond=None)[0]
