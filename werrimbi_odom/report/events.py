@@ -33,14 +33,15 @@ def events_words(happened: Happened, track: float) -> list[str]:
     for event in events:
         if event in clear:
             where = f" of {event.run.name}" if several else ""
-            lines.append(f"- at {told_from_start(event):.1f} s{where} {event_words(event, track)};")
+            words = event_words(event, track, adds_up=adds_up(happened))
+            lines.append(f"- at {told_from_start(event):.1f} s{where} {words};")
     lines[-1] = f"{lines[-1][:-1]}."
     rest = len(events) - len(clear)
     if rest:
         lines.append(f"So {'is' if rest == 1 else 'are'} {rest} more, in the report and the JSON.")
     if happened.alike is not None:
         lines.append(alike_words(happened.alike))
-    if happened.kind == "incremental" and math.isfinite(events[0].place[0]):
+    if adds_up(happened):
         lines.append(
             "To a reference whose errors add up a step of the robot and a match that failed are "
             "one and the same."
@@ -53,12 +54,21 @@ def events_words(happened: Happened, track: float) -> list[str]:
     return lines
 
 
-def event_words(event: Event, track: float) -> str:
-    """What one was, as the end of a sentence."""
+def event_words(event: Event, track: float, *, adds_up: bool = False) -> str:
+    """What one was, as the end of a sentence.
+
+    Parameters
+    ----------
+    adds_up
+        Whether the reference's errors add up, so that a step of it is one of the robot.
+    """
     size, unit = _size(event)
     if event.channel == "reference":
         how = "and stayed there" if event.stays else "and was right again at the next pose"
         return f"the reference jumped by {size} {unit} {how}"
+    if adds_up:
+        how = {"heading": "in heading"}.get(event.channel, event.channel)
+        return f"the robot or the reference jumped by {size} {unit} {how}"
     slipped = _slipped(event, track)
     if slipped is not None:
         return slipped
@@ -101,7 +111,7 @@ def events_json(happened: Happened, track: float) -> list[dict[str, Any]]:
             "size": event.size,
             "std": event.std,
             "unit": event.unit,
-            "words": event_words(event, track),
+            "words": event_words(event, track, adds_up=adds_up(happened)),
             "sizes": dict(zip(_SIZES, event.sizes, strict=True)),
             "stds": dict(zip(_SIZES, event.stds, strict=True)),
             "x_m": event.place[0],
@@ -113,6 +123,12 @@ def events_json(happened: Happened, track: float) -> list[dict[str, Any]]:
         }
         for event in happened.events
     ]
+
+
+def adds_up(happened: Happened) -> bool:
+    """Whether a step of the reference is one of the robot to it; a gyro loses no place."""
+    seen = any(math.isfinite(event.place[0]) for event in happened.events)
+    return happened.kind == "incremental" and seen
 
 
 _SIZES = ("along_m", "sideways_m", "heading_rad")

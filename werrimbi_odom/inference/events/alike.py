@@ -50,7 +50,10 @@ class Alike:
 
 
 def alike(
-    legs: Sequence[NDArray[np.intp]], sides: Sequence[tuple[Together, Prediction]]
+    legs: Sequence[NDArray[np.intp]],
+    sides: Sequence[tuple[Together, Prediction]],
+    *,
+    places: bool = True,
 ) -> Alike | None:
     """What is commonest among events, if chance does not make it.
 
@@ -59,6 +62,8 @@ def alike(
     legs
         Of the events, for each of the sides: sets of drives that were looked at, interval by
         interval, and what a model predicts for them.
+    places
+        Whether what was measured is a place on the floor: one that adds up is none after a jump.
     """
     of = sum(own.size for own in legs)
     if of < EVENTS_ALIKE:
@@ -71,17 +76,17 @@ def alike(
     for what in ("reversal", "start or stop"):
         near = [_after(runs, told, stops=what != "reversal") for runs, told in sides]
         tried.append((what, nowhere, near, time))
-    if not any(runs.own_axes or runs.headings_alone for runs, _ in sides):
-        places = [runs.finish[:, :2] for runs, _ in sides]
-        for own, here in zip(legs, places, strict=True):
+    if places and not any(runs.own_axes or runs.headings_alone for runs, _ in sides):
+        seen = [runs.finish[:, :2] for runs, _ in sides]
+        for own, here in zip(legs, seen, strict=True):
             for leg in own.tolist():
                 x, y = here[leg]
                 if not np.isfinite(x + y):
                     continue
                 across: list[tuple[Common, tuple[float, float], list[NDArray[np.bool_]]]] = [
-                    ("x", (x, float("nan")), [abs(p[:, 0] - x) < NEAR_BAND for p in places]),
-                    ("y", (float("nan"), y), [abs(p[:, 1] - y) < NEAR_BAND for p in places]),
-                    ("place", (x, y), [np.hypot(*(p - (x, y)).T) < NEAR_PLACE for p in places]),
+                    ("x", (x, float("nan")), [abs(p[:, 0] - x) < NEAR_BAND for p in seen]),
+                    ("y", (float("nan"), y), [abs(p[:, 1] - y) < NEAR_BAND for p in seen]),
+                    ("place", (x, y), [np.hypot(*(p - (x, y)).T) < NEAR_PLACE for p in seen]),
                 ]
                 tried += [(what, at, near, way) for what, at, near in across]
     for what, at, near, weight in tried:

@@ -133,13 +133,16 @@ def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Happened:
         time += float(runs.duration[~runs.gap].sum())
     if not events:
         return Happened()
+    drives = [path for side in sides for path in side.paths]
+    events.sort(key=lambda event: (drives.index(event.run), event.time))
     many |= len(events) * RARE > time
     ways = [
         Way(path, side.held_out, run.measured.time, run.measured.x, run.measured.y)
         for side, (runs, _) in zip(sides, looked, strict=True)
         for run, path in zip(runs.runs, side.paths, strict=True)
     ]
-    return Happened(tuple(events), tuple(ways), alike(legs, looked), many, kind)
+    common = alike(legs, looked, places=kind != "incremental")
+    return Happened(tuple(events), tuple(ways), common, many, kind)
 
 
 def without(run: Run, happened: Happened) -> Run:

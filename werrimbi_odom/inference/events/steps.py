@@ -78,17 +78,20 @@ class Steps:
         own = np.flatnonzero((runs.run_of_leg == runs.run_of_leg[leg]) & ~runs.gap)
         since = np.abs(runs.ends_at[own] - runs.ends_at[leg])
         near = own[since <= max(EVENT_SLOW, 3.0 * runs.duration[leg])]
-        return np.asarray(self.spread(near, np.full(near.size, leg)) / near.size)
+        column = self.spread(near, np.full(near.size, leg)) / near.size
+        return np.asarray(column * self.told.known[leg])
 
     def about(self, legs: Sequence[int]) -> Floats:
         """Steps in some legs and in those next to them, each of its own size, (3 m, 3 k).
 
-        In the axes of the first. However the step parts between them, they hold all of it.
+        In the axes of the first. However the step parts between them, they hold all of it. (A
+        heading that nobody measures parts between none: it would be a way to one side.)
         """
         runs = self.runs
         first, last = min(legs) - 1, max(legs) + 1
+        seen = self.told.known[legs[0]]
         near = [
-            self.spread(np.array([leg]), np.array([legs[0]]))
+            self.spread(np.array([leg]), np.array([legs[0]])) * (seen | (leg in legs))
             for leg in range(max(first, 0), min(last + 1, runs.count))
             if runs.run_of_leg[leg] == runs.run_of_leg[legs[0]] and not runs.gap[leg]
         ]

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from werrimbi_odom.inference.events.events import Event, Happened, Way
-from werrimbi_odom.report.events import event_words, told_from_start
+from werrimbi_odom.report.events import adds_up, event_words, told_from_start
 from werrimbi_odom.report.path_figure import add_path
 from werrimbi_odom.report.style import (
     BLUE,
@@ -111,14 +111,14 @@ def _marks(
                 "size": 12,
                 "line": {"color": PAPER, "width": 1.5},
             },
-            hovertext=[_said(happened.events[index], track) for index in own],
+            hovertext=[_said(happened, happened.events[index], track) for index in own],
             hovertemplate="%{hovertext}<extra></extra>",
         )
 
 
-def _said(event: Event, track: float) -> str:
+def _said(happened: Happened, event: Event, track: float) -> str:
     when = f"{escaped(event.run.name)}, {told_from_start(event):.1f} s"
-    return f"{when}<br>{escaped(event_words(event, track))}"
+    return f"{when}<br>{escaped(event_words(event, track, adds_up=adds_up(happened)))}"
 
 
 def _name(way: Way) -> str:
