@@ -145,7 +145,7 @@ def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
     left = white
     while True:
         gains = {shape: _gain(*_asked(shape, shocks, of_shape[shape])) for shape in shapes}
-        scatter = _scatter(runs, gains["robot"], told)
+        scatter = _scatter(runs, _local(shocks, of_shape), told)
         new = _peaks(runs, gains, scatter, tests)
         if not new or len(steps) + len(new) > MOST_EVENTS:
             break
@@ -159,6 +159,12 @@ def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
         solution = np.linalg.lstsq(columns, white.ravel(), rcond=None)[0]
         left = (white.ravel() - columns @ solution).reshape(white.shape)
         shocks = told.shocks(left)
+    # What wanders shows in the rest alone: a step that is not taken off yet sways all that follows.
+    scatter = np.maximum(scatter, _scatter(runs, gains["robot"], told))
+    kept = _kept(runs, steps, columns, white.ravel(), scatter, tests)
+    columns = columns[:, [3 * step + axis for step in kept for axis in range(3)]]
+    many = bool(new) and 2 * len(kept) > MOST_EVENTS
+    steps, chances = [steps[step] for step in kept], [chances[step] for step in kept]
     spread = np.diagonal(told.covariance[0], axis1=1, axis2=2)
     return Steps(
         runs,
@@ -170,8 +176,37 @@ def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
         axes,
         told,
         tuple(chances),
-        bool(new),
+        many,
     )
+
+
+def _kept(
+    runs: Together,
+    steps: Sequence[Step],
+    columns: Floats,
+    white: Floats,
+    scatter: Floats,
+    tests: int,
+) -> list[int]:
+    """Indices of the steps that chance does not make, each beside all others."""
+    kept = []
+    covariance = np.linalg.inv(columns.T @ columns + np.eye(columns.shape[1]))
+    solution = covariance @ (columns.T @ white)
+    for index, step in enumerate(steps):
+        own = slice(3 * index, 3 * index + 3)
+        size = solution[own]
+        gain = float(size @ np.linalg.solve(covariance[own, own], size))
+        degrees = int((np.diag(covariance)[own] < 1.0).sum())
+        gain /= scatter[runs.run_of_leg[step.leg]]
+        if degrees and tests * chi2_above(gain, degrees) < SURE_OF_EVENT:
+            kept.append(index)
+    return kept
+
+
+def _local(shocks: Shocks, of_shape: dict[Shape, Floats]) -> tuple[Floats, Floats]:
+    """What an error in one pose alone would explain, wherever that can be asked."""
+    shape: Shape = "spike" if shocks.both.any() else "robot"
+    return _gain(*_asked(shape, shocks, of_shape[shape]))
 
 
 def _asked(shape: Shape, shocks: Shocks, axes: Floats) -> tuple[Floats, Floats]:

@@ -32,9 +32,9 @@ which `SURE_OF_EVENT` chose; of those chance makes one in 16000."""
 MOST_EVENTS = 60
 """Steps that are looked for in one set of drives. Chosen: more are no events but a missing law."""
 
-RARE = 10.0
+RARE = 5.0
 """Time for each event on average, at the least, for events to be events [s]. Chosen: a robot that
-is pushed every ten seconds is not being measured."""
+is pushed every five seconds is not being measured."""
 
 EVENT_STEP = 1.0
 """Variance of the pose over a leg in which something happened [m², rad²]: nothing is known of what
