@@ -30,6 +30,8 @@ from werrimbi_odom.model.pose import Floats
 
 Common = Literal["reversal", "start or stop", "x", "y", "place"]
 
+PLACES: tuple[Common, ...] = ("x", "y", "place")
+
 MOVES = 1e-3
 """Way of an interval [m] from which on its direction is told: counts tremble by less."""
 
@@ -80,7 +82,7 @@ def alike(
         seen = [runs.finish[:, :2] for runs, _ in sides]
         for own, here in zip(legs, seen, strict=True):
             for leg in own.tolist():
-                x, y = here[leg]
+                x, y = here[leg].tolist()
                 if not np.isfinite(x + y):
                     continue
                 across: list[tuple[Common, tuple[float, float], list[NDArray[np.bool_]]]] = [
@@ -97,9 +99,13 @@ def alike(
         told_by = 0 if np.isnan(at).all() else 1
         chance = binomial_above(count - told_by, of - told_by, share)
         found.append(Alike(what, count, of, at, in_any_of(len(tried), chance)))
-    best = min(found, key=lambda each: each.p_value)
-    common = best.count >= max(EVENTS_ALIKE, ALIKE_SHARE * of) and best.p_value < SURE
-    return best if common else None
+    common = [
+        each
+        for each in found
+        if each.count >= max(EVENTS_ALIKE, ALIKE_SHARE * of) and each.p_value < SURE
+    ]
+    # A drive to and fro has its stops at one place: what it did explains that, and not the floor.
+    return min(common, key=lambda each: (each.what in PLACES, each.p_value), default=None)
 
 
 def _after(runs: Together, told: Prediction, *, stops: bool) -> NDArray[np.bool_]:
