@@ -19,11 +19,13 @@ from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun, divided
 from werrimbi_odom.inference.rules import (
+    EDGE,
     EVENT_BESIDE,
     EVENT_INTERVAL,
     EVENT_JOIN,
     EVENT_LARGE,
     EVENT_SPAN,
+    EVENTS_ALIKE,
     JOLT,
     RARE,
 )
@@ -122,6 +124,7 @@ def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Happened:
     events: list[Event] = []
     legs, looked = [], []
     many, time = False, 0.0
+    spans: dict[Path, float] = {}
     for side in sides:
         runs = looked_at(side.runs)
         steps = steps_of(runs, side.point, kind)
@@ -130,12 +133,18 @@ def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Happened:
         legs.append(np.array([steps.found[own[0]].leg for own, _ in found], dtype=np.intp))
         looked.append((runs, predict_all(side.point.model, runs)))
         many |= steps.many
+        for index, path in enumerate(side.paths):
+            own = runs.duration[(runs.run_of_leg == index) & ~runs.gap]
+            spans[path] = spans.get(path, 0.0) + float(own.sum())
         time += float(runs.duration[~runs.gap].sum())
     if not events:
         return Happened()
     drives = [path for side in sides for path in side.paths]
     events.sort(key=lambda event: (drives.index(event.run), event.time))
-    many |= len(events) * RARE > time
+    many |= len(events) * RARE > time or any(
+        sum(event.run == path for event in events) > max(EVENTS_ALIKE, spent / RARE)
+        for path, spent in spans.items()
+    )
     ways = [
         Way(path, side.held_out, run.measured.time, run.measured.x, run.measured.y)
         for side, (runs, _) in zip(sides, looked, strict=True)
@@ -195,6 +204,9 @@ def _event(steps: Steps, group: list[int], side: Side) -> Event | None:
     legs = [steps.found[index].leg for index in group]
     first = legs[0]
     run = int(runs.run_of_leg[first])
+    clock = runs.runs[run].counters.time
+    if not clock[0] + EDGE < runs.ends_at[first] < clock[-1] - EDGE:
+        return None  # as in a fit: a clock that is late shows there what the ticks do not know
     scatter = float(steps.scatter[run])
     sizes, spread = _net(steps, group, scatter, beside=False)
     beside, spread_beside = _net(steps, group, scatter, beside=True)
