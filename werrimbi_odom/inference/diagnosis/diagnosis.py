@@ -106,7 +106,7 @@ def diagnose(
             break
         runs, holdout = both
         again, happened = search(silent)
-        found = again if happened.accidents or not happened.events else found
+        found = again if happened.accidents or happened == Happened() else found
     return replace(found, happened=happened)
 
 

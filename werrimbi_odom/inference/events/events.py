@@ -145,6 +145,8 @@ def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Happened:
         sum(event.run == path for event in events) > max(EVENTS_ALIKE, spent / RARE)
         for path, spent in spans.items()
     )
+    if many:
+        return Happened(many=True, kind=kind)  # a law is missing: these are no events
     ways = [
         Way(path, side.held_out, run.measured.time, run.measured.x, run.measured.y)
         for side, (runs, _) in zip(sides, looked, strict=True)
