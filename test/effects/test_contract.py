@@ -124,8 +124,8 @@ def jumps(travel: Any, drive: Any, amount: float) -> Any:
         (lags, "speed.end"),
         (stays_an_array, "floats must stay floats"),
         (differs_live, "step by step"),
-        (peeps, "recorded and predicted are the same.*by their names"),
-        (knows_its_kind, "recorded and predicted are the same"),
+        (peeps, "step by step|recorded and predicted are the same.*by their names"),
+        (knows_its_kind, "step by step|recorded and predicted are the same"),
         (does_nothing, "does nothing"),
         (jumps, "slope in amount"),
     ],
@@ -133,7 +133,7 @@ def jumps(travel: Any, drive: Any, amount: float) -> Any:
 def test_who_breaks_a_law_is_told_which(
     change: Callable[[Any, Any, float], Any], told: str
 ) -> None:
-    with pytest.raises(AssertionError, match=f"(?s)some_law breaks a law.*{told}"):
+    with pytest.raises(AssertionError, match=f"(?s)some_law breaks a law.*({told})"):
         check_effect(law(change))
 
 

@@ -88,6 +88,7 @@ def run(arguments: argparse.Namespace) -> int:
     )
     odd = [each.peculiarity for each in hidden]
     seen: dict[str, dict[str, object]] = {}
+    events: dict[str, list[dict[str, object]]] = {}
     with _new_folder(arguments.out) as folder:
         written = robot
         for each in odd:
@@ -96,6 +97,8 @@ def run(arguments: argparse.Namespace) -> int:
         runs = simulation.session(robot, arguments.seed, hidden=odd)
         try:
             for name, recording in _with_progress(runs, len(simulation.drives(arguments.seed))):
+                if recording.happened:
+                    events[name] = [asdict(each) for each in recording.happened]
                 if arguments.like == "field":
                     seen[name] = _in_the_field(
                         recording, written, odd, arguments.seed, folder / name
@@ -107,6 +110,8 @@ def run(arguments: argparse.Namespace) -> int:
         truth = _truth(hidden, arguments.seed, robot)
         if seen:
             truth["field"] = seen
+        if events:
+            truth["events"] = events
         (folder / "truth.json").write_text(json.dumps(truth, indent=2) + "\n", encoding="utf-8")
     out = arguments.out
     print(f"{out}: robot.yaml, 7 runs in train, 4 in holdout; what is hidden stands in truth.json")

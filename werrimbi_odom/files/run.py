@@ -142,6 +142,9 @@ class Run:
     taken_out: tuple[tuple[float, float], ...] = ()
     """Stretches of the reference that were put aside on purpose, from and to [s]: legs end there,
     and begin anew."""
+    happened: tuple[tuple[float, float], ...] = ()
+    """Stretches in which the robot, or the reference, was moved at once, from and to [s]: an event,
+    which no law explains. Legs go through it, and nothing is told of their errors."""
 
 
 def counts_of(values: Floats) -> Counts:

@@ -10,6 +10,10 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
+from werrimbi_odom.model.pose import Floats
+
 MEDIAN_TO_SIGMA = 1.4826
 """Standard deviation of a normal scatter over the median of its sizes."""
 
@@ -36,6 +40,20 @@ def chi2_above(value: float, degrees: float) -> float:
     from scipy.special import chdtrc
 
     return float(chdtrc(degrees, max(value, 0.0)))
+
+
+def chi2_median(degrees: Floats) -> Floats:
+    """Medians of chi-squared variables."""
+    from scipy.special import chdtri
+
+    return np.asarray(chdtri(degrees, 0.5))
+
+
+def binomial_above(count: int, of: int, share: float) -> float:
+    """Chance that of some tries, each with the chance `share`, at least `count` succeed."""
+    from scipy.special import bdtrc
+
+    return 1.0 if count <= 0 else float(bdtrc(count - 1, of, min(share, 1.0)))
 
 
 def student_above(value: float, degrees: float) -> float:

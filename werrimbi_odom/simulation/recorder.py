@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import reduce
 from typing import Literal, overload
 
@@ -17,7 +17,7 @@ from .chassis import Chassis, chassis_of
 from .engine import PERIOD, Pose, Reshaper, Shifter, TruePath, drive
 from .hidden.peculiarity import Peculiarity
 from .manoeuvre import Manoeuvre
-from .recording import Recording
+from .recording import Happened, Recording
 from .robot import TrueRobot
 from .sensors import ReferenceSensor, count, sampling_times
 from .wheel_noise import wheel_noise
@@ -67,9 +67,12 @@ def record(
         reshapers=ready.reshapers,
     )
     recording = _sample(robot, manoeuvre.name, path, ready.sensor, ticks_rate_hz, seed)
+    happened: list[Happened] = []
     for number, odd in enumerate(hidden):
         recording = odd.recording(recording, robot, stream(seed, "hidden", number))
-    return recording
+        end = float(recording.t_s[-1])
+        happened += odd.happened(end, robot, stream(seed, "hidden", number))
+    return replace(recording, happened=tuple(happened)) if happened else recording
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,21 @@ Counts = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
+class Happened:
+    """Something that happened at an instant of a drive, and is no law of the robot.
+
+    `of` says what it was, `t_s` when [s], on the recording's clock; the robot, or what a reference
+    told, moved along and sideways [m] and turned [rad]; for a reference that is along its x and y.
+    """
+
+    of: str
+    t_s: float
+    along_m: float
+    sideways_m: float
+    turn_rad: float
+
+
+@dataclass(frozen=True)
 class Recording:
     """One recorded drive; n rows of counters, m rows of reference, on the same clock.
 
@@ -40,6 +55,8 @@ class Recording:
         it is in it).
     channels : mapping of str to ndarray of shape (n,)
         Further measured columns of ticks.csv.
+    happened : tuple of Happened
+        At single instants; the truth, which is not written with the drive.
     """
 
     name: str
@@ -52,6 +69,7 @@ class Recording:
     reference_yaw_rad: Floats
     true_path: TruePath
     channels: Mapping[str, Floats] = field(default_factory=dict)
+    happened: tuple[Happened, ...] = ()
 
     @property
     def poses(self) -> Iterator[tuple[float, float, float, float]]:

@@ -404,7 +404,7 @@ def _table(
     legs = Legs(
         leg,
         errors,
-        _jumped(group, runs, prepared.kind),
+        _jumped(group, runs, prepared.kind) | runs.stepped,
         np.array(group.index)[runs.run_of_leg],
         begin,
         end,

@@ -23,6 +23,7 @@ from werrimbi_odom.inference.fitting.likelihood import (
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.inference.rules import EVENT_STEP
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion
@@ -147,6 +148,7 @@ def errors_of(
         robot.left_wheel_noise**2 * prediction.per_left
         + robot.right_wheel_noise**2 * prediction.per_right
     )
+    wheels[runs.stepped] += EVENT_STEP * np.eye(3)
     heading = start[:, 2]
     if wandering is not None and jumped is not None:
         error, total = errors_on_map(model, runs, prediction, wandering, jumped)

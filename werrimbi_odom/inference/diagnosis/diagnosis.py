@@ -7,6 +7,9 @@ a plain dependence on a measured variable explains far more than any effect can,
 not hold what is missing, and no name is given. Otherwise the best few effects are fitted in full,
 and the best of them is taken if it earns its price on the fitted drives, cross-validated. Drives
 that are held out have no part in any of it: they report.
+
+What jumps at an instant beside the model that is found is an event. Events that have nothing in
+common are left out, and everything is searched anew without them.
 """
 
 from __future__ import annotations
@@ -19,7 +22,7 @@ from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found, misfit_of_held_law
-from werrimbi_odom.inference.diagnosis.holdout import begin
+from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.in_place_of_held import rivals_of_held
 from werrimbi_odom.inference.diagnosis.lasting import lasting, lasting_effect
 from werrimbi_odom.inference.diagnosis.search import (
@@ -33,12 +36,15 @@ from werrimbi_odom.inference.diagnosis.search import (
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import Support, askable, support_of
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, chance, told
+from werrimbi_odom.inference.events.events import Happened, Side, events_among, without
+from werrimbi_odom.inference.events.noise import noise_of_most
 from werrimbi_odom.inference.fitting.candidates import Score
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match_finely, sigmas_known
 from werrimbi_odom.inference.rules import (
     CELLS_ASKED,
+    EVENT_ROUNDS,
     LAW_SHARE,
     OWN_LAW_SHARE,
     RIVAL,
@@ -85,12 +91,66 @@ def diagnose(
     InputError
         When a run has no usable reference or no ticks, or is in degrees or millimetres.
     """
+    known = (sigma_xy, sigma_yaw)
+
+    def search(show: Show) -> tuple[Diagnosis, Happened]:
+        found, judge = _searched(runs, holdout, robot, effects, kind, leg, limits, known, show)
+        return found, _happened(found, judge, kind, known)
+
+    found, happened = search(show)
+    for _ in range(EVENT_ROUNDS):
+        if not happened.left_out:
+            break
+        both = [[without(run, happened) for run in some] for some in (runs, holdout)]
+        if both == [list(runs), list(holdout)]:
+            break
+        runs, holdout = both
+        again, happened = search(silent)
+        found = again if happened.accidents or happened == Happened() else found
+    return replace(found, happened=happened)
+
+
+def _happened(
+    found: Diagnosis,
+    judge: Judge,
+    kind: ReferenceKind,
+    known: tuple[float | None, float | None],
+) -> Happened:
+    """What happened at an instant beside the model with everything found."""
+    if found.of_another_drive:
+        return Happened()
+    sigma = sigmas_known(found.runs.runs, kind, *known)
+    noise = noise_of_most(found.runs, found.final.point, kind, sigma)
+    point = replace(found.final.point, variances=noise)
+    home = replace(judge.at_home(point.model), variances=noise)
+    fitted, kept = ([run.path for run in some] for some in (judge.fitted_on, judge.kept_back))
+    return events_among(
+        [
+            Side(found.runs.runs, fitted, point, held_out=False),
+            Side(judge.fine.runs, kept, home, held_out=True),
+        ],
+        kind,
+    )
+
+
+def _searched(
+    runs: Sequence[Run],
+    holdout: Sequence[Run],
+    robot: Robot,
+    effects: Sequence[Effect],
+    kind: ReferenceKind,
+    leg: float,
+    limits: EncoderLimits | None,
+    known: tuple[float | None, float | None],
+    show: Show,
+) -> tuple[Diagnosis, Judge]:
+    """Everything that effects explain, and who judges it; `known`: the reference's noise."""
     show(0.0, "set-up")
-    begun = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw)
+    begun = begin(runs, holdout, robot, kind, leg, limits, *known)
     judge, set_up = begun.judge, begun.set_up
     laid = together(match_finely(judge.fitted_on, set_up.robot, leg, limits))
     effects = askable(effects, laid, set_up.robot)
-    sigma = sigmas_known(laid.runs, kind, sigma_xy, sigma_yaw)
+    sigma = sigmas_known(laid.runs, kind, *known)
     show(0.1, "calibration")
     fit = first_fit(laid, set_up.robot, kind, sigma)
     rounds: list[Round] = []
@@ -125,7 +185,7 @@ def diagnose(
     held: Mapping[str, tuple[str, ...]] = {}
     if found.verdict == "none" and misfit is None:
         held = rivals_of_held(laid, fit, kind, effects, set_up.robot, sigma)
-    return replace(found, misfit=misfit, rivals_of_held=held)
+    return replace(found, misfit=misfit, rivals_of_held=held), judge
 
 
 def _best(this: Round, runs: Together, kind: ReferenceKind) -> Fitted | None:

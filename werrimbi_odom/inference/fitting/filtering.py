@@ -48,6 +48,7 @@ class Legs(NamedTuple):
     """Legs on which the reference jumped, and gaps, (m,)."""
     heading: Floats
     """Heading at the start of a run where it was not measured, at the run's first leg, (m,)."""
+    stretch: int = STRETCH
 
 
 class Ways(NamedTuple):
@@ -86,11 +87,65 @@ class Ways(NamedTuple):
                 heading = np.zeros((count, states, 1))
                 heading[first, :, 0] = self.carry[first, :, 2] * self.free[:, None]
                 change = np.concatenate([change, heading], axis=-1)
-            for before, now in itertools.pairwise(self.rounds):
-                last = slice(before.start, before.start + now.stop - now.start)
-                change[now] += self.carry[now] @ change[last]
-            found[self.leg, :, begin : begin + _COLUMNS] = self.leave @ change
+            found[self.leg, :, begin : begin + _COLUMNS] = self._left_by(change)
         return found
+
+    def _left_by(self, change: Floats) -> Floats:
+        """Derivatives of the innovations (m, 3, p) for those of the states (m, s, p); in order."""
+        for before, now in itertools.pairwise(self.rounds):
+            last = slice(before.start, before.start + now.stop - now.start)
+            change[now] += self.carry[now] @ change[last]
+        return np.asarray(self.leave @ change)
+
+    def of_states(self, change: Floats) -> Floats:
+        """Derivatives of the innovations (m, 3, p) for what comes to the states in legs, (m, s, p).
+
+        That is in the axes of the states themselves.
+        """
+        found = np.empty((change.shape[0], 3, change.shape[-1]))
+        found[self.leg] = self._left_by(change[self.leg])
+        return found
+
+    def shocks(self, weighed: Floats, precision: Floats) -> Shocks:
+        """What the innovations say of a change of the states in one leg alone, for every leg.
+
+        The same loop backwards (its adjoint): de Jong and Penzer, "Diagnosing shocks in time
+        series", J. Am. Stat. Assoc. 93, 1998. So all legs are asked at the cost of one pass.
+
+        Parameters
+        ----------
+        weighed : ndarray, shape (m, 3)
+            Innovations times `precision`.
+        precision : ndarray, shape (m, 3, 3)
+            Inverse of their covariance; zero in what was not measured.
+        """
+        seen = self.leave.swapaxes(-1, -2)
+        score = -(seen @ weighed[self.leg, :, None])[..., 0]
+        known = seen @ precision[self.leg] @ self.leave
+        both = np.zeros_like(known)
+        for before, now in reversed(list(itertools.pairwise(self.rounds))):
+            last = slice(before.start, before.start + now.stop - now.start)
+            back = self.carry[now].swapaxes(-1, -2)
+            score[last] += (back @ score[now][..., None])[..., 0]
+            both[last] = back @ known[now]
+            known[last] += both[last] @ self.carry[now]
+        found = Shocks(*(np.empty_like(part) for part in (score, known, both, self.enter)))
+        for part, ordered in zip(found, (score, known, both, self.enter), strict=True):
+            part[self.leg] = ordered
+        return found
+
+
+class Shocks(NamedTuple):
+    """Of a change of the filter's s states in each of m legs."""
+
+    score: Floats
+    """Derivative of the log-likelihood in the change, (m, s)."""
+    known: Floats
+    """Its information (minus the second derivative), (m, s, s)."""
+    both: Floats
+    """That between a change in this leg and one in the next, (m, s, s); zero where none follows."""
+    enter: Floats
+    """Turns the axes of the robot at a leg's start into those of the states, (m, s, 3)."""
 
 
 _COLUMNS = 32
@@ -110,7 +165,7 @@ class Unexpected(NamedTuple):
 
 def stretches(legs: Legs) -> NDArray[np.intp]:
     """First legs of the stretches."""
-    length = max(STRETCH, legs.begins.size // SIDE_BY_SIDE)
+    length = max(legs.stretch, legs.begins.size // SIDE_BY_SIDE)
     full = np.all(np.isfinite(legs.start), axis=-1).tolist()
     starts = []
     bounds = np.append(np.flatnonzero(legs.begins), legs.begins.size)

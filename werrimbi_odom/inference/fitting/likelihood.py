@@ -10,18 +10,26 @@ alone, two poses in a drive. So likelihood, fits and tests for all of them rest 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.fitting.filtering import UNMEASURED, Legs, filtered
+from werrimbi_odom.inference.fitting.filtering import (
+    STRETCH,
+    UNMEASURED,
+    Legs,
+    Shocks,
+    Ways,
+    filtered,
+)
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.fitting.wandering import LaidHeading, Wander, filtered_wandering
 from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.inference.rules import EVENT_STEP
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion
@@ -72,10 +80,9 @@ class Innovations:
     """Shape (g, m, 3); zero where nothing was measured."""
     covariance: Floats
     """Shape (g, m, 3, 3)."""
-    change: Callable[[Floats], Floats]
-    """From derivatives of the legs' relative poses (m, 3, p) to its own for the first set of
-    variances, (m, 3, p + 1): the last one is in the run's heading at its first reference pose, zero
-    where that was measured."""
+    ways: Ways | None
+    """How changes of the legs come to them, for the first set of variances; None where each leg
+    stands for itself."""
     known: NDArray[np.bool_]
     """Which coordinates were measured and are to be counted, shape (m, 3)."""
     _roots: list[Floats] = field(default_factory=list)
@@ -97,7 +104,36 @@ class Innovations:
 
     def marks(self, slopes: Floats) -> Floats:
         """Their derivatives for those of the legs' relative poses, as `change` has them."""
-        return np.asarray(self._root() @ self.change(slopes))
+        return np.asarray(self._root() @ self._change(slopes))
+
+    def shocks(self, white: Floats) -> Shocks:
+        """What they say of a change of the states in one leg alone, for every leg.
+
+        Parameters
+        ----------
+        white : ndarray, shape (m, 3)
+            What of the whitened ones is left.
+        """
+        back = self._root().swapaxes(-1, -2)
+        weighed, precision = (back @ white[..., None])[..., 0], back @ self._root()
+        if self.ways is not None:
+            return self.ways.shocks(weighed, precision)
+        nothing = np.zeros_like(precision)
+        return Shocks(weighed, precision, nothing, nothing + np.eye(3))
+
+    def shown(self, change: Floats) -> Floats:
+        """What changes of the states in legs (m, s, p) add to the whitened ones, (m, 3, p)."""
+        return np.asarray(
+            self._root() @ (change if self.ways is None else -self.ways.of_states(change))
+        )
+
+    def _change(self, slopes: Floats) -> Floats:
+        """From derivatives of the legs' relative poses (m, 3, p) to its own, (m, 3, p + 1).
+
+        The last one is in the run's heading at its first reference pose, zero where that was
+        measured.
+        """
+        return _alone(slopes) if self.ways is None else self.ways.innovations(slopes)
 
     def _root(self) -> Floats:
         if not self._roots:
@@ -116,6 +152,7 @@ def innovations(
     excluded: NDArray[np.bool_] | None = None,
     start_yaws: Sequence[float | None] | None = None,
     heading: float = 0.0,
+    stretch: int = STRETCH,
 ) -> Innovations:
     """Filter all runs and keep what was unexpected.
 
@@ -128,6 +165,8 @@ def innovations(
         For each run the heading at the first reference pose, where that was not measured [rad].
     heading
         Variance of these, where nobody fitted them, of a local_map [rad²].
+    stretch : int
+        Legs, at the least, after which the filter may start anew.
     """
     count = runs.count
     skip = runs.gap if excluded is None else runs.gap | excluded
@@ -144,10 +183,11 @@ def innovations(
             begun[runs.legs[index]] = given
             start[runs.legs[index], 2] = np.nan
     noise = _wheel_part(prediction, variances)
+    noise[:, runs.stepped] += EVENT_STEP * np.eye(3)
     reading = _reading(robot, variances, runs, prediction, adds_up=kind == "incremental")
     if kind == "incremental":
         noise[..., 2, 2] += variances.yaw[:, None] * runs.intervals
-    legs = Legs(prediction.relative, noise, start, finish, reading, begins, skip, begun)
+    legs = Legs(prediction.relative, noise, start, finish, reading, begins, skip, begun, stretch)
     if kind == "local_map":
         kept = np.exp(-np.sqrt(variances.reversion)[:, None] * runs.duration)
         laid = None
@@ -158,7 +198,7 @@ def innovations(
     else:
         found = filtered(legs)
     known = np.isfinite(finish) & ~skip[:, None]
-    return Innovations(found.value, found.covariance, found.ways.innovations, known)
+    return Innovations(found.value, found.covariance, found.ways, known)
 
 
 def _of_increments(
@@ -183,10 +223,11 @@ def _of_increments(
         * np.diag([1.0, 1.0, 0.0])
         + 2.0 * np.diag(reading_noise(robot))
     )
+    covariance[:, runs.stepped] += EVENT_STEP * np.eye(3)
     covariance = covariance + UNMEASURED * _diagonal(~np.isfinite(value))
     value = np.where(known, value, 0.0)
     sets = variances.left.size
-    return Innovations(np.broadcast_to(value, (sets, *value.shape)), covariance, _alone, known)
+    return Innovations(np.broadcast_to(value, (sets, *value.shape)), covariance, None, known)
 
 
 def _alone(slopes: Floats) -> Floats:

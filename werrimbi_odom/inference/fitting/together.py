@@ -59,6 +59,8 @@ class Together:
     """Of each leg, shape (m,) [s]."""
     gap: NDArray[np.bool_]
     """Legs that are none, for they hold something that is left out; shape (m,)."""
+    stepped: NDArray[np.bool_]
+    """Legs in which something happened at once (an event), which may end anywhere; shape (m,)."""
     finer: Together | None = None
     """The same nodes in shorter legs, of which these are joined."""
     _features: dict[tuple[float, ...], Drive[Floats]] = field(default_factory=dict)
@@ -114,6 +116,11 @@ class Together:
     def run_of_step(self) -> NDArray[np.intp]:
         """Index of the run of each step, shape (n,)."""
         return np.repeat(np.arange(len(self.runs)), np.diff(self.steps))
+
+    @property
+    def ends_at(self) -> Floats:
+        """Stamp of the pose at each leg's end, shape (m,) [s]."""
+        return np.concatenate([run.measured.time[1:] for run in self.runs])
 
     @property
     def inside(self) -> NDArray[np.intp]:
@@ -214,6 +221,7 @@ def together(runs: Sequence[MatchedRun], finer: Together | None = None) -> Toget
         intervals=np.concatenate([run.intervals for run in runs]),
         duration=np.concatenate([np.diff(run.time[run.ends]) for run in runs]),
         gap=np.concatenate([run.gap for run in runs]),
+        stepped=np.concatenate([run.stepped for run in runs]),
         finer=finer,
         _features={} if finer is None else finer._features,  # they are of steps, which are the same
     )

@@ -61,6 +61,8 @@ class Record:
     """Noise of the reference's position as the record states it [m]."""
     sigma_yaw: float | None
     """Noise of the reference's heading as the record states it [rad]."""
+    happened: tuple[tuple[float, float], ...] = ()
+    """See `Run.happened`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,6 +113,11 @@ class MatchedRun:
     def intervals(self) -> Floats:
         """Reference intervals in each leg, shape (m,): an incremental reference errs at each."""
         return np.diff(self.rows).astype(np.float64)
+
+    @property
+    def stepped(self) -> NDArray[np.bool_]:
+        """Legs in which something happened at once, so that they may end anywhere; shape (m,)."""
+        return touched(self.measured.time, self.record.happened)
 
     @property
     def legs(self) -> int:
@@ -264,6 +271,7 @@ def record_of(
         found,
         _typical(reference.sigma_xy),
         _typical(reference.sigma_yaw),
+        run.happened,
     )
 
 

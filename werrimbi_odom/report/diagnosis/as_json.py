@@ -20,6 +20,7 @@ from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
 from werrimbi_odom.inference.manoeuvres.told import beyond_chance, one_each, significant
 from werrimbi_odom.report.changes import changes_json
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.events import alike_json, events_json
 from werrimbi_odom.report.numbers import picked
 from werrimbi_odom.report.phrases import left_out_json, remarks_json
 
@@ -82,6 +83,8 @@ def json_of(
             **_cell(diagnosis.misfit.cell),
         },
         "changes": changes_json(changes, diagnosis.robot),
+        "events": events_json(diagnosis.happened, diagnosis.robot.track),
+        "events_alike": alike_json(diagnosis.happened),
         "could_have_been_seen": [_limit(sight) for sight in sights],
     }
 

@@ -16,6 +16,7 @@ from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
 from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.dependence_figure import dependence_figure
+from werrimbi_odom.report.diagnosis.events_figure import on_the_path, over_time
 from werrimbi_odom.report.diagnosis.evidence_figures import (
     evidence_map_figure,
     ordered_cells,
@@ -53,6 +54,7 @@ def document_of(told: Told, steps: NextSteps | None = None) -> Document:
             *_before_after(diagnosis),
             *_ranking(diagnosis),
             *_evidence(diagnosis),
+            *_events(diagnosis),
             *_next(diagnosis, told.manoeuvre),
             *_sketches(diagnosis),
         ],
@@ -186,6 +188,26 @@ def _strongest(cells: list[Dependence]) -> str:
         '<details class="toolbar"><summary>The strongest fields</summary>'
         f"<ol>{buttons}</ol></details>"
     )
+
+
+def _events(diagnosis: Diagnosis) -> list[Shown]:
+    happened, track = diagnosis.happened, diagnosis.robot.track
+    if not happened.events:
+        return []
+    figures = {"over time": over_time(happened, track)}
+    path = on_the_path(happened, track)
+    if path is not None:
+        figures = {"on the path": path, **figures}
+    return [
+        Shown(
+            "events",
+            "What happened at once",
+            "Each mark is a jump of the errors within 0.2 s, that no law explains. Marks that line "
+            "up, or that come at the same place, are no accidents.",
+            figures,
+            "Drawn:",
+        )
+    ]
 
 
 def _next(diagnosis: Diagnosis, manoeuvre: Manoeuvre | None) -> list[Shown]:

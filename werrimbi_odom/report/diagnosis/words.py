@@ -32,6 +32,7 @@ from werrimbi_odom.report.diagnosis.phrases import (
     whole,
 )
 from werrimbi_odom.report.document import Paragraph, paragraphs
+from werrimbi_odom.report.events import events_words
 from werrimbi_odom.report.numbers import chance_words, error_words, listed
 from werrimbi_odom.report.phrases import jumps_words, left_out_words, remark_words
 
@@ -60,6 +61,7 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     said = [*_changes(told), *tell(told, steps), *otherwise(diagnosis)]
     suspect = [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*suspect, *left_out_words(diagnosis.left_out), *jumps_words(diagnosis.left_out)]
+    left_out += events_words(diagnosis.happened, diagnosis.robot.track)
     last = (index for index, text in enumerate(said) if text.startswith("Next: "))
     place = next(last, len(said))
     said[place:place] = left_out

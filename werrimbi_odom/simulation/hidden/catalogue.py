@@ -16,6 +16,7 @@ from .counters import EncoderSkew, MissedTicks, WheelReversed, WheelsSwapped
 from .creep import CastorKick, LateralSlip, LongitudinalSlip, TurnDependentTrack
 from .floor import CablePull, FloorSlope, GrainedFloor, SlipperySpot
 from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
+from .knocks import Knock, ReferenceJump
 from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount
 from .outside import BaseByPayload, OneTyreBackwards, OneTyreByPressure
 from .peculiarity import Peculiarity
@@ -30,7 +31,7 @@ from .wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift, Side
 
 Rng = np.random.Generator
 Make = Callable[[float, Rng], Peculiarity]
-Kind = Literal["effect", "mistake", "outside", "robot"]
+Kind = Literal["effect", "mistake", "outside", "robot", "event"]
 
 
 class UnknownEffectError(ValueError):
@@ -60,9 +61,9 @@ class Entry:
         Strength at which there is no effect.
     signed : bool
         Whether both signs of that distance occur.
-    kind : "effect", "mistake", "outside" or "robot"
-        In the library's vocabulary, a mistake of set-up, nothing that the library knows, or another
-        kind of robot.
+    kind : "effect", "mistake", "outside", "robot" or "event"
+        In the library's vocabulary, a mistake of set-up, nothing that the library knows, another
+        kind of robot, or what happens at single instants.
     """
 
     name: str
@@ -236,6 +237,16 @@ CATALOGUE: tuple[Entry, ...] = (
             "turning towards one direction of the room", signed=False, kind="outside"),
     Entry("skid_steer", skid_steer, "1", 0.3, 1.5, "turning by four skidding wheels over the true",
             null=1.0, signed=False, kind="robot"),
+    Entry("push", lambda s, rng: Knock("push", s), "m", 0.01, 0.03,
+            "pushed sideways, every 25 s or so", signed=False, kind="event"),
+    Entry("heading_kick", lambda s, rng: Knock("heading_kick", s), "rad", 0.02, 0.06,
+            "turned at once, every 25 s or so", signed=False, kind="event"),
+    Entry("bump", lambda s, rng: Knock("bump", s), "m", 0.01, 0.03,
+            "thrown forwards or back, every 25 s or so", signed=False, kind="event"),
+    Entry("wheel_slip", lambda s, rng: Knock("wheel_slip", s), "m", 0.01, 0.03,
+            "one wheel loses travel at once, every 25 s or so", signed=False, kind="event"),
+    Entry("reference_jump", lambda s, rng: ReferenceJump(s, stays=_either(rng)), "m", 0.02, 0.2,
+            "reference at another place, once or from then on", signed=False, kind="event"),
 )
 # fmt: on
 

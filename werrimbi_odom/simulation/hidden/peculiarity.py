@@ -11,7 +11,7 @@ import numpy as np
 
 from ..chassis import Chassis
 from ..engine import Reshaper, Shifter
-from ..recording import Recording
+from ..recording import Happened, Recording
 from ..robot import TrueRobot
 from ..sensors import ReferenceSensor
 
@@ -68,3 +68,9 @@ class Peculiarity:
     ) -> Recording:
         """What was recorded."""
         return recording
+
+    def happened(
+        self, until: float, robot: TrueRobot, rng: np.random.Generator
+    ) -> tuple[Happened, ...]:
+        """What it did to a drive at single instants up to `until` [s], for truth.json."""
+        return ()

@@ -1,0 +1,190 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What happens at an instant is told with its time and size, and disturbs no verdict."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.effects.collection import all_effects
+from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
+from werrimbi_odom.inference.events.alike import alike
+from werrimbi_odom.inference.events.events import looked_at
+from werrimbi_odom.inference.fitting.likelihood import innovations
+from werrimbi_odom.inference.fitting.prediction import predict_all
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.events import events_json, events_words
+from werrimbi_odom.simulation import TrueRobot, free, out_and_back, record, write_run
+from werrimbi_odom.simulation.hidden.knocks import Knock
+from werrimbi_odom.simulation.robot_file import write_robot_file
+
+NOISE_XY, NOISE_YAW = 1e-3, 2e-3
+"""Of the simulated reference [m, rad]."""
+
+Drives = tuple[list[Run], Robot]
+
+
+@pytest.fixture(scope="module")
+def sound(tmp_path_factory: pytest.TempPathFactory) -> Drives:
+    return _driven(tmp_path_factory.mktemp("sound"), ())
+
+
+def _driven(folder: Path, hidden: tuple[Knock, ...], seed: int = 40) -> Drives:
+    write_robot_file(TrueRobot(), folder / "robot.yaml")
+    file = read_robot_file(folder / "robot.yaml")
+    runs = []
+    for number in range(3):
+        drive = (
+            out_and_back(2.0, laps=2)
+            if number == 2
+            else free(40.0, seed=number, speed=0.4, yaw_rate=1.0)
+        )
+        made = record(TrueRobot(), drive, seed=seed + number, hidden=hidden)
+        runs.append(read_run(write_run(made, folder / f"run_{number}"), file))
+    return runs, file.robot
+
+
+def _diagnosed(drives: Drives) -> Diagnosis:
+    return diagnose(drives[0], drives[1], all_effects().effects)
+
+
+def _measured(run: Run, change: Callable[[Reference], Reference]) -> Run:
+    assert run.reference is not None
+    return replace(run, reference=change(run.reference))
+
+
+def _stepped(run: Run, at: float, sideways: float, turn: float = 0.0) -> Run:
+    """As if the robot had been pushed to its left and turned at an instant."""
+
+    def change(seen: Reference) -> Reference:
+        after = seen.time >= at
+        row = int(np.argmax(after))
+        place, yaw = seen.x + 1j * seen.y, seen.yaw
+        pivot = place[row]
+        moved = pivot + np.exp(1j * turn) * (place - pivot) + sideways * 1j * np.exp(1j * yaw[row])
+        place = np.where(after, moved, place)
+        return replace(seen, x=place.real, y=place.imag, yaw=np.where(after, yaw + turn, yaw))
+
+    return _measured(run, change)
+
+
+def test_where_nothing_happened_nothing_is_told(sound: Drives) -> None:
+    found = _diagnosed(sound)
+    assert found.happened.events == ()
+    assert events_words(found.happened, found.robot.track) == []
+
+
+def test_a_push_of_five_times_the_noise_is_told_and_left_out(sound: Drives) -> None:
+    runs, robot = sound
+    pushed = [_stepped(runs[0], 17.0, 5.0 * NOISE_XY), *runs[1:]]
+    found = _diagnosed((pushed, robot))
+    [event] = found.happened.events
+    assert event.run == runs[0].path
+    assert event.time == pytest.approx(17.0, abs=0.2)
+    assert event.channel == "sideways"
+    assert event.size == pytest.approx(5.0 * NOISE_XY, abs=3.0 * event.std)
+    assert event.stays
+    assert found.happened.left_out
+    assert found.verdict == _diagnosed(sound).verdict == "none"
+    [told] = events_json(found.happened, robot.track)
+    assert (told["run"], told["unit"], told["left_out"]) == (str(runs[0].path), "m", True)
+    assert "to the left" in told["words"]
+
+
+def test_a_kick_of_the_heading_is_told_by_a_gyro_alone(sound: Drives) -> None:
+    def gyro(seen: Reference) -> Reference:
+        nothing = np.full(seen.time.size, np.nan)
+        return replace(seen, x=nothing, y=nothing)
+
+    runs, robot = sound
+    kicked = [_measured(_stepped(runs[0], 22.0, 0.0, -5.0 * NOISE_YAW), gyro)]
+    kicked += [_measured(run, gyro) for run in runs[1:]]
+    [event] = _diagnosed((kicked, robot)).happened.events
+    assert (event.channel, event.unit) == ("heading", "rad")
+    assert event.time == pytest.approx(22.0, abs=0.2)
+    assert event.size == pytest.approx(-5.0 * NOISE_YAW, abs=3.0 * event.std)
+
+
+def test_a_reference_that_is_wrong_in_one_pose_jumped_and_came_back(sound: Drives) -> None:
+    def wrong(seen: Reference) -> Reference:
+        x = seen.x.copy()
+        x[np.searchsorted(seen.time, 20.0)] += 0.05
+        return replace(seen, x=x)
+
+    runs, robot = sound
+    [event] = _diagnosed(([_measured(runs[0], wrong), *runs[1:]], robot)).happened.events
+    assert (event.channel, event.stays) == ("reference", False)
+    assert event.time == pytest.approx(20.0, abs=0.06)
+    assert event.size == pytest.approx(0.05, abs=4.0 * event.std)
+
+
+def test_what_creeps_in_over_seconds_is_no_event(sound: Drives) -> None:
+    """An error as large as that push, which takes four seconds to come."""
+
+    def creeping(seen: Reference) -> Reference:
+        return replace(seen, x=seen.x + 5.0 * NOISE_XY * np.clip((seen.time - 15.0) / 4.0, 0, 1))
+
+    runs, robot = sound
+    found = _diagnosed(([_measured(runs[0], creeping), *runs[1:]], robot))
+    assert found.happened.events == ()
+
+
+def test_events_of_the_engine_are_found_and_no_verdict_is_made_of_them(tmp_path: Path) -> None:
+    runs, robot = _driven(tmp_path, (Knock("wheel_slip", 0.015, every=12.0),))
+    found = _diagnosed((runs, robot))
+    made = record(
+        TrueRobot(), free(40.0, seed=0, speed=0.4, yaw_rate=1.0), seed=40,
+        hidden=[Knock("wheel_slip", 0.015, every=12.0)],
+    )  # fmt: skip
+    told = [event for event in found.happened.events if event.run == runs[0].path]
+    assert len(told) == len(made.happened) > 1
+    for event, truth in zip(told, made.happened, strict=True):
+        assert event.time == pytest.approx(truth.t_s, abs=0.2)
+        assert event.sizes[2] == pytest.approx(truth.turn_rad, abs=4.0 * event.stds[2])
+    assert found.verdict == "none"
+    assert "wheel slipped by" in " ".join(events_words(found.happened, robot.track))
+
+
+def test_the_filter_backwards_is_the_adjoint_of_the_filter_forwards(sound: Drives) -> None:
+    """A step's score is the product of what it shows with the innovations, leg by leg."""
+    found = _diagnosed(sound)
+    runs = looked_at(found.runs.runs)
+    point = found.final.point
+    told = innovations(
+        point.model.robot, runs, predict_all(point.model, runs), point.variances, "absolute"
+    )
+    white = told.whitened()
+    shocks = told.shocks(white)
+    for leg in (3, runs.count // 2, runs.count - 2):
+        change = np.zeros((runs.count, 3, 3))
+        change[leg] = np.eye(3)
+        shown: Floats = told.shown(change)
+        np.testing.assert_allclose(
+            shocks.score[leg], np.einsum("mij,mi->j", shown, white), rtol=1e-6, atol=1e-6
+        )
+        np.testing.assert_allclose(
+            shocks.known[leg], np.einsum("mij,mik->jk", shown, shown), rtol=1e-6, atol=1e-4
+        )
+
+
+def test_what_comes_at_one_place_is_no_accident(sound: Drives) -> None:
+    found = _diagnosed(sound)
+    runs = looked_at(found.runs.runs)
+    sides = [(runs, predict_all(found.final.point.model, runs))]
+    x = runs.finish[:, 0]
+    chance = np.random.default_rng(1)
+    anywhere = chance.choice(runs.count, 8, replace=False)
+    at_a_line = np.flatnonzero(np.abs(x - np.median(x)) < 0.03)
+    assert alike([anywhere], sides) is None
+    common = alike([chance.choice(at_a_line, 8, replace=False)], sides)
+    assert common is not None
+    assert (common.what, common.count) == ("x", 8)

@@ -1,0 +1,126 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What events have in common: a reversal, a start or stop, a place on the floor; or nothing.
+
+Events that have something in common are no accidents: at reversals they lead to an effect, at a
+place to the floor. Each is held against how much of the driving there is of it (binomial test).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.inference.chances import binomial_above, in_any_of
+from werrimbi_odom.inference.fitting.prediction import Prediction
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import (
+    ALIKE_SHARE,
+    AT_REVERSAL,
+    EVENTS_ALIKE,
+    NEAR_BAND,
+    NEAR_PLACE,
+    SURE,
+)
+from werrimbi_odom.model.pose import Floats
+
+Common = Literal["reversal", "start or stop", "x", "y", "place"]
+
+PLACES: tuple[Common, ...] = ("x", "y", "place")
+
+MOVES = 1e-3
+"""Way of an interval [m] from which on its direction is told: counts tremble by less."""
+
+
+@dataclass(frozen=True, slots=True)
+class Alike:
+    """What most of some events have in common."""
+
+    what: Common
+    count: int
+    """Of events that have it."""
+    of: int
+    """Of all."""
+    at: tuple[float, float]
+    """Where on the floor [m]; NaN where it is no place."""
+    p_value: float
+    """Of as many by chance, all that was asked counted."""
+
+
+def alike(
+    legs: Sequence[NDArray[np.intp]],
+    sides: Sequence[tuple[Together, Prediction]],
+    *,
+    places: bool = True,
+) -> Alike | None:
+    """What is commonest among events, if chance does not make it.
+
+    Parameters
+    ----------
+    legs
+        Of the events, for each of the sides: sets of drives that were looked at, interval by
+        interval, and what a model predicts for them.
+    places
+        Whether what was measured is a place on the floor: one that adds up is none after a jump.
+    """
+    of = sum(own.size for own in legs)
+    if of < EVENTS_ALIKE:
+        return None
+    found: list[Alike] = []
+    nowhere = (float("nan"), float("nan"))
+    tried: list[tuple[Common, tuple[float, float], list[NDArray[np.bool_]], list[Floats]]] = []
+    time = [runs.duration * ~runs.gap for runs, _ in sides]
+    way = [told.length * ~runs.gap for runs, told in sides]
+    for what in ("reversal", "start or stop"):
+        near = [_after(runs, told, stops=what != "reversal") for runs, told in sides]
+        tried.append((what, nowhere, near, time))
+    if places and not any(runs.own_axes or runs.headings_alone for runs, _ in sides):
+        seen = [runs.finish[:, :2] for runs, _ in sides]
+        for own, here in zip(legs, seen, strict=True):
+            for leg in own.tolist():
+                x, y = here[leg].tolist()
+                if not np.isfinite(x + y):
+                    continue
+                across: list[tuple[Common, tuple[float, float], list[NDArray[np.bool_]]]] = [
+                    ("x", (x, float("nan")), [abs(p[:, 0] - x) < NEAR_BAND for p in seen]),
+                    ("y", (float("nan"), y), [abs(p[:, 1] - y) < NEAR_BAND for p in seen]),
+                    ("place", (x, y), [np.hypot(*(p - (x, y)).T) < NEAR_PLACE for p in seen]),
+                ]
+                tried += [(what, at, near, way) for what, at, near in across]
+    for what, at, near, weight in tried:
+        count = sum(int(here[own].sum()) for own, here in zip(legs, near, strict=True))
+        whole = sum(float(part.sum()) for part in weight)
+        share = sum(float(p @ here) for p, here in zip(weight, near, strict=True)) / whole
+        # The event that the place is taken from says nothing for it.
+        told_by = 0 if np.isnan(at).all() else 1
+        chance = binomial_above(count - told_by, of - told_by, share)
+        found.append(Alike(what, count, of, at, in_any_of(len(tried), chance)))
+    common = [
+        each
+        for each in found
+        if each.count >= max(EVENTS_ALIKE, ALIKE_SHARE * of) and each.p_value < SURE
+    ]
+    # A drive to and fro has its stops at one place: what it did explains that, and not the floor.
+    return min(common, key=lambda each: (each.what in PLACES, each.p_value), default=None)
+
+
+def _after(runs: Together, told: Prediction, *, stops: bool) -> NDArray[np.bool_]:
+    """Intervals about a reversal, or about a start or a stop; (m,)."""
+    found = np.zeros(runs.count, dtype=np.bool_)
+    end = runs.ends_at
+    for first, last in zip(runs.legs[:-1], runs.legs[1:], strict=True):
+        along, turn = told.along[first:last], told.turn[first:last]
+        if stops:
+            moves = (np.abs(along) > MOVES) | (np.abs(turn) > MOVES)
+            turned = np.flatnonzero(np.diff(moves.astype(np.int8))) + 1
+        else:
+            going = np.flatnonzero(np.abs(along) > MOVES)
+            turned = going[1:][np.diff(np.sign(along[going])) != 0.0]
+        for leg in turned.tolist():
+            since = end[first:last] - end[first + leg]
+            found[first:last] |= (since > AT_REVERSAL[0]) & (since < AT_REVERSAL[1])
+    return found

@@ -1,0 +1,286 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Events: steps of the pose, or of the reference, that are sudden, large, rare, and no law's."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Literal, NamedTuple
+
+import numpy as np
+
+from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.inference.events.alike import Alike, alike
+from werrimbi_odom.inference.events.steps import Steps, steps_of
+from werrimbi_odom.inference.fitting.design import Point
+from werrimbi_odom.inference.fitting.prediction import predict_all
+from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.legs.cutting import MatchedRun, divided
+from werrimbi_odom.inference.rules import (
+    EDGE,
+    EVENT_BESIDE,
+    EVENT_INTERVAL,
+    EVENT_JOIN,
+    EVENT_LARGE,
+    EVENT_SPAN,
+    EVENTS_ALIKE,
+    JOLT,
+    RARE,
+)
+from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.pose import Floats
+
+Channel = Literal["along", "sideways", "heading", "reference"]
+CHANNELS: tuple[Channel, ...] = ("along", "sideways", "heading")
+UNITS = ("m", "m", "rad")
+
+
+@dataclass(frozen=True, slots=True)
+class Event:
+    """One of them."""
+
+    run: Path
+    """As it was given."""
+    held_out: bool
+    time: float
+    """In the run's own clock [s]."""
+    seen: float
+    """What the reference stamped it, which may be late [s]."""
+    started: float
+    """First tick of the run, in that clock [s]."""
+    channel: Channel
+    """Where it was the largest, in its own deviations; "reference": what was measured jumped."""
+    size: float
+    """In that channel [m, rad]; of a reference that jumped, how far [m] (or by how much, where it
+    was in heading alone [rad])."""
+    std: float
+    unit: str
+    sizes: tuple[float, float, float]
+    """Along, sideways and in heading [m, m, rad]."""
+    stds: tuple[float, float, float]
+    place: tuple[float, float]
+    """Where the reference saw the robot then [m]; NaN where it saw no place."""
+    stays: bool
+    """Whether it stayed; else the reference was right again at the next pose."""
+    p_value: float
+    """Of as much by chance, all instants and channels counted."""
+
+
+class Way(NamedTuple):
+    """Where a drive was measured, n poses."""
+
+    run: Path
+    held_out: bool
+    time: Floats
+    """(n,) [s]"""
+    x: Floats
+    y: Floats
+
+
+@dataclass(frozen=True, slots=True)
+class Happened:
+    """All events of some drives."""
+
+    events: tuple[Event, ...] = ()
+    """Drive by drive, in the order of time."""
+    ways: tuple[Way, ...] = ()
+    """Of the drives; none where nothing happened."""
+    alike: Alike | None = None
+    """What they have in common."""
+    many: bool = False
+    """Whether there are more than accidents are."""
+    kind: ReferenceKind = "absolute"
+    """Of the reference."""
+
+    @property
+    def accidents(self) -> bool:
+        """Whether they have nothing in common: what repeats itself is a law, and stays in fits."""
+        return bool(self.events) and self.alike is None and not self.many
+
+    @property
+    def left_out(self) -> bool:
+        """Whether they are left out of fits.
+
+        The jumps of a reference that wanders are left out already, by its own filter, which lets
+        its error begin anew: a step of the robot would be another thing.
+        """
+        return self.accidents and self.kind != "local_map"
+
+
+class Side(NamedTuple):
+    """Drives, and a model in them."""
+
+    runs: Sequence[MatchedRun]
+    paths: Sequence[Path]
+    """Of them."""
+    point: Point
+    held_out: bool
+
+
+def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Happened:
+    """What happened at an instant, beside everything that a model explains."""
+    events: list[Event] = []
+    legs, looked = [], []
+    many, time = False, 0.0
+    spans: dict[Path, float] = {}
+    for side in sides:
+        runs = looked_at(side.runs)
+        steps = steps_of(runs, side.point, kind)
+        found = [(own, event) for own in _groups(steps) if (event := _event(steps, own, side))]
+        events += [event for _, event in found]
+        legs.append(np.array([steps.found[own[0]].leg for own, _ in found], dtype=np.intp))
+        looked.append((runs, predict_all(side.point.model, runs)))
+        many |= steps.many
+        for index, path in enumerate(side.paths):
+            own = runs.duration[(runs.run_of_leg == index) & ~runs.gap]
+            spans[path] = spans.get(path, 0.0) + float(own.sum())
+        time += float(runs.duration[~runs.gap].sum())
+    if not events:
+        return Happened()
+    drives = [path for side in sides for path in side.paths]
+    events.sort(key=lambda event: (drives.index(event.run), event.time))
+    many |= len(events) * RARE > time or any(
+        sum(event.run == path for event in events) > max(EVENTS_ALIKE, spent / RARE)
+        for path, spent in spans.items()
+    )
+    if many:
+        return Happened(many=True, kind=kind)  # a law is missing: these are no events
+    ways = [
+        Way(path, side.held_out, run.measured.time, run.measured.x, run.measured.y)
+        for side, (runs, _) in zip(sides, looked, strict=True)
+        for run, path in zip(runs.runs, side.paths, strict=True)
+    ]
+    common = alike(legs, looked, places=kind != "incremental")
+    return Happened(tuple(events), tuple(ways), common, many, kind)
+
+
+def without(run: Run, happened: Happened) -> Run:
+    """The run with those of its events marked that are not yet; itself where there are none."""
+    new = [
+        (event.seen - EVENT_SPAN, event.seen + EVENT_SPAN)
+        for event in happened.events
+        if event.run == run.path
+        and not any(begin < event.seen < end for begin, end in run.happened)
+    ]
+    return replace(run, happened=tuple(sorted([*run.happened, *new]))) if new else run
+
+
+def looked_at(runs: Sequence[MatchedRun]) -> Together:
+    """The same runs with a leg from each pose to the next, as finely as events are looked for."""
+    found = []
+    for run in runs:
+        time = run.record.measured.time.tolist()
+        rows = [0]
+        for row in range(1, len(time)):
+            if time[row] - time[rows[-1]] >= EVENT_INTERVAL:
+                rows.append(row)
+        plain = replace(run.record, happened=())
+        found.append(divided(plain, np.array(rows, dtype=np.intp)))
+    return together(found)
+
+
+def _groups(steps: Steps) -> list[list[int]]:
+    """Indices of steps that are one event, in the order of time."""
+    runs = steps.runs
+    groups: list[list[int]] = []
+    last = -1
+    for index in sorted(range(len(steps.found)), key=lambda index: steps.found[index].leg):
+        leg = steps.found[index].leg
+        same = last >= 0 and runs.run_of_leg[last] == runs.run_of_leg[leg]
+        if same and runs.ends_at[leg] - runs.ends_at[last] <= EVENT_JOIN:
+            groups[-1].append(index)
+        else:
+            groups.append([index])
+        last = leg
+    return groups
+
+
+def _event(steps: Steps, group: list[int], side: Side) -> Event | None:
+    """What some steps come to, if it is sudden and large."""
+    runs = steps.runs
+    spike = all(steps.found[index].shape == "spike" for index in group)
+    # Beside a step a spike says how its time parts between two intervals, and is none of its size.
+    group = [index for index in group if spike or steps.found[index].shape != "spike"]
+    legs = [steps.found[index].leg for index in group]
+    first = legs[0]
+    run = int(runs.run_of_leg[first])
+    clock = runs.runs[run].counters.time
+    if not clock[0] + EDGE < runs.ends_at[first] < clock[-1] - EDGE:
+        return None  # as in a fit: a clock that is late shows there what the ticks do not know
+    scatter = float(steps.scatter[run])
+    sizes, spread = _net(steps, group, scatter, beside=False)
+    beside, spread_beside = _net(steps, group, scatter, beside=True)
+    stds = np.sqrt(np.diag(spread))
+    large = np.abs(sizes) > EVENT_LARGE * steps.noise[first] * np.sqrt(scatter)
+    sudden = np.abs(beside) > EVENT_BESIDE * np.sqrt(np.diag(spread_beside))
+    # Of a coordinate that nobody measured there is no noise: a heading that positions tell.
+    told = sudden & (large | ~steps.told.known[first])
+    if not told.any():
+        return None
+    channel = int(np.argmax(np.where(told, np.abs(sizes) / stds, 0.0)))
+    jumped = all(steps.found[index].shape != "robot" for index in group) or _beyond_any_push(
+        sizes, len(group), float(runs.duration[first])
+    )
+    name: Channel = "reference" if jumped else CHANNELS[channel]
+    size, std, unit = float(sizes[channel]), float(stds[channel]), UNITS[channel]
+    if jumped and channel < 2:
+        size = float(np.hypot(*sizes[:2]))
+        std = float(np.sqrt(sizes[:2] @ spread[:2, :2] @ sizes[:2])) / size
+    end = runs.ends_at[legs]
+    middle = end if spike else end - 0.5 * runs.duration[legs]
+    weight = np.abs(_fitted(steps)[group, channel])
+    seen = float(np.sum(weight * middle) / np.sum(weight))
+    own = runs.runs[run]
+    return Event(
+        side.paths[run],
+        side.held_out,
+        seen - view_of(side.point.model.robot.effects).delay,
+        seen,
+        float(own.counters.time[0]),
+        name,
+        size,
+        std,
+        unit,
+        (float(sizes[0]), float(sizes[1]), float(sizes[2])),
+        (float(stds[0]), float(stds[1]), float(stds[2])),
+        (float(runs.finish[first, 0]), float(runs.finish[first, 1])),
+        not spike,
+        min(steps.p_values[index] for index in group),
+    )
+
+
+def _beyond_any_push(sizes: Floats, parts: int, interval: float) -> bool:
+    """Whether nothing moves a robot so far in one interval, or two."""
+    return bool(np.hypot(*sizes[:2]) > 0.5 * JOLT * (parts * interval) ** 2)
+
+
+def _fitted(steps: Steps) -> Floats:
+    """All steps fitted together, (q, 3)."""
+    return np.asarray(np.linalg.lstsq(steps.columns, steps.white, rcond=None)[0].reshape(-1, 3))
+
+
+def _net(steps: Steps, group: list[int], scatter: float, *, beside: bool) -> tuple[Floats, Floats]:
+    """What the steps of a group come to (3,) in the first one's axes, and its covariance.
+
+    All steps are fitted together, and with them, where asked, what creeps in beside it. A metre and
+    a radian are as much as any may be, so that what nothing is told of has that deviation.
+    """
+    legs = [steps.found[index].leg for index in group]
+    first, shape = steps.found[group[0]].leg, steps.found[group[0]].shape
+    others = np.ones(len(steps.found), dtype=np.bool_)
+    others[group] = False
+    own = steps.about(legs) if shape == "robot" else steps.columns[:, _columns(group[:1])]
+    parts = [own, steps.columns[:, _columns(np.flatnonzero(others).tolist())]]
+    columns = np.concatenate([*parts, steps.creeping(first)] if beside else parts, axis=-1)
+    square = columns.T @ columns / scatter
+    covariance = np.linalg.inv(square + np.eye(square.shape[0]))
+    solution = covariance @ (columns.T @ steps.white) / scatter
+    summed = np.zeros((3, columns.shape[1]))
+    summed[:, : own.shape[1]] = np.tile(np.eye(3), own.shape[1] // 3)
+    return summed @ solution, summed @ covariance @ summed.T
+
+
+def _columns(steps: Sequence[int]) -> list[int]:
+    return [3 * step + axis for step in steps for axis in range(3)]

@@ -1,0 +1,52 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The noise that most legs have: what happened in a few of them has swollen that of a fit."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.chances import chi2_median
+from werrimbi_odom.inference.fitting.costs import Costs
+from werrimbi_odom.inference.fitting.design import Point, unexpected
+from werrimbi_odom.inference.fitting.likelihood import Variances
+from werrimbi_odom.inference.fitting.noise import likeliest
+from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.rules import NOISE_NUMBERS, NOISE_TRIMMED
+
+_ROUNDS = 4
+
+
+def noise_of_most(
+    runs: Together,
+    point: Point,
+    kind: ReferenceKind,
+    known: tuple[float | None, float | None] = (None, None),
+) -> Variances:
+    """Variances fitted anew without the legs that deviate far more than most; the model stays.
+
+    Parameters
+    ----------
+    known
+        The reference's noise where it is known [m, rad].
+    """
+    held = (known[0] is not None, known[1] is not None)
+    bounds = list(zip(runs.legs[:-1].tolist(), runs.legs[1:].tolist(), strict=True))
+    for _ in range(_ROUNDS):
+        found = unexpected(runs, point, kind)
+        deviation = np.sum(found.whitened() ** 2, axis=-1)
+        numbers = found.known.sum(axis=-1).astype(np.float64)
+        counted = (numbers > 0) & (deviation > 0.0)
+        if counted.sum() < NOISE_NUMBERS:
+            break
+        usual = np.median(deviation[counted] / chi2_median(numbers[counted]))
+        far = deviation > NOISE_TRIMMED * usual
+        if not (far & ~point.skip).any():
+            break
+        out = far | point.skip
+        point = replace(point, excluded=tuple(out[first:last] for first, last in bounds))
+        point = replace(point, variances=likeliest(Costs(runs, point, kind), point.variances, held))
+    return point.variances

@@ -1,0 +1,181 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What happened at an instant, in words and as JSON."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+from werrimbi_odom.inference.events.alike import Alike
+from werrimbi_odom.inference.events.events import Event, Happened
+from werrimbi_odom.report.numbers import in_unit, with_std
+from werrimbi_odom.report.phrases import LONGEST_DRIVE
+
+_TOLD = 6
+"""Events that are told one by one, the largest against their noise."""
+
+
+def events_words(happened: Happened, track: float) -> list[str]:
+    """What happened, in the order of time; nothing where nothing did. `track`: of the robot [m]."""
+    events = happened.events
+    if not events:
+        return []
+    count = "Once" if len(events) == 1 else f"{len(events)} times"
+    lines = [f"{count} something happened at once that no law explains, larger than the noise:"]
+    if happened.many:
+        lines = [
+            f"{count} or more the errors jump at once: too often for accidents. A law is missing, "
+            "or the reference errs otherwise than noise does. The clearest:"
+        ]
+    several = len({event.run for event in events}) > 1
+    clear = sorted(events, key=lambda event: -abs(event.size) / event.std)[:_TOLD]
+    for event in events:
+        if event in clear:
+            where = f" of {event.run.name}" if several else ""
+            words = event_words(event, track, adds_up=adds_up(happened))
+            lines.append(f"- at {told_from_start(event):.1f} s{where} {words};")
+    lines[-1] = f"{lines[-1][:-1]}."
+    rest = len(events) - len(clear)
+    if rest:
+        lines.append(f"So {'is' if rest == 1 else 'are'} {rest} more, in the report and the JSON.")
+    if happened.alike is not None:
+        lines.append(alike_words(happened.alike))
+    if adds_up(happened):
+        lines.append(
+            "To a reference whose errors add up a step of the robot and a match that failed are "
+            "one and the same."
+        )
+    if happened.left_out:
+        they = "It is" if len(events) == 1 else "They are"
+        lines.append(f"{they} left out of fits and errors, before and after alike.")
+    elif not happened.accidents:
+        lines.append("They stay in the fits, for what repeats itself is no accident.")
+    return lines
+
+
+def event_words(event: Event, track: float, *, adds_up: bool = False) -> str:
+    """What one was, as the end of a sentence.
+
+    Parameters
+    ----------
+    adds_up
+        Whether the reference's errors add up, so that a step of it is one of the robot.
+    """
+    size, unit = _size(event)
+    if event.channel == "reference":
+        how = "and stayed there" if event.stays else "and was right again at the next pose"
+        return f"the reference jumped by {size} {unit} {how}"
+    if adds_up:
+        how = {"heading": "in heading"}.get(event.channel, event.channel)
+        return f"the robot or the reference jumped by {size} {unit} {how}"
+    slipped = _slipped(event, track)
+    if slipped is not None:
+        return slipped
+    if event.channel == "heading":
+        return f"it was turned by {size} {unit} to the {'left' if event.size > 0.0 else 'right'}"
+    if event.channel == "sideways":
+        return f"it was pushed {size} {unit} to the {'left' if event.size > 0.0 else 'right'}"
+    way = "ahead of" if event.size > 0.0 else "behind"
+    return f"it was thrown {size} {unit} {way} where its wheels were (a bump, a slip)"
+
+
+def alike_words(common: Alike) -> str:
+    """What events have in common, and what that says."""
+    x, y = common.at
+    near = f"{common.count} of {common.of}"
+    if common.what == "reversal":
+        return (
+            f"{near} come with a reversal: that is a law that the model does not hold, of a castor "
+            "or of free play (castor_kick, left_backlash, right_backlash)."
+        )
+    if common.what == "start or stop":
+        return (
+            f"{near} come with a start or a stop: that is a law that the model does not hold, of "
+            "tyres or of clocks (longitudinal_slip, reference_delay)."
+        )
+    where = {"x": f"x {x:.1f} m", "y": f"y {y:.1f} m", "place": f"x {x:.1f} m, y {y:.1f} m"}
+    return (
+        f"{near} happened at {where[common.what]}: look at the floor there, for a threshold, a "
+        "joint or a cable."
+    )
+
+
+def events_json(happened: Happened, track: float) -> list[dict[str, Any]]:
+    """Field for field; times in the run's own clock [s]."""
+    return [
+        {
+            "run": str(event.run),
+            "t_s": event.time,
+            "channel": event.channel,
+            "size": event.size,
+            "std": event.std,
+            "unit": event.unit,
+            "words": event_words(event, track, adds_up=adds_up(happened)),
+            "sizes": dict(zip(_SIZES, event.sizes, strict=True)),
+            "stds": dict(zip(_SIZES, event.stds, strict=True)),
+            "x_m": event.place[0],
+            "y_m": event.place[1],
+            "stays": event.stays,
+            "held_out": event.held_out,
+            "left_out": happened.left_out,
+            "p_value": event.p_value,
+        }
+        for event in happened.events
+    ]
+
+
+def adds_up(happened: Happened) -> bool:
+    """Whether a step of the reference is one of the robot to it; a gyro loses no place."""
+    seen = any(math.isfinite(event.place[0]) for event in happened.events)
+    return happened.kind == "incremental" and seen
+
+
+_SIZES = ("along_m", "sideways_m", "heading_rad")
+
+
+def alike_json(happened: Happened) -> dict[str, Any] | None:
+    """What they have in common; null where that is nothing."""
+    common = happened.alike
+    if common is None:
+        return None
+    return {
+        "what": common.what,
+        "count": common.count,
+        "of": common.of,
+        "x_m": common.at[0],
+        "y_m": common.at[1],
+        "p_value": common.p_value,
+        "words": alike_words(common),
+    }
+
+
+def told_from_start(event: Event) -> float:
+    """When it was [s]; of a clock that shows the time of day from the run's first tick."""
+    return event.time - event.started if event.started > LONGEST_DRIVE else event.time
+
+
+def _size(event: Event) -> tuple[str, str]:
+    if event.unit == "rad":
+        return with_std(math.degrees(abs(event.size)), math.degrees(event.std)), "°"
+    return in_unit(abs(event.size), event.std, event.unit)
+
+
+def _slipped(event: Event, track: float) -> str | None:
+    """Which wheel lost travel, where along and heading are those of one wheel alone."""
+    (along, sideways, turn), (s_along, s_sideways, s_turn) = event.sizes, event.stds
+    lost = 0.5 * track * turn
+    spread = math.hypot(s_along, 0.5 * track * s_turn)
+    sure = abs(turn) > _SURELY * s_turn and abs(along) > _SURELY * s_along
+    if not sure or abs(sideways) > _SURELY * s_sideways:
+        return None
+    if abs(abs(along) - abs(lost)) > _SURELY * spread:
+        return None
+    # Of a wheel that loses travel the robot lags behind its way, and turns to that wheel's side.
+    side = "left" if (turn > 0.0) == (along < 0.0) else "right"
+    size, unit = in_unit(2.0 * abs(along), 2.0 * s_along, "m")
+    return f"its {side} wheel slipped by {size} {unit}"
+
+
+_SURELY = 3.0
+"""Standard deviations."""
