@@ -16,7 +16,7 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.adding import Added, add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.manoeuvres.told import Told
+from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.adding.words import json_of, words_of
 from werrimbi_odom.report.diagnosis.words import NextSteps

@@ -19,7 +19,7 @@ from werrimbi_odom.api.drives import collection_of, read_robot
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.manoeuvres.told import Told, told_of
+from werrimbi_odom.inference.manoeuvres.advice import Told, told_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 
 TRUE = WhiteNoiseRobot()

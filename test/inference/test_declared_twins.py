@@ -18,9 +18,9 @@ from werrimbi_odom.effects import LIBRARY, find, load_file
 from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.verdict import _possible_twins
+from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
-from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.inference.set_up.robot import mount_of
 from werrimbi_odom.model.effect import Effect

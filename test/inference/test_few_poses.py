@@ -17,7 +17,7 @@ from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.adding import Added, add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.manoeuvres.told import Told
+from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.report.adding.words import json_of as json_of_added

@@ -21,8 +21,8 @@ from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
 from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
-from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.report.diagnosis.phrases import not_shown
 
 TRUE = WhiteNoiseRobot()

@@ -21,7 +21,7 @@ from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.adding import Added, add_effects
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.manoeuvres.told import Told
+from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.model.effect import Effect, Parameter, wheel_effect
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.robot import Robot

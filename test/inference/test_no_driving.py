@@ -22,7 +22,7 @@ from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.legs.no_driving import looked_at
-from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
+from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.report.phrases import left_out_words
 
 DATA = Path(os.environ.get("WERRIMBI_DATA", Path(__file__).parents[3] / "shared" / "data"))

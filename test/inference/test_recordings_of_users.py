@@ -26,7 +26,7 @@ from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.rules import DRIFT_LEGS
-from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
+from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, strength_words
 

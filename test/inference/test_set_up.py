@@ -35,7 +35,7 @@ from werrimbi_odom.inference.adding.drafting import loaded
 from werrimbi_odom.inference.comparison.legs import leg_errors, statistics
 from werrimbi_odom.inference.diagnosis.evidence import Amount
 from werrimbi_odom.inference.legs.cutting import match
-from werrimbi_odom.inference.set_up.mistakes import SetUp, SetUpFinding, look_for_mistakes
+from werrimbi_odom.inference.set_up.search import SetUp, SetUpFinding, look_for_mistakes
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation import TrueRobot, drives, hide, record, write_run

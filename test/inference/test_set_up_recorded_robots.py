@@ -14,7 +14,7 @@ from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.files.run_folder import read_run_folder
-from werrimbi_odom.inference.set_up.mistakes import SetUp, look_for_mistakes
+from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes
 from werrimbi_odom.model.robot import Robot
 
 WITH_POSES = ("optitrack_robot", "khepera_laser_to_the_side", "khepera_laser_moved")

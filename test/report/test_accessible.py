@@ -15,7 +15,7 @@ from test.axe import COUNT, RUN, axe_script
 from werrimbi_odom.inference.adding.adding import Added
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.manoeuvres.told import Told
+from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.report.adding.document import document_of as document_of_added
 from werrimbi_odom.report.calibration.document import calibration_document
 from werrimbi_odom.report.calibration.figures import leg_figure

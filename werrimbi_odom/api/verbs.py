@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from werrimbi_odom.inference.adding.added import Added
     from werrimbi_odom.inference.comparison.compare import Comparison
     from werrimbi_odom.inference.comparison.judged_legs import Prepared
-    from werrimbi_odom.inference.manoeuvres.told import Told
+    from werrimbi_odom.inference.manoeuvres.advice import Told
     from werrimbi_odom.model.effect import Effect
 
 
@@ -101,7 +101,7 @@ def diagnose(
 
 def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
     """`diagnose` for what was read already."""
-    from werrimbi_odom.inference.manoeuvres.told import told_of
+    from werrimbi_odom.inference.manoeuvres.advice import told_of
     from werrimbi_odom.report.diagnosis.as_json import json_of
     from werrimbi_odom.report.diagnosis.document import document_of
     from werrimbi_odom.report.diagnosis.words import NextSteps

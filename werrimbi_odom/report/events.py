@@ -23,11 +23,6 @@ def events_words(happened: Happened, track: float) -> list[str]:
         return []
     count = "Once" if len(events) == 1 else f"{len(events)} times"
     lines = [f"{count} something happened at once that no law explains, larger than the noise:"]
-    if happened.many:
-        lines = [
-            f"{count} or more the errors jump at once: too often for accidents. A law is missing, "
-            "or the reference errs otherwise than noise does. The clearest:"
-        ]
     several = len({event.run for event in events}) > 1
     clear = sorted(events, key=lambda event: -abs(event.size) / event.std)[:_TOLD]
     for event in events:

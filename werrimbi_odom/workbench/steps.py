@@ -13,7 +13,7 @@ from pathlib import Path
 
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.manoeuvres.told import Told
+from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.workbench.opened import Look
 
 GONE = -1

@@ -10,8 +10,8 @@ from werrimbi_odom.api.verbs import added as added_by
 from werrimbi_odom.api.verbs import diagnosed as diagnosis_of
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.diagnosis.response import before_after
+from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
-from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.progress import Show
 from werrimbi_odom.report.diagnosis.figures import set_up_figure
 from werrimbi_odom.report.diagnosis.manoeuvre_figure import ideal_of, manoeuvre_figure

@@ -23,7 +23,7 @@ from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.rules import UNUSUAL_PROMISE
-from werrimbi_odom.inference.set_up.mistakes import SetUp
+from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 

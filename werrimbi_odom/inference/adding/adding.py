@@ -54,7 +54,7 @@ from werrimbi_odom.inference.fitting.knobs import (
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, of_no_wheel, with_noise
 from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.rules import VERY_SURE
-from werrimbi_odom.inference.set_up.mistakes import SetUp
+from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot

@@ -32,7 +32,7 @@ from werrimbi_odom.inference.fitting.own_values import with_own_values
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.rules import SHAPES_FITTED
-from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUp
+from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUp
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot

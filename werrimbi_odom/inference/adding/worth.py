@@ -19,7 +19,7 @@ from werrimbi_odom.inference.diagnosis.pairs import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.rules import SURE_WHEN_ASKED
-from werrimbi_odom.inference.set_up.mistakes import SetUp
+from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 

@@ -29,7 +29,7 @@ from werrimbi_odom.inference.fitting.own_values import at_home, known_at_home
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.no_driving import looked_at
-from werrimbi_odom.inference.set_up.mistakes import SetUp, look_for_mistakes
+from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 

@@ -20,7 +20,7 @@ from werrimbi_odom.inference.comparison.judged_legs import Prepared, judged_legs
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.rules import GROSS, OWN_GAIN
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
-from werrimbi_odom.inference.set_up.mistakes import look_for_mistakes
+from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 

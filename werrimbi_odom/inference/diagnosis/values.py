@@ -19,7 +19,7 @@ from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, is_determined
 from werrimbi_odom.inference.rules import ONE_WHEEL
-from werrimbi_odom.inference.set_up.mistakes import IN_DEGREES, SetUpFinding
+from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUpFinding
 
 
 @dataclass(frozen=True, slots=True)

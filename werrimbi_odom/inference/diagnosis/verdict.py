@@ -37,7 +37,7 @@ from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.rules import CALIBRATION_WORTH, SIGNIFICANT, SURE
-from werrimbi_odom.inference.set_up.mistakes import SetUp
+from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.robot import Robot
 
 Verdict = Literal["none", "named", "ambiguous", "unknown"]

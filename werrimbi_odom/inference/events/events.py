@@ -89,15 +89,13 @@ class Happened:
     """Of the drives; none where nothing happened."""
     alike: Alike | None = None
     """What they have in common."""
-    many: bool = False
-    """Whether there are more than accidents are."""
     kind: ReferenceKind = "absolute"
     """Of the reference."""
 
     @property
     def accidents(self) -> bool:
         """Whether they have nothing in common: what repeats itself is a law, and stays in fits."""
-        return bool(self.events) and self.alike is None and not self.many
+        return bool(self.events) and self.alike is None
 
     @property
     def left_out(self) -> bool:
@@ -146,14 +144,14 @@ def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Happened:
         for path, spent in spans.items()
     )
     if many:
-        return Happened(many=True, kind=kind)  # a law is missing: these are no events
+        return Happened(kind=kind)  # a law is missing: these are no events
     ways = [
         Way(path, side.held_out, run.measured.time, run.measured.x, run.measured.y)
         for side, (runs, _) in zip(sides, looked, strict=True)
         for run, path in zip(runs.runs, side.paths, strict=True)
     ]
     common = alike(legs, looked, places=kind != "incremental")
-    return Happened(tuple(events), tuple(ways), common, many, kind)
+    return Happened(tuple(events), tuple(ways), common, kind)
 
 
 def without(run: Run, happened: Happened) -> Run:

@@ -15,9 +15,9 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.pairs import Sides
 from werrimbi_odom.inference.diagnosis.values import values_of
+from werrimbi_odom.inference.manoeuvres.advice import beyond_chance, one_each, significant
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
-from werrimbi_odom.inference.manoeuvres.told import beyond_chance, one_each, significant
 from werrimbi_odom.report.changes import changes_json
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.events import alike_json, events_json

@@ -11,9 +11,9 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.response import before_after
+from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
-from werrimbi_odom.inference.manoeuvres.told import Told
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.dependence_figure import dependence_figure
 from werrimbi_odom.report.diagnosis.events_figure import on_the_path, over_time

@@ -22,7 +22,7 @@ from werrimbi_odom.inference.diagnosis.values import (
     ranked_of,
     values_of,
 )
-from werrimbi_odom.inference.manoeuvres.told import Told
+from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.rules import SIGNIFICANT
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.dependence import dependence_words

@@ -8,7 +8,7 @@ from functools import partial
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
-from werrimbi_odom.inference.manoeuvres.told import Told
+from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
 from werrimbi_odom.report.diagnosis.phrases import at_bounds_words
