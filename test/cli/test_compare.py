@@ -165,6 +165,21 @@ def test_in_a_process_of_its_own_without_a_terminal() -> None:
     assert "Errors of legs of 1 m (rms)" in done.stdout
 
 
+def test_who_stops_reading_has_the_files_all_the_same(tmp_path: Path) -> None:
+    """As of `werrimbi compare ... --json F | head -1`."""
+    figures = tmp_path / "compare.json"
+    command = [sys.executable, "-m", "werrimbi_odom.cli.main", "compare", "--robot", str(ROBOT)]
+    with subprocess.Popen(
+        [*command, str(RECORDING), "--json", str(figures)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+    ) as process:
+        assert process.stdout is not None
+        process.stdout.close()
+        process.wait(120)
+    assert json.loads(figures.read_text())["legs"]["count"] > 0
+
+
 @pytest.mark.parametrize(
     ("option", "name", "said"),
     [

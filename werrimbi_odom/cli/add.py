@@ -8,7 +8,7 @@ import argparse
 
 from werrimbi_odom.cli.options import declare
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
-from werrimbi_odom.cli.result_files import tell_written, write_asked
+from werrimbi_odom.cli.result_files import write_and_tell
 
 HELP = "add physical effects to the model: fit them, judge them on held-out drives, write them"
 
@@ -47,8 +47,7 @@ def run(arguments: argparse.Namespace) -> int:
         result = added(given, effects, show)
     if not arguments.force:
         refuse_unearned(result.found, "--force writes")
-    print(result.summary())
-    tell_written(write_asked(arguments, result))
+    write_and_tell(arguments, result)
     print("Is more missing?")
     print(next_command(["diagnose"], given, robot=arguments.out))
     return 0

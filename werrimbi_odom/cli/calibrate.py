@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from werrimbi_odom.cli.examples import Formatter, epilog_of
 from werrimbi_odom.cli.options import declare
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings, remark
-from werrimbi_odom.cli.result_files import add_file_arguments, tell_written, write_asked
+from werrimbi_odom.cli.result_files import add_file_arguments, write_and_tell
 
 if TYPE_CHECKING:
     from werrimbi_odom.api.result import Result
@@ -37,8 +37,7 @@ def run(arguments: argparse.Namespace) -> int:
     """Calibrate; 0 on success."""
     _, _, calibrate = KINDS[arguments.kind]
     result = calibrate(arguments)
-    print(result.summary())
-    tell_written(write_asked(arguments, result))
+    write_and_tell(arguments, result)
     return 0
 
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 import argparse
 
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
-from werrimbi_odom.cli.result_files import tell_written, write_asked
+from werrimbi_odom.cli.result_files import write_and_tell
 
 HELP = "model against measurement: where it fails, and whether its covariance is honest"
 
@@ -29,6 +29,5 @@ def run(arguments: argparse.Namespace) -> int:
     given = read_recordings(arguments)
     with share_done("comparing") as show:
         result = compared(given, show)
-    print(result.summary())
-    tell_written(write_asked(arguments, result))
+    write_and_tell(arguments, result)
     return 0

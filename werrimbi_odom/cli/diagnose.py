@@ -8,7 +8,7 @@ import argparse
 
 from werrimbi_odom.cli.diagnose_fleet import add_fleet_arguments, refuse_mixing, run_fleet
 from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
-from werrimbi_odom.cli.result_files import tell_written, write_asked
+from werrimbi_odom.cli.result_files import write_and_tell
 from werrimbi_odom.errors import InputError
 
 HELP = "which physical effect is missing, how sure that is, and what to do about it"
@@ -39,8 +39,7 @@ def run(arguments: argparse.Namespace) -> int:
     given = read_recordings(arguments)
     with share_done("diagnosing") as show:
         result = diagnosed(given, show)
-    print(result.summary())
-    tell_written(write_asked(arguments, result))
+    write_and_tell(arguments, result)
     return 0
 
 

@@ -155,16 +155,17 @@ def _bytes(path: Path) -> bytes:
 
 
 def _tell(arguments: argparse.Namespace, fleet: Fleet) -> None:
-    """Words and table, then the files that were asked for."""
+    """The files that were asked for, then words and table."""
     from werrimbi_odom.report.fleet.tables import fleet_table
     from werrimbi_odom.report.fleet.words import words_of
     from werrimbi_odom.report.terminal import as_text
 
+    written = _write(arguments, fleet)
     columns = shutil.get_terminal_size((100, 24)).columns
     print(as_text(words_of(fleet)))
     print()
     print(fleet_table(fleet, min(max(columns, _NARROW), _WIDE)))
-    tell_written(_write(arguments, fleet))
+    tell_written(written)
 
 
 def _write(arguments: argparse.Namespace, fleet: Fleet) -> list[Path]:

@@ -42,7 +42,6 @@ def run(arguments: argparse.Namespace) -> int:
     with share_done("diagnosing") as show:
         result = drafted(given, "" if arguments.force else "--force drafts", show)
     files = result.write_package(arguments.out)
-    print(result.summary())
     written = list(files)
     if arguments.json is not None:
         figures = result.to_dict()
@@ -51,6 +50,7 @@ def run(arguments: argparse.Namespace) -> int:
         written.append(arguments.json)
     if arguments.report is not None:
         written += result.write_report(arguments.report, made_of(arguments))
+    print(result.summary())
     tell_written(written)
     print(_next(arguments.out, given, result.found.name))
     return 0

@@ -12,7 +12,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from werrimbi_odom.cli.recordings import add_recording_arguments, how_of, read_effects, remark
-from werrimbi_odom.cli.result_files import tell_written, write_asked
+from werrimbi_odom.cli.result_files import write_and_tell
 
 if TYPE_CHECKING:
     from werrimbi_odom.api.history import DriveTask, Looked
@@ -82,8 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
             spread=spread,
             show=show,
         )
-    print(result.summary())
-    tell_written(write_asked(arguments, result))
+    write_and_tell(arguments, result)
     return 0
 
 

@@ -43,9 +43,9 @@ def run(arguments: argparse.Namespace) -> int:
         reference_topic=arguments.reference_topic,
         force=arguments.force,
     )
-    print(result.summary())
     written = [each for each in (arguments.out, arguments.json) if each is not None]
     if arguments.json is not None:
         write_json(arguments.json, result.to_dict())
+    print(result.summary())
     tell_written(written)
     return 0

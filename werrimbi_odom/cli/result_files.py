@@ -25,7 +25,17 @@ def add_file_arguments(parser: argparse.ArgumentParser) -> None:
     declare(parser, "--out", "--json", "--report", "--force")
 
 
-def write_asked(arguments: argparse.Namespace, result: Result[Any]) -> list[Path]:
+def write_and_tell(arguments: argparse.Namespace, result: Result[Any]) -> None:
+    """Files first: whoever reads the words may stop reading them (`| head`)."""
+    written: list[Path] = []
+    try:
+        written = _write_asked(arguments, result)
+    finally:
+        print(result.summary())
+    tell_written(written)
+
+
+def _write_asked(arguments: argparse.Namespace, result: Result[Any]) -> list[Path]:
     """The new robot file, if there is one, then JSON and page that were asked for; returns them."""
     written = []
     if result.new_robot is not None:
