@@ -23,11 +23,13 @@ def events_words(happened: Happened, track: float) -> list[str]:
         return []
     count = "Once" if len(events) == 1 else f"{len(events)} times"
     lines = [f"{count} something happened at once that no law explains, larger than the noise:"]
-    several = len({event.run for event in events}) > 1
+    drives = {event.run for event in events}
+    twice = len({run.name for run in drives}) < len(drives)
     clear = sorted(events, key=lambda event: -abs(event.size) / event.std)[:_TOLD]
     for event in events:
         if event in clear:
-            where = f" of {event.run.name}" if several else ""
+            name = "/".join(event.run.parts[-2:]) if twice else event.run.name
+            where = f" of {name}" if len(drives) > 1 else ""
             words = event_words(event, track, adds_up=adds_up(happened))
             lines.append(f"- at {told_from_start(event):.1f} s{where} {words};")
     lines[-1] = f"{lines[-1][:-1]}."
