@@ -17,7 +17,7 @@ from werrimbi_odom.cli import explain
 from werrimbi_odom.effects import LIBRARY, find, load_file
 from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.diagnosis.verdict import _possible_twins
+from werrimbi_odom.inference.diagnosis.rivals import possible_twins
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
@@ -159,7 +159,7 @@ def test_no_axle_is_askew_by_a_quarter_turn() -> None:
     twins = ("sideways_drift", "wheels_swapped")
     for angle, possible in ((-0.2, twins), (0.5 * math.pi, ("wheels_swapped",))):
         finding = SetUpFinding("reference_yaw_offset", {"angle": angle}, None, "", twins)
-        assert _possible_twins(finding) == possible
+        assert possible_twins(finding) == possible
 
 
 def test_to_the_reference_a_crab_is_a_mount_askew() -> None:

@@ -159,4 +159,7 @@ def test_axes_that_begin_anew_have_no_common_direction() -> None:
     assert limits["floor_slope"].minimum_detectable == np.inf
     assert limits["lateral_slip"].minimum_detectable < 1.0
     said = " ".join(not_shown(Told(found, None, tuple(limits.values()))))
-    assert "floor_slope with such a reference; one that measures finely, in axes of the" in said
+    assert (
+        "floor_slope and anisotropic_floor with such a reference; one that measures finely, in axes"
+        in said
+    )

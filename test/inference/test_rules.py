@@ -34,6 +34,9 @@ ELSEWHERE = {
     "changes/history.py": {"_MEDIAN_CHI2_1": "a quantile"},
     "changes/search.py": {"_FEW": "time that it takes"},
     "chances.py": {"MEDIAN_TO_SIGMA": "of the normal law", "NORMAL_95": "a quantile"},
+    "events/alike.py": {"MOVES": "as good as standing, in a leg of a tenth of a second"},
+    "events/noise.py": {"_ROUNDS": "passes of a robust fit"},
+    "events/steps.py": {"STRETCH": "time that it takes", "_TURN": "a rank"},
     "comparison/legs.py": {"CHI2_95": "quantiles"},
     "comparison/local_map.py": {
         "_MEDIAN_OF_A_SHARE": "a quantile",
@@ -120,6 +123,7 @@ BARE = {
     ("adding/draft_laws.py", 3.1415927): "half a turn",
     ("calibration/noise_likelihood.py", 10.0): "a decade above where the search ends",
     ("diagnosis/diagnosis.py", 0.999): "a logarithm that stays finite",
+    ("events/steps.py", 2.0): "either side",
     ("fitting/noise.py", 0.01): "damping of a search",
     ("legs/even_stamps.py", 20.0): "what no wheel does between two messages: counters that wrap",
     ("legs/counters.py", 3.0): "what keeps a cubic monotone (Fritsch and Carlson)",

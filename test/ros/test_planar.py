@@ -99,6 +99,7 @@ def test_a_heading_is_that_of_the_quaternion_whatever_its_norm(yaw: float, norm:
 @example((-1e-8, 0.0, 1e-9, 1.0, 0.0, 0.0))
 @example((1.0, 2.0, 0.0, 1.0, 0.0, 0.0))
 @example((6.6e-263, 7.3e-169, 0.0, 6.6e-263, 0.0, 0.0))
+@example((5e-324, 0.0, 1.0, 1.0, 1.0, 1.0))
 def test_what_is_published_is_semi_definite_whatever_rounding_made_of_it(entries: Any) -> None:
     given_in = PoseCovariance(*entries)
     rounded = planar.rounded_up(given_in)

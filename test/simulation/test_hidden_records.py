@@ -186,6 +186,7 @@ def test_everything_in_the_catalogue_can_be_hidden(entry: Entry) -> None:
         acts_later = entry.name in {
             "castor_kick", "slippery_spot", "left_backlash", "one_tyre_backwards",
         }  # fmt: skip
+        acts_later |= entry.kind == "event"  # now and then, in a drive that is long enough
         at_speed = entry.name.endswith("missed_ticks")
         assert not (same_ticks and same_reference) or acts_later or at_speed
 

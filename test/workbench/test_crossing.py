@@ -59,7 +59,7 @@ def test_what_is_remembered_of_laws_stays_behind() -> None:
     runs = Together(
         runs=(), steps=whole, legs=whole, begin=whole[:1], end=whole[:1], run_of_leg=whole[:1],
         start=few, finish=few, intervals=few[0, :1], duration=few[0, :1],
-        gap=np.zeros(1, dtype=np.bool_),
+        gap=np.zeros(1, dtype=np.bool_), stepped=np.zeros(1, dtype=np.bool_),
     )  # fmt: skip
     law = collection.find("castor_kick").apply
     assert runs.of_model(runs, (law, 0.1), lambda: 1.0) == 1.0

@@ -9,6 +9,7 @@ that no square of it is beyond all numbers, and the covariance is one.
 from __future__ import annotations
 
 import math
+import sys
 from typing import Any
 
 import numpy as np
@@ -105,7 +106,8 @@ def rounded_up(covariance: PoseCovariance[float]) -> PoseCovariance[float]:
     ):
         return PoseCovariance(xx, xy, xyaw, yy, yyaw, yawyaw)
     matrix = PoseCovariance(abs(xx), xy, xyaw, abs(yy), yyaw, abs(yawyaw)).matrix()
-    sigma = np.sqrt(matrix.diagonal())
+    variances = matrix.diagonal()  # of the least numbers nothing is left to round
+    sigma = np.sqrt(np.where(variances < sys.float_info.min, 0.0, variances))
     size = np.where(sigma > 0.0, sigma, np.inf)
     with np.errstate(over="ignore"):
         correlation = np.clip(matrix / size[:, None] / size, -1.0, 1.0)
