@@ -15,7 +15,7 @@ from test.white_noise_robot import WhiteNoiseRobot, drive, square, wandering
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.compare import Comparison, compare, judged
-from werrimbi_odom.inference.comparison.judged_legs import prepare
+from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.comparison.verdict import verdict_of
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.model.robot import Robot

@@ -14,7 +14,7 @@ import pytest
 from werrimbi_odom.effects.collection import all_effects
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
-from werrimbi_odom.files.run import Reference, Run
+from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.events.alike import alike
 from werrimbi_odom.inference.events.events import looked_at
@@ -81,6 +81,20 @@ def test_where_nothing_happened_nothing_is_told(sound: Drives) -> None:
     found = _diagnosed(sound)
     assert found.happened.events == ()
     assert events_words(found.happened, found.robot.track) == []
+
+
+def test_what_happened_while_the_counters_were_silent_is_nobody_s_event(sound: Drives) -> None:
+    """Wheels that speed up and slow down in between are off the line that is laid across it."""
+    runs, robot = sound
+    silent = []
+    for run in runs:
+        ticks = run.ticks
+        kept = np.all(
+            [(ticks.time < t) | (ticks.time > t + 0.9) for t in (8.3, 19.1, 27.7)], axis=0
+        )
+        some = Ticks(ticks.time[kept], ticks.left[kept], ticks.right[kept])
+        silent.append(replace(run, ticks=some))
+    assert _diagnosed((silent, robot)).happened.events == ()
 
 
 def test_a_push_of_five_times_the_noise_is_told_and_left_out(sound: Drives) -> None:

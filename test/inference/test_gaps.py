@@ -14,7 +14,7 @@ from test.model.drives import ROBOT
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import compare
-from werrimbi_odom.inference.comparison.judged_legs import prepare
+from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.likelihood import innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all

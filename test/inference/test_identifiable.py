@@ -17,12 +17,8 @@ from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.calibration.any_driving import calibrate
-from werrimbi_odom.inference.comparison.judged_legs import (
-    far_above_noise,
-    figures_of,
-    judged_by,
-    prepare,
-)
+from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, figures_of
+from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.values import values_of
 from werrimbi_odom.inference.fitting.knobs import Model

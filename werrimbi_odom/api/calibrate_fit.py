@@ -136,7 +136,8 @@ def _left_out(
 
 def _judged(runs: Sequence[Run], given: Recordings, result: Calibration) -> dict[str, Any]:
     """Errors over legs before and after, as every verb has them; NaN where not measured."""
-    from werrimbi_odom.inference.comparison.judged_legs import figures_of, judged_by, prepare
+    from werrimbi_odom.inference.comparison.judged_legs import figures_of
+    from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
 
     prepared = prepare(runs, given.source.robot, **given.judging)
     before, after = (figures_of(prepared, each) for each in (given.source.robot, result.robot))

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from werrimbi_odom.inference.adding.added import Added
     from werrimbi_odom.inference.comparison.compare import Comparison
-    from werrimbi_odom.inference.comparison.judged_legs import Prepared
+    from werrimbi_odom.inference.comparison.prepared import Prepared
     from werrimbi_odom.inference.manoeuvres.advice import Told
     from werrimbi_odom.model.effect import Effect
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass, replace
 from werrimbi_odom.api.verbs import compared
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.comparison.compare import Comparison
-from werrimbi_odom.inference.comparison.judged_legs import Prepared
+from werrimbi_odom.inference.comparison.prepared import Prepared
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.holdout import judge_of
 from werrimbi_odom.inference.diagnosis.splitting import set_aside

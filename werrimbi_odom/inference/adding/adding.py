@@ -32,12 +32,8 @@ from werrimbi_odom.inference.adding.values import (
 from werrimbi_odom.inference.adding.worth import Question
 from werrimbi_odom.inference.calibration_sizes import base_name
 from werrimbi_odom.inference.comparison.compare import compare
-from werrimbi_odom.inference.comparison.judged_legs import (
-    Legs,
-    Prepared,
-    in_runs,
-    judged_legs,
-)
+from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
+from werrimbi_odom.inference.comparison.prepared import Prepared
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import Misfit, misfit_of_found
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin

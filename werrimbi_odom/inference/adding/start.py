@@ -14,8 +14,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.comparison.judged_legs import Prepared
 from werrimbi_odom.inference.comparison.jumps import jumped_legs
+from werrimbi_odom.inference.comparison.prepared import Prepared
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,

@@ -13,20 +13,14 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.consistency import AtLength
 from werrimbi_odom.inference.comparison.groups import ByVariable, Cell, by_variables, cells_of
-from werrimbi_odom.inference.comparison.judged_legs import (
-    Legs,
-    Prepared,
-    in_runs,
-    judged_legs,
-    paths,
-    prepare,
-)
+from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs, paths
 from werrimbi_odom.inference.comparison.legs import (
     LegStatistics,
     root_mean_square,
     squared_deviation,
     statistics,
 )
+from werrimbi_odom.inference.comparison.prepared import Prepared, prepare
 from werrimbi_odom.inference.comparison.reference_noise import Residual
 from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.comparison.systematic import (

@@ -1,22 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs prepared for a comparison: legs cut, the reference's noise and its jumps found, once.
-
-What is compared later over the same runs (another robot file, one more effect) is compared over the
-same legs, with the same legs left out and the same noise of the reference.
-"""
+"""Errors of a model on the legs of prepared runs: one answer to one question, for every verb."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.comparison.jumps import jumped_legs, jumps_of
 from werrimbi_odom.inference.comparison.legs import (
     LegErrors,
     LegStatistics,
@@ -24,44 +17,28 @@ from werrimbi_odom.inference.comparison.legs import (
     joined,
     statistics,
 )
-from werrimbi_odom.inference.comparison.own_noise import OwnNoise, ReferenceNoise, noise_of
+from werrimbi_odom.inference.comparison.prepared import (
+    Group,
+    Prepared,
+    finely,
+    judged_by,
+    jumped_in,
+)
 from werrimbi_odom.inference.comparison.reference_noise import (
-    Measure,
     Residual,
-    measured_alike,
     residuals_of,
 )
 from werrimbi_odom.inference.fitting.knobs import YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.own_values import known_at_home
 from werrimbi_odom.inference.fitting.prediction import legs_shown
-from werrimbi_odom.inference.fitting.together import Together, together
-from werrimbi_odom.inference.legs.cutting import (
-    Record,
-    cut_finely,
-    divided,
-    every_pose,
-    leg_ends,
-    match_finely,
-    record_of,
-)
-from werrimbi_odom.inference.legs.cutting import (
-    joined as joined_legs,
-)
-from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import (
     DRIFT_LEGS,
     FAR_ABOVE_NOISE,
-    LEG_LENGTHS,
-    LEGS_OF_A_LENGTH,
-    LEGS_OF_A_RUN,
     MOST_WHEEL_NOISE,
-    QUARTER_TURN,
 )
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.progress import Show, silent
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -94,203 +71,6 @@ class Legs:
         }
         variables = {name: values[which] for name, values in self.variables.items()}
         return Legs(leg=self.leg, errors=self.errors.chosen(which), variables=variables, **columns)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class _Group:
-    """Runs whose references measure alike."""
-
-    index: tuple[int, ...]
-    measure: Measure
-    every: Together
-    whole: tuple[bool, ...]
-    """Whether all rows of a run's reference are in `every`."""
-    jumps: tuple[Floats, ...]
-    own: OwnNoise
-    """What the references err by themselves."""
-    plain: tuple[Residual, ...]
-    """Paths by the robot by whose travel the legs are cut."""
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Prepared:
-    """Runs ready to be judged."""
-
-    robot: Robot
-    """By whose travel the legs are cut."""
-    kind: ReferenceKind
-    leg: float
-    limits: EncoderLimits | None
-    runs: tuple[Run, ...]
-    groups: tuple[_Group, ...]
-    cuts: Mapping[float, tuple[Together, ...]]
-    """By length, for each group."""
-
-    @property
-    def measures(self) -> tuple[Measure, ...]:
-        """What the reference of each run measures."""
-        found: dict[int, Measure] = {}
-        for group in self.groups:
-            found.update(dict.fromkeys(group.index, group.measure))
-        return tuple(found[index] for index in range(len(self.runs)))
-
-    @property
-    def noises(self) -> tuple[tuple[Measure, ReferenceNoise], ...]:
-        """The reference's noise, for each of the ways in which it measures."""
-        return tuple((group.measure, group.own.noise) for group in self.groups)
-
-    @property
-    def left_out(self) -> tuple[LeftOut, ...]:
-        """Stretches that no model is judged on, run by run: gaps, and legs of a reference's jump.
-
-        Whoever finds another reason to leave a stretch out adds it to the record of the run
-        (`legs.cutting.Record.left_out`), and it is cut out and told like these.
-        """
-        found: list[list[LeftOut]] = [[] for _ in self.runs]
-        for group, legs in zip(self.groups, self.cuts[self.leg], strict=True):
-            spoilt = _jumped(group, legs, self.kind)
-            for place, (index, run) in enumerate(zip(group.index, legs.runs, strict=True)):
-                found[index] += run.record.left_out
-                own = spoilt[legs.legs[place] : legs.legs[place + 1]] & ~run.gap
-                time, path = run.measured.time, self.runs[index].path
-                started = float(run.counters.time[0])
-                found[index] += [
-                    LeftOut(
-                        path,
-                        float(time[leg]),
-                        float(time[leg + 1]),
-                        "reference",
-                        "it jumped",
-                        started,
-                    )
-                    for leg in np.flatnonzero(own).tolist()
-                ]
-        return tuple(part for own in found for part in sorted(own, key=lambda one: one.begin))
-
-
-def prepare(
-    runs: Sequence[Run],
-    robot: Robot,
-    kind: ReferenceKind = "absolute",
-    *,
-    leg: float = 1.0,
-    limits: EncoderLimits | None = None,
-    sigma_xy: float | None = None,
-    sigma_yaw: float | None = None,
-    show: Show = silent,
-) -> Prepared:
-    """Match, find the reference's noise and jumps, and cut legs of several lengths.
-
-    Raises
-    ------
-    InputError
-        When a run has no usable reference or no ticks.
-    """
-    runs = [looked_at(run, robot, limits) for run in runs]
-    members: dict[Measure, list[tuple[int, Record, bool]]] = {}
-    for index, run in enumerate(runs):
-        show(0.5 * index / len(runs), f"matching {run.name}")
-        alike, measure = measured_alike(run)
-        record = record_of(alike, robot, limits, leg)
-        members.setdefault(measure, []).append((index, record, alike is run))
-    groups = tuple(
-        _group(robot, measure, found, kind, leg, sigma_xy, sigma_yaw)
-        for measure, found in members.items()
-    )
-    show(0.5, "cutting legs")
-    return Prepared(
-        robot, kind, leg, limits, tuple(runs), groups, _cut_to_lengths(groups, robot, leg)
-    )
-
-
-def _cut_to_lengths(
-    groups: Sequence[_Group], robot: Robot, leg: float
-) -> dict[float, tuple[Together, ...]]:
-    """Legs of all lengths of which there are enough, joined of the shortest.
-
-    A length is as good as another where both have the same legs, for the reference is too rare.
-    """
-    records = [[run.record for run in group.every.runs] for group in groups]
-    runs = sum(map(len, records))
-    ways = [[_way(record, robot, leg) for record in own] for own in records]
-    rows: dict[float, list[list[NDArray[np.intp]]]] = {}
-    counts: set[int] = set()
-    for times in sorted(LEG_LENGTHS, key=lambda times: (times != 1.0, times)):
-        found = [
-            [leg_ends(way, record.gap, times) for way, record in zip(*own, strict=True)]
-            for own in zip(ways, records, strict=True)
-        ]
-        count = sum(
-            ends.size - 1 - int(record.gap.sum())
-            for own in zip(found, records, strict=True)
-            for ends, record in zip(*own, strict=True)
-        )
-        if times == 1.0 or (
-            count not in counts and count >= max(LEGS_OF_A_LENGTH, LEGS_OF_A_RUN * runs)
-        ):
-            rows[times * leg] = found
-            counts.add(count)
-    parts = []
-    for number, own in enumerate(records):
-        every = [
-            np.unique(np.concatenate(ends))
-            for ends in zip(*(r[number] for r in rows.values()), strict=True)
-        ]
-        parts.append(together([divided(*one) for one in zip(own, every, strict=True)]))
-    return {
-        length: tuple(
-            together([joined_legs(*one) for one in zip(part.runs, own, strict=True)], part)
-            for part, own in zip(parts, found, strict=True)
-        )
-        for length, found in rows.items()
-    }
-
-
-def _way(record: Record, robot: Robot, leg: float) -> Floats:
-    """What was gone up to each pose of a record, in legs."""
-    counters = record.counters
-    way = counters.way(robot, leg, QUARTER_TURN)
-    return np.interp(record.measured.time, counters.time, way)
-
-
-def finely(prepared: Prepared) -> Together:
-    """Cut the runs into the short legs of a fit: what `match_finely` does, from what is there."""
-    found = {}
-    for group in prepared.groups:
-        for index, every, whole in zip(group.index, group.every.runs, group.whole, strict=True):
-            if whole:
-                found[index] = cut_finely(every.record, prepared.robot, prepared.leg)
-            else:
-                run = prepared.runs[index]
-                [found[index]] = match_finely([run], prepared.robot, prepared.leg, prepared.limits)
-    return together([found[index] for index in range(len(prepared.runs))])
-
-
-def _group(
-    robot: Robot,
-    measure: Measure,
-    members: list[tuple[int, Record, bool]],
-    kind: ReferenceKind,
-    leg: float,
-    sigma_xy: float | None,
-    sigma_yaw: float | None,
-) -> _Group:
-    every = together([every_pose(record) for _, record, _ in members])
-    plain = Model(robot, tuple({} for _ in members))
-    residuals, _ = residuals_of(plain, every, measure)
-    own = noise_of(robot, every, residuals, measure, kind, leg, (sigma_xy, sigma_yaw))
-    jumps = tuple(
-        jumps_of(residual, run.gap) for residual, run in zip(residuals, every.runs, strict=True)
-    )
-    return _Group(
-        tuple(index for index, _, _ in members),
-        measure,
-        every,
-        tuple(whole for _, _, whole in members),
-        jumps,
-        own,
-        residuals,
-    )
 
 
 def in_runs(prepared: Prepared, robot: Robot | Model) -> Model:
@@ -330,7 +110,7 @@ def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
             by_position=by_position,
             sigma_stamp=group.own.noise.sigma_stamp,
             wandering=group.own.wandering,
-            jumped=_jumped(group, runs, prepared.kind),
+            jumped=jumped_in(group, runs, prepared.kind),
         )
         parts.append(_table(prepared, group, runs, errors, leg))
     return _in_order(parts)
@@ -362,7 +142,7 @@ def paths(prepared: Prepared, model: Model) -> tuple[Residual, ...]:
     return tuple(found[index] for index in range(len(prepared.runs)))
 
 
-def _of_group(group: _Group, model: Model) -> Model:
+def _of_group(group: Group, model: Model) -> Model:
     """The model with what the group's runs have of their own."""
     return Model(model.robot, tuple(model.own[index] for index in group.index))
 
@@ -389,22 +169,14 @@ def _with_drifts(model: Model, runs: Together) -> Model:
     return Model(model.robot, tuple(own))
 
 
-def _jumped(group: _Group, runs: Together, kind: ReferenceKind) -> NDArray[np.bool_]:
-    """Legs that a jump of the reference spoils, shape (m,)."""
-    both = zip(group.jumps, runs.runs, strict=True)
-    return np.concatenate([jumped_legs(jumps, run.rows, kind) for jumps, run in both])
-
-
-def _table(
-    prepared: Prepared, group: _Group, runs: Together, errors: LegErrors, leg: float
-) -> Legs:
+def _table(prepared: Prepared, group: Group, runs: Together, errors: LegErrors, leg: float) -> Legs:
     times = [run.measured.time for run in runs.runs]
     begin = np.concatenate([time[:-1] for time in times])
     end = np.concatenate([time[1:] for time in times])
     legs = Legs(
         leg,
         errors,
-        _jumped(group, runs, prepared.kind) | runs.stepped,
+        jumped_in(group, runs, prepared.kind) | runs.stepped,
         np.array(group.index)[runs.run_of_leg],
         begin,
         end,
@@ -464,11 +236,6 @@ def _in_order(parts: list[Legs]) -> Legs:
         **columns,
     )
     return whole.chosen(np.argsort(whole.run, kind="stable"))
-
-
-def judged_by(prepared: Prepared) -> Literal["position", "heading"]:
-    """What legs are judged by: their positions, or where none are measured, their headings."""
-    return "heading" if all(measure == "heading" for measure in prepared.measures) else "position"
 
 
 def far_above_noise(prepared: Prepared, model: Model) -> bool:

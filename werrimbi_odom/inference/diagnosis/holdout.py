@@ -11,15 +11,8 @@ import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.comparison.judged_legs import (
-    Legs,
-    Prepared,
-    finely,
-    in_runs,
-    judged_by,
-    judged_legs,
-    prepare,
-)
+from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
+from werrimbi_odom.inference.comparison.prepared import Prepared, finely, judged_by, prepare
 from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise, recorded_otherwise
 from werrimbi_odom.inference.diagnosis.pairs import Sides, Unit, error_of, median_of, sides_of
 from werrimbi_odom.inference.diagnosis.splitting import set_aside

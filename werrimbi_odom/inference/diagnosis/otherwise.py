@@ -16,7 +16,8 @@ import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.comparison.judged_legs import Prepared, judged_legs
+from werrimbi_odom.inference.comparison.judged_legs import judged_legs
+from werrimbi_odom.inference.comparison.prepared import Prepared
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.rules import GROSS, OWN_GAIN
 from werrimbi_odom.inference.set_up.findings import SetUpFinding

@@ -205,8 +205,12 @@ def _event(steps: Steps, group: list[int], side: Side) -> Event | None:
     first = legs[0]
     run = int(runs.run_of_leg[first])
     clock = runs.runs[run].counters.time
-    if not clock[0] + EDGE < runs.ends_at[first] < clock[-1] - EDGE:
+    at = runs.ends_at[first]
+    if not clock[0] + EDGE < at < clock[-1] - EDGE:
         return None  # as in a fit: a clock that is late shows there what the ticks do not know
+    before, after = np.searchsorted(clock, [at - EDGE, at + EDGE])
+    if np.diff(clock[before - 1 : after + 1]).max() > EDGE:
+        return None  # nor does anybody know what the wheels did while their counters were silent
     scatter = float(steps.scatter[run])
     sizes, spread = _net(steps, group, scatter, beside=False)
     beside, spread_beside = _net(steps, group, scatter, beside=True)
