@@ -147,6 +147,9 @@ def pose_stamped(time: float, x: float, y: float, yaw: float) -> PoseStamped:
 
 def play(launched: Any, run: Any, compare: Comparing) -> None:
     """Wheels and reference as they come; returns when all of it has been compared."""
+    topics = [f"/compare_node/{name}" for name in (*compare.figures, "error")]
+    launched.until(lambda: all(map(launched.node.count_publishers, topics)), "compare_node", 60.0)
+    compare.verdict()  # it is heard, so nothing that it says is lost
     reference = list(
         zip(
             *(getattr(run.reference, name).tolist() for name in ("time", "x", "y", "yaw")),
