@@ -8,7 +8,7 @@ import math
 from typing import Any
 
 from werrimbi_odom.inference.events.alike import Alike
-from werrimbi_odom.inference.events.events import Event, Happened
+from werrimbi_odom.inference.events.events import Event, Events
 from werrimbi_odom.report.numbers import in_unit, with_std
 from werrimbi_odom.report.phrases import LONGEST_DRIVE
 
@@ -16,7 +16,7 @@ _TOLD = 6
 """Events that are told one by one, the largest against their noise."""
 
 
-def events_words(happened: Happened, track: float) -> list[str]:
+def events_words(happened: Events, track: float) -> list[str]:
     """What happened, in the order of time; nothing where nothing did. `track`: of the robot [m]."""
     events = happened.events
     if not events:
@@ -98,7 +98,7 @@ def alike_words(common: Alike) -> str:
     )
 
 
-def events_json(happened: Happened, track: float) -> list[dict[str, Any]]:
+def events_json(happened: Events, track: float) -> list[dict[str, Any]]:
     """Field for field; times in the run's own clock [s]."""
     return [
         {
@@ -122,7 +122,7 @@ def events_json(happened: Happened, track: float) -> list[dict[str, Any]]:
     ]
 
 
-def adds_up(happened: Happened) -> bool:
+def adds_up(happened: Events) -> bool:
     """Whether a step of the reference is one of the robot to it; a gyro loses no place."""
     seen = any(math.isfinite(event.place[0]) for event in happened.events)
     return happened.kind == "incremental" and seen
@@ -131,7 +131,7 @@ def adds_up(happened: Happened) -> bool:
 _SIZES = ("along_m", "sideways_m", "heading_rad")
 
 
-def alike_json(happened: Happened) -> dict[str, Any] | None:
+def alike_json(happened: Events) -> dict[str, Any] | None:
     """What they have in common; null where that is nothing."""
     common = happened.alike
     if common is None:

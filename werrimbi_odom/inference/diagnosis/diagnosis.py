@@ -36,7 +36,7 @@ from werrimbi_odom.inference.diagnosis.search import (
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import Support, askable, support_of
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, chance, told
-from werrimbi_odom.inference.events.events import Happened, Side, events_among, without
+from werrimbi_odom.inference.events.events import Events, Side, events_among, without
 from werrimbi_odom.inference.events.noise import noise_of_most
 from werrimbi_odom.inference.fitting.candidates import Score
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
@@ -93,7 +93,7 @@ def diagnose(
     """
     known = (sigma_xy, sigma_yaw)
 
-    def search(show: Show) -> tuple[Diagnosis, Happened]:
+    def search(show: Show) -> tuple[Diagnosis, Events]:
         found, judge = _searched(runs, holdout, robot, effects, kind, leg, limits, known, show)
         return found, _happened(found, judge, kind, known)
 
@@ -106,7 +106,8 @@ def diagnose(
             break
         runs, holdout = both
         again, happened = search(silent)
-        found = again if happened.accidents or happened == Happened() else found
+        if not happened.many and happened.alike is None:
+            found = again
     return replace(found, happened=happened)
 
 
@@ -115,10 +116,10 @@ def _happened(
     judge: Judge,
     kind: ReferenceKind,
     known: tuple[float | None, float | None],
-) -> Happened:
+) -> Events:
     """What happened at an instant beside the model with everything found."""
     if found.of_another_drive:
-        return Happened()
+        return Events()
     sigma = sigmas_known(found.runs.runs, kind, *known)
     noise = noise_of_most(found.runs, found.final.point, kind, sigma)
     point = replace(found.final.point, variances=noise)

@@ -31,7 +31,7 @@ from werrimbi_odom.inference.diagnosis.rivals import (
 )
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.events.events import Happened
+from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.fitting.together import Together
@@ -97,7 +97,7 @@ class Diagnosis:
     """What is suspect about the reference of the fitted runs."""
     misfit: Misfit | None = None
     """What is left because a law's form is not quite nature's, or beside everything found."""
-    happened: Happened = field(default_factory=Happened)
+    happened: Events = field(default_factory=Events)
     """What no law explains, for it happened at an instant."""
     rivals_of_held: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Where nothing is missing: effects that would do as well in the place of one that the file

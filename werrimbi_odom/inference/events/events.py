@@ -80,7 +80,7 @@ class Way(NamedTuple):
 
 
 @dataclass(frozen=True, slots=True)
-class Happened:
+class Events:
     """All events of some drives."""
 
     events: tuple[Event, ...] = ()
@@ -89,6 +89,9 @@ class Happened:
     """Of the drives; none where nothing happened."""
     alike: Alike | None = None
     """What they have in common."""
+    many: bool = False
+    """Whether the errors jump more often than accidents happen: a law is missing, and none of the
+    jumps is told."""
     kind: ReferenceKind = "absolute"
     """Of the reference."""
 
@@ -117,7 +120,7 @@ class Side(NamedTuple):
     held_out: bool
 
 
-def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Happened:
+def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Events:
     """What happened at an instant, beside everything that a model explains."""
     events: list[Event] = []
     legs, looked = [], []
@@ -136,7 +139,7 @@ def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Happened:
             spans[path] = spans.get(path, 0.0) + float(own.sum())
         time += float(runs.duration[~runs.gap].sum())
     if not events:
-        return Happened()
+        return Events()
     drives = [path for side in sides for path in side.paths]
     events.sort(key=lambda event: (drives.index(event.run), event.time))
     many |= len(events) * RARE > time or any(
@@ -144,17 +147,17 @@ def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Happened:
         for path, spent in spans.items()
     )
     if many:
-        return Happened(kind=kind)  # a law is missing: these are no events
+        return Events(many=True, kind=kind)
     ways = [
         Way(path, side.held_out, run.measured.time, run.measured.x, run.measured.y)
         for side, (runs, _) in zip(sides, looked, strict=True)
         for run, path in zip(runs.runs, side.paths, strict=True)
     ]
     common = alike(legs, looked, places=kind != "incremental")
-    return Happened(tuple(events), tuple(ways), common, kind)
+    return Events(tuple(events), tuple(ways), common, kind=kind)
 
 
-def without(run: Run, happened: Happened) -> Run:
+def without(run: Run, happened: Events) -> Run:
     """The run with those of its events marked that are not yet; itself where there are none."""
     new = [
         (event.seen - EVENT_SPAN, event.seen + EVENT_SPAN)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from werrimbi_odom.inference.events.events import Event, Happened, Way
+from werrimbi_odom.inference.events.events import Event, Events, Way
 from werrimbi_odom.report.events import adds_up, event_words, told_from_start
 from werrimbi_odom.report.path_figure import add_path
 from werrimbi_odom.report.style import (
@@ -37,7 +37,7 @@ _LOOKS = {
 _DRIVE = 30  # height of a drive's line [pixels]
 
 
-def on_the_path(happened: Happened, track: float) -> go.Figure | None:
+def on_the_path(happened: Events, track: float) -> go.Figure | None:
     """Where events happened; None where the reference saw no place."""
     import plotly.graph_objects as go
 
@@ -63,7 +63,7 @@ def on_the_path(happened: Happened, track: float) -> go.Figure | None:
     return plain(figure, height=620)
 
 
-def over_time(happened: Happened, track: float) -> go.Figure:
+def over_time(happened: Events, track: float) -> go.Figure:
     """When events happened, drive by drive."""
     import plotly.graph_objects as go
 
@@ -92,7 +92,7 @@ def over_time(happened: Happened, track: float) -> go.Figure:
 
 def _marks(
     figure: go.Figure,
-    happened: Happened,
+    happened: Events,
     track: float,
     places: list[tuple[float, float]] | list[tuple[float, str]],
 ) -> None:
@@ -116,7 +116,7 @@ def _marks(
         )
 
 
-def _said(happened: Happened, event: Event, track: float) -> str:
+def _said(happened: Events, event: Event, track: float) -> str:
     when = f"{escaped(event.run.name)}, {told_from_start(event):.1f} s"
     return f"{when}<br>{escaped(event_words(event, track, adds_up=adds_up(happened)))}"
 
