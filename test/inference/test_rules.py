@@ -36,7 +36,7 @@ ELSEWHERE = {
     "chances.py": {"MEDIAN_TO_SIGMA": "of the normal law", "NORMAL_95": "a quantile"},
     "events/alike.py": {"MOVES": "as good as standing, in a leg of a tenth of a second"},
     "events/noise.py": {"_ROUNDS": "passes of a robust fit"},
-    "events/steps.py": {"STRETCH": "time that it takes", "_TURN": "a rank"},
+    "events/steps.py": {"STRETCH": "time that it takes", "_HEARD": "a rank"},
     "comparison/legs.py": {"CHI2_95": "quantiles"},
     "comparison/local_map.py": {
         "_MEDIAN_OF_A_SHARE": "a quantile",

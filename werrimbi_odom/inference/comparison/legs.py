@@ -19,11 +19,11 @@ from werrimbi_odom.inference.fitting.likelihood import (
     errors_between,
     paces,
     reading_noise,
+    wheel_part,
 )
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
-from werrimbi_odom.inference.rules import EVENT_STEP
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.motion import BodyMotion
@@ -144,17 +144,14 @@ def errors_of(
     prediction = predict_joined(model, runs)
     view = view_of(robot.effects)
     start, finish = right_handed(runs.start, view), right_handed(runs.finish, view)
-    wheels = (
-        robot.left_wheel_noise**2 * prediction.per_left
-        + robot.right_wheel_noise**2 * prediction.per_right
-    )
-    wheels[runs.stepped] += EVENT_STEP * np.eye(3)
+    noises = np.square([[robot.left_wheel_noise], [robot.right_wheel_noise]])
+    [wheels] = wheel_part(prediction, runs, *noises)
     heading = start[:, 2]
     if wandering is not None and jumped is not None:
         error, total = errors_on_map(model, runs, prediction, wandering, jumped)
         reference = total - wheels
     elif by_position:
-        usual = 0.5 * (robot.left_wheel_noise**2 + robot.right_wheel_noise**2)
+        usual = float(np.mean(noises))
         found = position_errors(
             prediction.relative,
             wheels,

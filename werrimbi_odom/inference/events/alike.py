@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -51,6 +51,17 @@ class Alike:
     """Of as many by chance, all that was asked counted."""
 
 
+class _Tried(NamedTuple):
+    """What events may have in common, on each of the sides."""
+
+    what: Common
+    at: tuple[float, float]
+    near: list[NDArray[np.bool_]]
+    """Intervals that have it."""
+    weight: list[Floats]
+    """How much of the driving each interval is."""
+
+
 def alike(
     legs: Sequence[NDArray[np.intp]],
     sides: Sequence[tuple[Together, Prediction]],
@@ -71,13 +82,13 @@ def alike(
     if of < EVENTS_ALIKE:
         return None
     found: list[Alike] = []
-    nowhere = (float("nan"), float("nan"))
-    tried: list[tuple[Common, tuple[float, float], list[NDArray[np.bool_]], list[Floats]]] = []
+    nan = float("nan")
+    tried: list[_Tried] = []
     time = [runs.duration * ~runs.gap for runs, _ in sides]
     way = [told.length * ~runs.gap for runs, told in sides]
     for what in ("reversal", "start or stop"):
         near = [_after(runs, told, stops=what != "reversal") for runs, told in sides]
-        tried.append((what, nowhere, near, time))
+        tried.append(_Tried(what, (nan, nan), near, time))
     if places and not any(runs.own_axes or runs.headings_alone for runs, _ in sides):
         seen = [runs.finish[:, :2] for runs, _ in sides]
         for own, here in zip(legs, seen, strict=True):
@@ -85,12 +96,12 @@ def alike(
                 x, y = here[leg].tolist()
                 if not np.isfinite(x + y):
                     continue
-                across: list[tuple[Common, tuple[float, float], list[NDArray[np.bool_]]]] = [
-                    ("x", (x, float("nan")), [abs(p[:, 0] - x) < NEAR_BAND for p in seen]),
-                    ("y", (float("nan"), y), [abs(p[:, 1] - y) < NEAR_BAND for p in seen]),
-                    ("place", (x, y), [np.hypot(*(p - (x, y)).T) < NEAR_PLACE for p in seen]),
-                ]
-                tried += [(what, at, near, way) for what, at, near in across]
+                across = [abs(p[:, 0] - x) < NEAR_BAND for p in seen]
+                along = [abs(p[:, 1] - y) < NEAR_BAND for p in seen]
+                about = [np.hypot(*(p - (x, y)).T) < NEAR_PLACE for p in seen]
+                tried.append(_Tried("x", (x, nan), across, way))
+                tried.append(_Tried("y", (nan, y), along, way))
+                tried.append(_Tried("place", (x, y), about, way))
     for what, at, near, weight in tried:
         count = sum(int(here[own].sum()) for own, here in zip(legs, near, strict=True))
         whole = sum(float(part.sum()) for part in weight)

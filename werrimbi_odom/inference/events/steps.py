@@ -36,7 +36,7 @@ STRETCH = 1000
 """Legs after which the filter may start anew: a step near a stretch's end is hardly seen in it, and
 a leg is one interval of the reference here."""
 
-_TURN = 1e-4
+_HEARD = 1e-4
 """Share of a direction's information below which a step holds nothing of it."""
 
 
@@ -129,11 +129,8 @@ def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
     view = _of_view(view_of(model.robot.effects), headings=runs.headings_alone)
     axes = shocks.enter[:, :3] @ view
     # The reference errs in what it measures: positions alone have no heading to err in.
-    of_shape: dict[Shape, Floats] = {
-        "robot": axes,
-        "spike": axes * told.known[:, :, None],
-        "reference": axes * told.known[:, :, None],
-    }
+    measured = axes * told.known[:, :, None]
+    of_shape: dict[Shape, Floats] = {"robot": axes, "spike": measured, "reference": measured}
     shapes: tuple[Shape, ...] = ("robot",)
     if told.ways is not None and not runs.headings_alone:
         shapes += ("reference",) if kind == "local_map" else ("spike",)
@@ -145,7 +142,10 @@ def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
     left = white
     while True:
         gains = {shape: _gain(*_asked(shape, shocks, of_shape[shape])) for shape in shapes}
-        scatter = _scatter(runs, _local(shocks, of_shape), told)
+        # An error in one pose alone, wherever that can be asked, is what noise makes.
+        local: Shape = "spike" if shocks.both.any() else "robot"
+        gain = gains.get(local) or _gain(*_asked(local, shocks, of_shape[local]))
+        scatter = _scatter(runs, gain, told)
         new = _peaks(runs, gains, scatter, tests)
         if not new or len(steps) + len(new) > MOST_EVENTS:
             break
@@ -203,12 +203,6 @@ def _kept(
     return kept
 
 
-def _local(shocks: Shocks, of_shape: dict[Shape, Floats]) -> tuple[Floats, Floats]:
-    """What an error in one pose alone would explain, wherever that can be asked."""
-    shape: Shape = "spike" if shocks.both.any() else "robot"
-    return _gain(*_asked(shape, shocks, of_shape[shape]))
-
-
 def _asked(shape: Shape, shocks: Shocks, axes: Floats) -> tuple[Floats, Floats]:
     """Score and information of one shape's steps in each leg, (m, 3) and (m, 3, 3)."""
     own = slice(3, 6) if shape == "reference" else slice(0, 3)
@@ -229,7 +223,7 @@ def _gain(score: Floats, known: Floats) -> tuple[Floats, Floats]:
     heard = size > 0.0
     unit = np.where(heard, size, 1.0)
     values, vectors = np.linalg.eigh(known / (unit[:, :, None] * unit[:, None, :]))
-    kept = values > _TURN
+    kept = values > _HEARD
     shares = (vectors.swapaxes(-1, -2) @ (score / unit)[..., None])[..., 0]
     gain = np.sum(np.where(kept, shares**2 / np.where(kept, values, 1.0), 0.0), axis=-1)
     return gain, kept.sum(axis=-1).astype(np.float64)

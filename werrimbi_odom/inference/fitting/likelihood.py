@@ -182,8 +182,7 @@ def innovations(
         if given is not None:
             begun[runs.legs[index]] = given
             start[runs.legs[index], 2] = np.nan
-    noise = _wheel_part(prediction, variances)
-    noise[:, runs.stepped] += EVENT_STEP * np.eye(3)
+    noise = wheel_part(prediction, runs, variances.left, variances.right)
     reading = _reading(robot, variances, runs, prediction, adds_up=kind == "incremental")
     if kind == "incremental":
         noise[..., 2, 2] += variances.yaw[:, None] * runs.intervals
@@ -216,14 +215,13 @@ def _of_increments(
     leg = BodyMotion(prediction.along, none, prediction.turn)
     swing = piece_covariance(leg, PathNoise(none, runs.intervals, none), none).matrix()
     covariance = (
-        _wheel_part(prediction, variances)
+        wheel_part(prediction, runs, variances.left, variances.right)
         + variances.yaw[:, None, None, None] * swing
         + variances.xy[:, None, None, None]
         * runs.intervals[:, None, None]
         * np.diag([1.0, 1.0, 0.0])
         + 2.0 * np.diag(reading_noise(robot))
     )
-    covariance[:, runs.stepped] += EVENT_STEP * np.eye(3)
     covariance = covariance + UNMEASURED * _diagonal(~np.isfinite(value))
     value = np.where(known, value, 0.0)
     sets = variances.left.size
@@ -283,12 +281,17 @@ def _reading(
     return np.asarray(reading + np.diag(reading_noise(robot)))
 
 
-def _wheel_part(prediction: Prediction, variances: Variances) -> Floats:
-    """Covariance of the legs from the wheels' noise, shape (g, m, 3, 3)."""
-    return np.asarray(
-        variances.left[:, None, None, None] * prediction.per_left
-        + variances.right[:, None, None, None] * prediction.per_right
+def wheel_part(prediction: Prediction, runs: Together, left: Floats, right: Floats) -> Floats:
+    """Covariance of the legs from the wheels' noise, k_L² and k_R² (g,) [m]; (g, m, 3, 3).
+
+    A leg in which something happened at once may end anywhere.
+    """
+    noise = np.asarray(
+        left[:, None, None, None] * prediction.per_left
+        + right[:, None, None, None] * prediction.per_right
     )
+    noise[:, runs.stepped] += EVENT_STEP * np.eye(3)
+    return noise
 
 
 def reading_noise(robot: Robot) -> Floats:

@@ -76,7 +76,7 @@ class Counters:
         return summed(path + turned)
 
 
-_HELD: WeakKeyDictionary[Ticks, tuple[Robot, EncoderLimits | None, ref[Counters]]]
+_HELD: WeakKeyDictionary[Ticks, tuple[tuple[Robot, EncoderLimits | None], ref[Counters]]]
 _HELD = WeakKeyDictionary()
 """Of runs whose counters somebody holds: parts of a run share them, being numbers for each row."""
 
@@ -89,10 +89,12 @@ def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counter
     InputError
         When fewer than two rows can be used, or the clock was set back.
     """
-    *by, held = _HELD.get(run.ticks, (None, None, None))
-    known = held() if held is not None and by == [robot, limits] else None
-    found = known or _counted(run, robot, limits)
-    _HELD[run.ticks] = robot, limits, ref(found)
+    by = robot, limits
+    known, held = _HELD.get(run.ticks, (None, None))
+    found = held() if held is not None and known == by else None
+    if found is None:
+        found = _counted(run, robot, limits)
+        _HELD[run.ticks] = by, ref(found)
     return found
 
 

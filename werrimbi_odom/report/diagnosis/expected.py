@@ -10,6 +10,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 
+from werrimbi_odom.effects.collection import find
 from werrimbi_odom.model.robot import Robot
 
 SLOW, FAST = 0.1, 0.5
@@ -36,15 +37,10 @@ def expected_words(name: str, values: Values, robot: Robot) -> str:
 
 
 def _needed(name: str, values: Values) -> list[float]:
-    return [value for key, value in values.items() if key != "phase" or name not in _WITHOUT_PHASE]
-
-
-_WITHOUT_PHASE = (
-    "eccentric_left_wheel",
-    "eccentric_right_wheel",
-    "oval_left_wheel",
-    "oval_right_wheel",
-)
+    """All but the phase of what swings with a wheel: a ruler shows its amplitude."""
+    quadrature = find(name).quadrature
+    phase = None if quadrature is None else quadrature[1]
+    return [value for key, value in values.items() if key != phase]
 
 
 def _length(metres: float) -> str:

@@ -58,12 +58,11 @@ def also(told: Told, name: str) -> list[str]:
     if own:
         what += f" Headings alone cannot tell it from {listed(own, 'or')}."
     twins = effect.twins if effect is not None else ()
-    if rivals := [
-        each for each in told.diagnosis.rivals_of_others.get(name, ()) if each not in twins
-    ]:
+    near = told.diagnosis.rivals_of_others.get(name, ())
+    if rivals := [each for each in near if each not in twins]:
         what += f" These drives cannot tell it from {listed(rivals, 'or')}, in its place."
-    if effect is not None and effect.twins:
-        what += f" To the reference it is one with {listed(effect.twins, 'or')}, on any drive."
+    if twins:
+        what += f" To the reference it is one with {listed(twins, 'or')}, on any drive."
     return [f"- Also {name}: {size}{sure}.{what}"]
 
 

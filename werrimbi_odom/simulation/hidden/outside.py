@@ -14,7 +14,7 @@ from ..engine import Engine, Reshaper, Shift, Shifter, Stride
 from ..recording import Recording
 from ..robot import TrueRobot
 from .peculiarity import Peculiarity
-from .tyres import with_channel
+from .tyres import payloads, weighed, with_channel
 from .wheels import Side
 
 Floats = NDArray[np.float64]
@@ -73,14 +73,9 @@ class BaseByPayload(Peculiarity):
 
     broadening: float
 
-    def _loads(self, rng: np.random.Generator) -> tuple[Floats, Floats]:
-        """Of a run: times [s] and payloads [kg], straight in between."""
-        times = np.concatenate(([0.0], np.cumsum(rng.uniform(8.0, 20.0, 60))))
-        return times, rng.uniform(0.0, 10.0, len(times))
-
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Take back the turning that the wider base does not make."""
-        times, loads = self._loads(rng)
+        times, loads = payloads(rng)
 
         def shift(stride: Stride) -> Shift:
             load = float(np.interp(stride.time, times, loads))
@@ -93,9 +88,7 @@ class BaseByPayload(Peculiarity):
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
         """Write the scale's column."""
-        measured = np.interp(recording.t_s, *self._loads(rng))
-        measured = measured + 0.05 * rng.standard_normal(len(measured))
-        return with_channel(recording, "payload_kg", measured)
+        return weighed(recording, np.interp(recording.t_s, *payloads(rng)), rng)
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,17 @@ def with_channel(recording: Recording, name: str, values: Floats) -> Recording:
     return replace(recording, channels={**recording.channels, name: values})
 
 
+def payloads(rng: np.random.Generator) -> tuple[Floats, Floats]:
+    """Of a run: times of change [s] and payloads then, or from then on [kg]."""
+    times = np.concatenate(([0.0], np.cumsum(rng.uniform(8.0, 20.0, 60))))
+    return times, rng.uniform(0.0, 10.0, len(times))
+
+
+def weighed(recording: Recording, loads: Floats, rng: np.random.Generator) -> Recording:
+    """The record with the column of a scale that is good to 50 g."""
+    return with_channel(recording, "payload_kg", loads + 0.05 * rng.standard_normal(len(loads)))
+
+
 @dataclass(frozen=True)
 class RadiusFollowsTemperature(Peculiarity):
     """Both wheels swell with warmth, which is measured (`wheel_temperature_c`, to 0.1 K).
@@ -78,11 +89,6 @@ class RadiusFollowsPayload(Peculiarity):
 
     yielding: float
 
-    def _loads(self, rng: np.random.Generator) -> tuple[Floats, Floats]:
-        """Of a run: times of change [s] and payloads from then on [kg]."""
-        times = np.concatenate(([0.0], np.cumsum(rng.uniform(8.0, 20.0, 60))))
-        return times, rng.uniform(0.0, 10.0, len(times))
-
     @staticmethod
     def _load(at: Floats | float, times: Floats, loads: Floats) -> Floats:
         """Loading takes a second."""
@@ -92,7 +98,7 @@ class RadiusFollowsPayload(Peculiarity):
 
     def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
         """Resize the wheels as the load says."""
-        times, loads = self._loads(rng)
+        times, loads = payloads(rng)
 
         def reshape(engine: Engine, stride: Stride) -> None:
             load = float(self._load(stride.time, times, loads))
@@ -105,9 +111,7 @@ class RadiusFollowsPayload(Peculiarity):
         self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
     ) -> Recording:
         """Write the scale's column."""
-        measured = self._load(recording.t_s, *self._loads(rng))
-        measured = measured + 0.05 * rng.standard_normal(len(measured))
-        return with_channel(recording, "payload_kg", measured)
+        return weighed(recording, self._load(recording.t_s, *payloads(rng)), rng)
 
 
 @dataclass(frozen=True)
