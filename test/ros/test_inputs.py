@@ -130,6 +130,7 @@ def test_two_topics(launch: Callable[..., Any], robot: Robot, kind: str, message
     node.begin(lambda: send(0, 0))
     published = len(node.odometry)
     send(1500, 800)
+    node.until(lambda: len(node.odometry) == published + 1, "odometry of the first pair")
     send(3000, 1600, wait=0.1)  # too far apart: no pair, but the next one holds their motion
     assert len(node.odometry) == published + 1
     send(6000, 3200)
@@ -153,11 +154,10 @@ def test_a_pairing_that_begins_one_message_off_mends_itself(
         node.send(Int64, "left_ticks", Int64(data=600 * step))
         node.rest(0.01)
         node.send(Int64, "right_ticks", Int64(data=300 * step))
-    node.rest(0.1)
+    node.until(lambda: len(node.odometry) >= 9, "odometry of nine pairs")
     for message in node.odometry[2:]:
         assert message.twist.twist.angular.z == pytest.approx(0.0, abs=1e-9)
         assert message.twist.twist.linear.x > 0.0
-    assert len(node.odometry) >= 9
 
 
 def test_an_array_of_both(launch: Callable[..., Any], robot: Robot) -> None:
