@@ -46,6 +46,9 @@ WALK = ("reference_walk_xy", "reference_walk_yaw", "reference_reversion")
 
 _ALL = (*NOISES, STAMP_NOISE, *WALK)
 
+_LONGEST = 2.0
+"""Step in a logarithm: beyond it no curvature holds."""
+
 _LOWEST = np.log(1e-14)
 _HIGHEST = np.log([STRANGE_NOISE**2] * 2 + [10.0] * 6)
 """Of the variances, in logarithms: what wheels do not do is no noise of theirs."""
@@ -111,32 +114,59 @@ def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Varian
     """Variances of greatest posterior likelihood, the model being given; by Fisher's scoring.
 
     The innovations' derivatives in the logarithms of the variances come from one pass of the filter
-    over all sets; expected curvature is positive, so every step goes downhill.
+    over all sets. Expected curvature is positive, so every step goes downhill; what it lacks of the
+    true one (a noise that the drives hardly tell is overshot, to and fro) is learnt from the
+    gradients on the way: Dennis, Gay and Welsch, ACM Trans. Math. Softw. 7, 1981.
     """
     prediction = costs.prediction()
     moving = _moving(costs, held)
     highest = _HIGHEST[moving]
     logs = np.clip(np.log(_row(start)[moving]), _LOWEST, highest)
     damping = 1e-6
-    cost, gradient, curvature = _scored(costs, prediction, start, moving, logs)
+    cost, gradient, expected = _scored(costs, prediction, start, moving, logs)
+    lacking = np.zeros_like(expected)
     for _ in range(25):
+        curvature = expected + lacking
+        if np.linalg.eigvalsh(curvature)[0] <= 0.0:
+            curvature = expected
         free = (logs < highest) | (gradient > 0.0)
         scale = np.diag(curvature)
         damped = curvature + np.diag(damping * scale + 1e-9 * scale.max(initial=1e-12) + 1e-12)
         step = np.zeros(logs.size)
         step[free] = -np.linalg.solve(damped[np.ix_(free, free)], gradient[free])
-        tried = np.clip(logs + np.clip(step, -2.0, 2.0), _LOWEST, highest)
+        tried = np.clip(logs + np.clip(step, -_LONGEST, _LONGEST), _LOWEST, highest)
         ahead = _scored(costs, prediction, start, moving, tried)
+        lacking = _lacking(lacking, ahead[2], tried - logs, ahead[1] - gradient)
         if ahead[0] > cost + 1e-9 * abs(cost):
             if damping > 1e4:
                 break
             damping = max(10.0 * damping, 1e-2)
             continue
         gained, moved = cost - ahead[0], np.max(np.abs(tried - logs), initial=0.0)
-        logs, (cost, gradient, curvature), damping = tried, ahead, 0.1 * damping
+        logs, (cost, gradient, expected), damping = tried, ahead, 0.1 * damping
         if gained < 1e-3 or moved < 1e-4:
             break
     return _variances(start, moving, logs[None, :])
+
+
+def _lacking(before: Floats, expected: Floats, step: Floats, change: Floats) -> Floats:
+    """What the expected curvature lacks of the true one, after a step that changed the gradient so.
+
+    The symmetric matrix nearest to the one before (shrunk to what this step asks for) with which
+    both together explain the change; none after a step that was cut, which tells of another place.
+    """
+    if np.max(np.abs(step), initial=0.0) >= _LONGEST:
+        return np.zeros_like(before)
+    if not step @ change > 0.0:
+        return before
+    asked = change - expected @ step
+    along = before @ step
+    sized = min(1.0, abs(float(step @ asked)) / max(abs(float(step @ along)), 1e-300))
+    before = sized * before
+    rest = asked - sized * along
+    weight = change / float(step @ change)
+    update = np.outer(rest, weight)
+    return np.asarray(before + update + update.T - float(rest @ step) * np.outer(weight, weight))
 
 
 def prior_cost(costs: Costs, variances: Variances) -> Floats:
