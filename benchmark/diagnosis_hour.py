@@ -27,6 +27,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from benchmark.per_tick import PerTick
 from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
@@ -87,7 +88,7 @@ def main() -> None:
     walls, cpus = [], []
     for count in (DRIVES // 4, DRIVES):
         wall, cpu = time.perf_counter(), time.process_time()
-        found = diagnose(runs[:count], file.robot, LIBRARY, limits=file.limits)
+        found = diagnose(runs[:count], file.robot, LIBRARY, EvaluationOptions(limits=file.limits))
         wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
         walls.append(wall)
         cpus.append(cpu)

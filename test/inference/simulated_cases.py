@@ -15,6 +15,7 @@ import numpy as np
 
 from test.white_noise_robot import wandering
 from werrimbi_odom.effects import find
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.fits import fits_of
 from werrimbi_odom.inference.adding.known import as_written, noises_of, with_spread
@@ -122,10 +123,10 @@ def stated(case: Case) -> dict[str, tuple[float, float]]:
     """
     runs = together(match_finely(case.runs, GIVEN, leg=1.0))
     nothing = tuple(np.zeros(run.legs, dtype=np.bool_) for run in runs.runs)
-    drives = Drives(runs, nothing, "absolute", (None, None))
+    drives = Drives(runs, nothing, EvaluationOptions())
     fit = fits_of([case.effect], drives, GIVEN, GIVEN, (), lambda share, words: None).all
     sizes = sizes_needed(fit, GIVEN, ())
-    fit = with_sizes(runs, drives.kind, fit, GIVEN, sizes)
+    fit = with_sizes(runs, fit, GIVEN, sizes)
     noises = noises_of(drives, as_written(drives, fit, GIVEN))
     known = with_spread([case.effect], drives, fit, GIVEN, (), sizes, noises)
     robot = fit.point.model.robot

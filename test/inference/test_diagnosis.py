@@ -128,12 +128,10 @@ def test_every_amount_has_a_channel_of_the_contract() -> None:
 
 
 def test_a_right_robot_needs_no_calibration_and_no_effect_scores(laid: Together) -> None:
-    fit = first_fit(laid, ROBOT, "absolute")
+    fit = first_fit(laid, ROBOT)
     assert fit.calibrated == ()
     tried = candidates(LIBRARY, (), (), len(laid.runs))
-    best = max(
-        scores(laid, fit.point, "absolute", CALIBRATION, tried), key=lambda score: score.excess
-    )
+    best = max(scores(laid, fit.point, CALIBRATION, tried), key=lambda score: score.excess)
     assert best.gain < best.degrees + 25.0
 
 
@@ -156,7 +154,7 @@ def test_of_the_multipliers_those_are_kept_that_are_wrong(
 ) -> None:
     robot = replace(ROBOT, **wrong)  # type: ignore[arg-type]
     wronged = together([match(run, robot, 0.25, turn=0.4) for run in runs])
-    fit = first_fit(wronged, robot, "absolute")
+    fit = first_fit(wronged, robot)
     assert named in fit.calibrated
     assert max(fit.importance, key=lambda name: fit.importance[name]) == named
 

@@ -71,12 +71,12 @@ def chances(seeds: range, spoil: Spoil, hotter: float = 0.0) -> list[tuple[str, 
     """The most certain cells: what they go with, chance by the map, chance by the quarters."""
     runs = [driven(seed, spoil, f"drive_{seed}", hotter) for seed in seeds]
     laid = together(match_finely(runs, ROBOT, 1.0, None))
-    fit = first_fit(laid, ROBOT, "absolute")
+    fit = first_fit(laid, ROBOT)
     knobs = (*CALIBRATION, *fit.knobs)
-    cells = dependences(laid, fit.point, "absolute", knobs)[:8]
+    cells = dependences(laid, fit.point, knobs)[:8]
     return [
         (each.cell.variable.name, each.cell.p_value, each.p_value)
-        for each in lasting(laid, fit.point, "absolute", knobs, cells)
+        for each in lasting(laid, fit.point, knobs, cells)
     ]
 
 

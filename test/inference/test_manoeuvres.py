@@ -41,7 +41,7 @@ BY_NAME = {ideal.name: ideal for ideal in MANOEUVRES}
 def driven(ideal: Ideal, robot: Robot = ROBOT, yaw: bool = True) -> Experiment:
     run = ideal_run(ideal, robot, PACE, ticks=0.02, poses=0.05, measures=(True, yaw))
     runs = together([match(run, robot, 0.25, None, 0.4)])
-    return Experiment(runs, start_point(runs, robot), "absolute")
+    return Experiment(runs, start_point(runs, robot))
 
 
 @pytest.mark.parametrize("name", BY_NAME)

@@ -66,9 +66,9 @@ def test_an_effect_that_another_beats_in_half_of_the_data_is_not_certain() -> No
             replace(one, reference=replace(before, x=joined[0], y=joined[1], yaw=joined[2]))
         )
     runs = together(match_finely(mixed, GIVEN, 1.0))
-    before = first_fit(runs, GIVEN, "absolute")
-    this = search_round(runs, before, "absolute", (LIBRARY[0], LIBRARY[2]), GIVEN)
+    before = first_fit(runs, GIVEN)
+    this = search_round(runs, before, (LIBRARY[0], LIBRARY[2]), GIVEN)
     best = this.tried[0]
     others = {"lateral_slip", "sideways_drift"} - {best.names[-1]}
-    assert set(rivals_in_halves(runs, this, best, "absolute")) == others
+    assert set(rivals_in_halves(runs, this, best)) == others
     assert diagnose(mixed, GIVEN, (LIBRARY[0], LIBRARY[2])).verdict != "named"

@@ -38,7 +38,7 @@ def test_stamps_that_scatter_are_no_slip() -> None:
     robot = replace(TRUE.entered(), effects=(slip.using(coefficient=0.0),))
     runs = together(match_finely([scattered(seed) for seed in range(10)], robot, 1.0))
     knobs = (*CALIBRATION, *(replace(each, bounds=(-0.3, 0.3)) for each in knobs_of(slip)))
-    found = fit_model(runs, start_point(runs, robot), "absolute", knobs)
+    found = fit_model(runs, start_point(runs, robot), knobs)
     which = [knob.name for knob in found.free].index("longitudinal_slip.coefficient")
     size = found.point.model.value(found.free[which])
     assert abs(size) < 3.0 * np.sqrt(found.covariance[which, which])

@@ -70,7 +70,7 @@ def compared(
     from werrimbi_odom.report.comparison.document import document_of
 
     if over is None:
-        found = judge(given.runs, given.robot, **given.judging, show=show)
+        found = judge(given.runs, given.robot, given.evaluation, show=show)
     else:
         found = judged(over, given.robot, show=show)
     return Result(
@@ -189,8 +189,8 @@ def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> 
         effects,
         given.runs,
         given.robot,
+        given.evaluation,
         holdout=given.holdout,
-        **given.judging,
         show=show,
     )
     return Result(

@@ -15,7 +15,8 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, Side
 from werrimbi_odom.inference.adding.fits import fits_without_jumps
 from werrimbi_odom.inference.adding.known import as_written, noises_of, with_spread
@@ -52,7 +53,6 @@ from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.rules import VERY_SURE
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 
@@ -61,14 +61,10 @@ def add_effects(
     effects: Sequence[Effect],
     runs: Sequence[Run],
     robot: Robot,
-    kind: ReferenceKind = "absolute",
+    options: EvaluationOptions = EvaluationOptions(),
     *,
     given: Robot | None = None,
     holdout: Sequence[Run] = (),
-    leg: float = 1.0,
-    limits: EncoderLimits | None = None,
-    sigma_xy: float | None = None,
-    sigma_yaw: float | None = None,
     show: Show = silent,
 ) -> Added:
     """Fit effects together with all calibration, and judge each of them.
@@ -82,8 +78,6 @@ def add_effects(
         other that the fit begins with.
     holdout
         Runs to judge on alone. None given: parts of `runs` are put aside for it.
-    leg : float
-        Length of the legs that are judged [m].
     show
         Told the share done, and what is being done.
 
@@ -104,17 +98,27 @@ def add_effects(
     if any(base_name(effect) is not None for effect in effects):
         robot = replace(robot, wheels_a_side=max(robot.wheels_a_side, 2))  # so says who asks for it
     show(0.0, "set-up")
-    started = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw, given=given)
+    started = begin(
+        runs,
+        holdout,
+        robot,
+        options,
+        given=given,
+    )
     judge, set_up = started.judge, started.set_up
     begun, also = with_set_up(effects, robot, set_up)
-    sigma = (sigma_xy or _stated(judge, "xy_told"), sigma_yaw or _stated(judge, "yaw_told"))
+    stated = replace(
+        options,
+        sigma_xy=options.sigma_xy or _stated(judge, "xy_told"),
+        sigma_yaw=options.sigma_yaw or _stated(judge, "yaw_told"),
+    )
     show(0.15, "calibration")
-    drives = drives_of(judge.train, begun, kind, limits, sigma)
+    drives = drives_of(judge.train, begun, stated)
     drives, fits = fits_without_jumps(effects, drives, begun, robot, also, show)
     fit = fits.all
     wanted = _calibrations_wanted(effects, set_up)
     sizes = sizes_needed(fit, robot, wanted)
-    fit = with_sizes(drives.laid, kind, fit, robot, sizes)
+    fit = with_sizes(drives.laid, fit, robot, sizes)
     show(0.75, "judging")
     train, kept = _judged(judge, fits.none, fit)
     alone = {name: _at_home(judge, each, kept) for name, each in fits.without.items()}
@@ -127,7 +131,7 @@ def add_effects(
     written = fit
     if not holdout:
         show(0.9, "all runs")
-        drives, written = _on_all(judge, drives, fit, robot, runs, limits, sizes)
+        drives, written = _on_all(judge, drives, fit, robot, runs, sizes)
     known = with_spread(effects, drives, written, robot, wanted, sizes, noises)
     final = to_write(written.point.model, robot)
     final = _with_noise_of(final, robot)
@@ -137,11 +141,7 @@ def add_effects(
     compared = compare(
         judge.kept_back if holdout else runs,
         final,
-        kind,
-        leg=leg,
-        limits=limits,
-        sigma_xy=sigma_xy,
-        sigma_yaw=sigma_yaw,
+        options,
     )
     return Added(
         effects=tuple(effects),
@@ -228,7 +228,7 @@ def _noisy(fit: Fitted) -> Model:
 
 
 def _legs(prepared: Prepared, model: Model) -> Legs:
-    return judged_legs(prepared, model.without_nuisances(), prepared.leg)
+    return judged_legs(prepared, model.without_nuisances(), prepared.options.leg)
 
 
 def _noise(
@@ -236,11 +236,11 @@ def _noise(
 ) -> tuple[dict[str, NoiseEstimate], tuple[Dependence, ...], Misfit | None, bool]:
     """Noise of the wheels, what the errors still depend on, as diagnose tells it; sane wheels."""
     noises = noises_of(drives, fit)
-    found = dependences(drives.laid, fit.point, drives.kind, (*CALIBRATION, *fit.knobs))
+    found = dependences(drives.laid, fit.point, (*CALIBRATION, *fit.knobs))
     remaining = tuple(cell for cell in found if cell.p_value < VERY_SURE)
     wheels = [noises[name] for name in WHEEL_NOISES]
     sane = not any(of_no_wheel(item) for item in wheels)
-    return noises, remaining, misfit_of_found(fit, remaining, drives.laid, drives.kind), sane
+    return noises, remaining, misfit_of_found(fit, remaining, drives.laid), sane
 
 
 def _told(noise: NoiseEstimate) -> NoiseEstimate:
@@ -260,7 +260,6 @@ def _on_all(
     fit: Fitted,
     given: Robot,
     runs: Sequence[Run],
-    limits: EncoderLimits | None,
     sizes: Sizes,
 ) -> tuple[Drives, Fitted]:
     """The same model fitted on all runs, those put aside among them."""
@@ -268,7 +267,7 @@ def _on_all(
         return drives, fit  # of a single run the last part was put aside; the rest is what there is
     both = [
         drives,
-        drives_of(judge.holdout, fit.point.model.robot, judge.kind, limits, drives.sigma),
+        drives_of(judge.holdout, fit.point.model.robot, drives.options),
     ]
     laid = tuple(run for part in both for run in part.laid.runs)
     jumped = tuple(legs for part in both for legs in part.jumped)
@@ -277,4 +276,4 @@ def _on_all(
     own = (*fit.point.model.own, *home.model.own)
     point = replace(fit.point, model=Model(fit.point.model.robot, own), excluded=jumped)
     again = every.fit(point, fit.names, fit.knobs, given)
-    return every, with_sizes(every.laid, every.kind, again, given, sizes)
+    return every, with_sizes(every.laid, again, given, sizes)

@@ -38,9 +38,9 @@ from werrimbi_odom.model.robot import Robot
 
 def noises_of(drives: Drives, fit: Fitted) -> dict[str, NoiseEstimate]:
     """Noise of a model as its file has it (`as_written`)."""
-    costs = Costs(drives.laid, fit.point, drives.kind)
+    costs = Costs(drives.laid, fit.point)
     information = _precision(drives, fit).information
-    return noise_estimates(costs, fit.point.variances, _held(drives), information)
+    return noise_estimates(costs, fit.point.variances, drives.options.sigmas_known, information)
 
 
 def as_written(drives: Drives, fit: Fitted, given: Robot) -> Fitted:
@@ -54,12 +54,8 @@ def as_written(drives: Drives, fit: Fitted, given: Robot) -> Fitted:
     if robot is model.robot:
         return fit
     point = replace(fit.point, model=Model(robot, model.own))
-    variances = likeliest(Costs(drives.laid, point, drives.kind), point.variances, _held(drives))
+    variances = likeliest(Costs(drives.laid, point), point.variances, drives.options.sigmas_known)
     return replace(fit, point=replace(point, variances=variances))
-
-
-def _held(drives: Drives) -> tuple[bool, bool]:
-    return drives.sigma[0] is not None, drives.sigma[1] is not None
 
 
 def with_spread(
@@ -83,7 +79,7 @@ def with_spread(
     design = fit.design
     if lacking:
         more = [knob for effect in effects for knob in knobs_of(effect) if knob.name in lacking]
-        design = stacked(drives.laid, fit.point, drives.kind, [*_local(fit), *more])
+        design = stacked(drives.laid, fit.point, [*_local(fit), *more])
     free = np.linalg.matrix_rank(fit.moves[[knob.name in MULTIPLIERS for knob, _ in columns]])
     if free != sizes.free:  # they could not be put back (`with_sizes`)
         *_, sizes = choices()
@@ -127,4 +123,4 @@ def _local(fit: Fitted) -> list[Knob]:
 
 def _precision(drives: Drives, fit: Fitted) -> Precision:
     local = [knob for knob in _local(fit) if knob.name != START_YAW]
-    return Precision.of(drives.laid, fit.point, drives.kind, local, fit.moves)
+    return Precision.of(drives.laid, fit.point, local, fit.moves)

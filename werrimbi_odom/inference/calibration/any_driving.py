@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
@@ -82,29 +82,24 @@ class Calibration:
 def calibrate(
     runs: Sequence[MatchedRun],
     robot: Robot,
-    kind: ReferenceKind = "absolute",
-    *,
-    sigma_xy: float | None = None,
-    sigma_yaw: float | None = None,
+    options: EvaluationOptions = EvaluationOptions(),
 ) -> Calibration:
-    """Fit base, radii and noise to all runs at once, and question the result.
-
-    Parameters
-    ----------
-    sigma_xy, sigma_yaw : float, optional
-        The reference's noise [m, rad] where it is known; else it is estimated too.
-    """
-    begin = start_point(runs, robot, sigma_xy, sigma_yaw)
+    """Fit base, radii and noise to all runs at once, and question the result."""
+    begin = start_point(runs, robot, options)
     knobs = (*CALIBRATION, *begin.model.nuisance_knobs)
-    fit = fit_model(runs, begin, kind, knobs, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
-    held = (sigma_xy is not None, sigma_yaw is not None)
+    fit = fit_model(
+        runs,
+        begin,
+        knobs,
+    )
+    held = options.sigmas_known
     local = [knob for knob in knobs if knob.name != START_YAW]
-    precision = Precision.of(together(runs), fit.point, kind, local, fit.ways.matrix)
+    precision = Precision.of(together(runs), fit.point, local, fit.ways.matrix)
     noises = noise_estimates(
-        Costs(runs, fit.point, kind), fit.point.variances, held, precision.information
+        Costs(runs, fit.point), fit.point.variances, held, precision.information
     )
     turned = [knob for knob in knobs if knob.per_run or knob in fit.free]
-    found = dependences(together(runs), fit.point, kind, turned)
+    found = dependences(together(runs), fit.point, turned)
     misfit = tuple(item for item in found if item.p_value < SURE)
     strange = _strange(fit, noises)
     names = [knob.name for knob in fit.free]

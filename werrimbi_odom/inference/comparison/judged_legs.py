@@ -87,13 +87,13 @@ def in_runs(prepared: Prepared, robot: Robot | Model) -> Model:
     bare = Model(robot, tuple({} for _ in prepared.runs))
     if all(applied.ready for applied in robot.effects):
         return bare
-    return known_at_home(bare, finely(prepared), prepared.kind)
+    return known_at_home(bare, finely(prepared), prepared.options.reference_kind)
 
 
 def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
     """Errors of all legs of one length, in the order of the runs; gaps are no legs."""
     parts = []
-    asked = prepared.cuts[prepared.leg]
+    asked = prepared.cuts[prepared.options.leg]
     for group, usual, runs in zip(prepared.groups, asked, prepared.cuts[leg], strict=True):
         own = _of_group(group, model)
         by_position = group.measure == "position"
@@ -106,11 +106,11 @@ def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
             runs,
             group.own.sigma_xy[runs.run_of_leg],
             group.own.sigma_yaw[runs.run_of_leg],
-            prepared.kind,
+            prepared.options.reference_kind,
             by_position=by_position,
             sigma_stamp=group.own.noise.sigma_stamp,
             wandering=group.own.wandering,
-            jumped=jumped_in(group, runs, prepared.kind),
+            jumped=jumped_in(group, runs, prepared.options.reference_kind),
         )
         parts.append(_table(prepared, group, runs, errors, leg))
     return _in_order(parts)
@@ -121,7 +121,7 @@ def figures_of(prepared: Prepared, robot: Robot | Model) -> LegStatistics:
 
     Over the legs on which the reference did not jump; the median is over all.
     """
-    legs = judged_legs(prepared, in_runs(prepared, robot), prepared.leg)
+    legs = judged_legs(prepared, in_runs(prepared, robot), prepared.options.leg)
     return statistics_of(legs)
 
 
@@ -176,7 +176,7 @@ def _table(prepared: Prepared, group: Group, runs: Together, errors: LegErrors, 
     legs = Legs(
         leg,
         errors,
-        jumped_in(group, runs, prepared.kind) | runs.stepped,
+        jumped_in(group, runs, prepared.options.reference_kind) | runs.stepped,
         np.array(group.index)[runs.run_of_leg],
         begin,
         end,
@@ -245,7 +245,7 @@ def far_above_noise(prepared: Prepared, model: Model) -> bool:
     of the softest wheels there are, and of the reference by its own small differences. By what a
     usual leg is promised: a first one, whose heading nobody measured, is promised anything.
     """
-    legs = judged_legs(prepared, model, prepared.leg)
+    legs = judged_legs(prepared, model, prepared.options.leg)
     kept = legs.errors.chosen(~legs.outlier)
     places = slice(2, 3) if judged_by(prepared) == "heading" else slice(0, 2)
     error = np.sum(kept.error[:, places] ** 2, axis=1)

@@ -16,6 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.likelihood import Variances, errors_between, innovations
@@ -45,21 +46,23 @@ class Wandering:
 def wandering_of(
     records: Sequence[Record],
     robot: Robot,
-    leg: float,
-    sigma_xy: float | None,
-    sigma_yaw: float | None,
+    options: EvaluationOptions,
 ) -> Wandering:
     """How a reference errs: likeliest beside a robot whose calibration is free.
 
     So a wrong base or radius does not pass for a walk of the reference.
     """
-    laid = together([cut_finely(record, robot, leg) for record in records])
-    point = start_point(laid, robot, sigma_xy, sigma_yaw)
+    laid = together([cut_finely(record, robot, options.leg) for record in records])
+    point = start_point(laid, robot, options)
     if laid.data < NOISE_NUMBERS:
         return Wandering(point.variances, False)
-    point, knobs = with_own_values(laid, point, "local_map")
+    point, knobs = with_own_values(laid, point)
     knobs = (*CALIBRATION, *knobs, *point.model.nuisance_knobs)
-    fit = fit_model(laid, point, "local_map", knobs, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
+    fit = fit_model(
+        laid,
+        point,
+        knobs,
+    )
     return Wandering(fit.point.variances, True)
 
 

@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.jumps import jumped_legs, jumps_of
 from werrimbi_odom.inference.comparison.own_noise import OwnNoise, ReferenceNoise, noise_of
@@ -46,7 +47,6 @@ from werrimbi_odom.inference.rules import (
     LEGS_OF_A_RUN,
     QUARTER_TURN,
 )
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
@@ -74,9 +74,7 @@ class Prepared:
 
     robot: Robot
     """By whose travel the legs are cut."""
-    kind: ReferenceKind
-    leg: float
-    limits: EncoderLimits | None
+    options: EvaluationOptions
     runs: tuple[Run, ...]
     groups: tuple[Group, ...]
     cuts: Mapping[float, tuple[Together, ...]]
@@ -103,8 +101,8 @@ class Prepared:
         (`legs.cutting.Record.left_out`), and it is cut out and told like these.
         """
         found: list[list[LeftOut]] = [[] for _ in self.runs]
-        for group, legs in zip(self.groups, self.cuts[self.leg], strict=True):
-            spoilt = jumped_in(group, legs, self.kind)
+        for group, legs in zip(self.groups, self.cuts[self.options.leg], strict=True):
+            spoilt = jumped_in(group, legs, self.options.reference_kind)
             for place, (index, run) in enumerate(zip(group.index, legs.runs, strict=True)):
                 found[index] += run.record.left_out
                 own = spoilt[legs.legs[place] : legs.legs[place + 1]] & ~run.gap
@@ -127,12 +125,8 @@ class Prepared:
 def prepare(
     runs: Sequence[Run],
     robot: Robot,
-    kind: ReferenceKind = "absolute",
+    options: EvaluationOptions = EvaluationOptions(),
     *,
-    leg: float = 1.0,
-    limits: EncoderLimits | None = None,
-    sigma_xy: float | None = None,
-    sigma_yaw: float | None = None,
     show: Show = silent,
 ) -> Prepared:
     """Match, find the reference's noise and jumps, and cut legs of several lengths.
@@ -142,20 +136,17 @@ def prepare(
     InputError
         When a run has no usable reference or no ticks.
     """
-    runs = [looked_at(run, robot, limits) for run in runs]
+    runs = [looked_at(run, robot, options.limits) for run in runs]
     members: dict[Measure, list[tuple[int, Record, bool]]] = {}
     for index, run in enumerate(runs):
         show(0.5 * index / len(runs), f"matching {run.name}")
         alike, measure = measured_alike(run)
-        record = record_of(alike, robot, limits, leg)
+        record = record_of(alike, robot, options.limits, options.leg)
         members.setdefault(measure, []).append((index, record, alike is run))
-    groups = tuple(
-        _group(robot, measure, found, kind, leg, sigma_xy, sigma_yaw)
-        for measure, found in members.items()
-    )
+    groups = tuple(_group(robot, measure, found, options) for measure, found in members.items())
     show(0.5, "cutting legs")
     return Prepared(
-        robot, kind, leg, limits, tuple(runs), groups, _cut_to_lengths(groups, robot, leg)
+        robot, options, tuple(runs), groups, _cut_to_lengths(groups, robot, options.leg)
     )
 
 
@@ -215,10 +206,12 @@ def finely(prepared: Prepared) -> Together:
     for group in prepared.groups:
         for index, every, whole in zip(group.index, group.every.runs, group.whole, strict=True):
             if whole:
-                found[index] = cut_finely(every.record, prepared.robot, prepared.leg)
+                found[index] = cut_finely(every.record, prepared.robot, prepared.options.leg)
             else:
                 run = prepared.runs[index]
-                [found[index]] = match_finely([run], prepared.robot, prepared.leg, prepared.limits)
+                [found[index]] = match_finely(
+                    [run], prepared.robot, prepared.options.leg, prepared.options.limits
+                )
     return together([found[index] for index in range(len(prepared.runs))])
 
 
@@ -226,15 +219,12 @@ def _group(
     robot: Robot,
     measure: Measure,
     members: list[tuple[int, Record, bool]],
-    kind: ReferenceKind,
-    leg: float,
-    sigma_xy: float | None,
-    sigma_yaw: float | None,
+    options: EvaluationOptions,
 ) -> Group:
     every = together([every_pose(record) for _, record, _ in members])
     plain = Model(robot, tuple({} for _ in members))
     residuals, _ = residuals_of(plain, every, measure)
-    own = noise_of(robot, every, residuals, measure, kind, leg, (sigma_xy, sigma_yaw))
+    own = noise_of(robot, every, residuals, measure, options)
     jumps = tuple(
         jumps_of(residual, run.gap) for residual, run in zip(residuals, every.runs, strict=True)
     )

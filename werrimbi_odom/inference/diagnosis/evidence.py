@@ -19,7 +19,6 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above, in_any_of
 from werrimbi_odom.inference.diagnosis.variables import (
     CONSTANT,
@@ -127,15 +126,13 @@ def place_of(cell: Dependence) -> tuple[float, float]:
     return float(px), float(py)
 
 
-def dependences(
-    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob]
-) -> tuple[Dependence, ...]:
+def dependences(runs: Together, point: Point, knobs: Sequence[Knob]) -> tuple[Dependence, ...]:
     """All cells of the map for a model, the most certain first.
 
     `knobs` are what the model can turn: what they can explain is no evidence.
     """
-    frame, rest = unexplained(runs, point, kind, knobs, predict_all(point.model, runs))
-    told = unexpected(runs, point, kind)
+    frame, rest = unexplained(runs, point, knobs, predict_all(point.model, runs))
+    told = unexpected(runs, point)
     found: list[tuple[Amount, Variable, Form, ScoreTest]] = []
     known = np.concatenate([frame.basis, rest[:, None]], axis=-1)
     for cell, change in _changes(runs, point):

@@ -19,7 +19,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above, fisher_above
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
 from werrimbi_odom.inference.diagnosis.variables import functions_of
@@ -56,16 +55,14 @@ class Lasting(NamedTuple):
     """The one drive that shows it where the others could and do not."""
 
 
-def lasting_effect(
-    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob], score: Score
-) -> float:
+def lasting_effect(runs: Together, point: Point, knobs: Sequence[Knob], score: Score) -> float:
     """How often chance would score an effect as high, by the disagreement of the parts.
 
     `knobs` are those that it was scored beside.
     """
     if _too_few(runs):
         return 0.0
-    rest, found = signatures(runs, point, kind, knobs, [score.candidate])
+    rest, found = signatures(runs, point, knobs, [score.candidate])
     signature = next(found)
     return _chance(score.gain, score.degrees, signature.free, rest, _parts(runs))
 
@@ -73,7 +70,6 @@ def lasting_effect(
 def lasting(
     runs: Together,
     point: Point,
-    kind: ReferenceKind,
     knobs: Sequence[Knob],
     cells: Iterable[Dependence],
 ) -> Iterator[Lasting]:
@@ -85,16 +81,16 @@ def lasting(
         yield from (Lasting(cell, 0.0, None) for cell in cells)
         return
     prediction = predict_all(point.model, runs)
-    frame, rest = unexplained(runs, point, kind, knobs, prediction)
+    frame, rest = unexplained(runs, point, knobs, prediction)
     parts = _parts(runs)
     for cell in cells:
-        free = frame.residual(pattern_of(runs, point, kind, cell))
+        free = frame.residual(pattern_of(runs, point, cell))
         p_value = _chance(cell.gain, cell.degrees, free, rest, parts)
         alone = _drive_alone(free, rest, np.repeat(runs.run_of_leg, 3))
         yield Lasting(cell, p_value, None if alone is None else runs.runs[alone].name)
 
 
-def pattern_of(runs: Together, point: Point, kind: ReferenceKind, cell: Dependence) -> Floats:
+def pattern_of(runs: Together, point: Point, cell: Dependence) -> Floats:
     """What a dependence of a cell's form does to the whitened innovations, (3 m, k)."""
     path = path_of(point.model, runs)
     sides = zip(
@@ -103,7 +99,7 @@ def pattern_of(runs: Together, point: Point, kind: ReferenceKind, cell: Dependen
         strict=True,
     )
     change = np.asarray(sum(legs_pushed(runs, *side) for side in sides))
-    own = unexpected(runs, point, kind).marks(change)[..., :-1]
+    own = unexpected(runs, point).marks(change)[..., :-1]
     if cell.variable.per_run:
         own = of_each_run(runs, own)
     return np.asarray(own.reshape(3 * runs.count, -1))

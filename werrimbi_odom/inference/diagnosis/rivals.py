@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from werrimbi_odom.effects.collection import find
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import sizes_of
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
@@ -89,7 +88,7 @@ def own_scale_instead(name: str, final: Fitted, given: Robot, laid: Together) ->
 
 
 def torn_by_halves(
-    first: str, rounds: tuple[Round, ...], final: Fitted, laid: Together, kind: ReferenceKind
+    first: str, rounds: tuple[Round, ...], final: Fitted, laid: Together
 ) -> tuple[str, ...]:
     """Effects that halves of the data prefer to the one that was found.
 
@@ -99,4 +98,4 @@ def torn_by_halves(
         return ()
     fits = [fit for fit in rounds[0].tried if not fit.at_bound]
     best = next((fit for fit in fits if fit.names[-1] == first), None)
-    return () if best is None else rivals_in_halves(laid, rounds[0], best, kind)
+    return () if best is None else rivals_in_halves(laid, rounds[0], best)

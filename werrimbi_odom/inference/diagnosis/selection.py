@@ -18,7 +18,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import calibration_deviation
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
@@ -112,27 +111,22 @@ def scatter_of(runs: Together, design: Design) -> float:
 def fitted(
     runs: Together,
     point: Point,
-    kind: ReferenceKind,
     names: Sequence[str],
     knobs: Sequence[Knob],
     given: Robot,
     *,
     rounds: int = 2,
-    sigma: tuple[float | None, float | None] = (None, None),
 ) -> Fitted:
     """Fit a model, calibration and all, and say which multipliers it needs."""
     every = (*CALIBRATION, *knobs, *point.model.nuisance_knobs)
     result = fit_model(
         runs,
         point,
-        kind,
         every,
         find_jumps=False,
         rounds=rounds,
-        sigma_xy=sigma[0],
-        sigma_yaw=sigma[1],
     )
-    design = stacked(runs, result.point, kind, [*CALIBRATION, *own_of(every), *shared_of(knobs)])
+    design = stacked(runs, result.point, [*CALIBRATION, *own_of(every), *shared_of(knobs)])
     ways = determined(design, result.robot)
     price, scatter = price_of_one(runs), scatter_of(runs, design)
     rises = calibration_rises(design, result.robot, given, ways.held)

@@ -11,7 +11,6 @@ from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
 from werrimbi_odom.inference.chances import chi2_above, in_any_of
 from werrimbi_odom.inference.comparison.another_drive import of_another_drive
@@ -81,7 +80,6 @@ class Diagnosis:
     final: Fitted
     """The model with everything found."""
     runs: Together
-    kind: ReferenceKind
     train: Sides
     """Position error with the robot as given, and with everything found [m]."""
     holdout: Sides
@@ -129,7 +127,6 @@ def told(
     beyond: Dependence | None,
     remaining: tuple[Dependence, ...],
     laid: Together,
-    kind: ReferenceKind,
     instead: tuple[Instead, ...],
 ) -> Diagnosis:
     """Everything put together."""
@@ -150,7 +147,7 @@ def told(
         rivals = (mistakes[0], *twins) if twins else ()
     elif found:
         rivals = rivals_of(found[0], rounds, final, instead)
-        torn = torn_by_halves(found[0], rounds, final, laid, kind)
+        torn = torn_by_halves(found[0], rounds, final, laid)
         others = (*torn, *own_scale_instead(found[0], final, given, laid))
         rivals = tuple(dict.fromkeys((*(rivals or (found[0],)), *others))) if others else rivals
     verdict: Verdict
@@ -185,7 +182,6 @@ def told(
         rounds,
         final,
         laid,
-        kind,
         Sides(start.train, last.train, start.unit),
         start.to(last),
         Sides(start.holdout_median, last.holdout_median, start.unit),

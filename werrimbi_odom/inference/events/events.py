@@ -128,7 +128,7 @@ def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Events:
     spans: dict[Path, float] = {}
     for side in sides:
         runs = looked_at(side.runs)
-        steps = steps_of(runs, side.point, kind)
+        steps = steps_of(runs, side.point)
         found = [(own, event) for own in _groups(steps) if (event := _event(steps, own, side))]
         events += [event for _, event in found]
         legs.append(np.array([steps.found[own[0]].leg for own, _ in found], dtype=np.intp))

@@ -18,7 +18,6 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above, chi2_median
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.filtering import Shocks
@@ -105,7 +104,7 @@ class Steps:
         return np.asarray(self.told.shown(change).reshape(self.white.size, 3))
 
 
-def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
+def steps_of(runs: Together, point: Point) -> Steps:
     """Find the steps that a model, with its noise, does not explain.
 
     Parameters
@@ -120,7 +119,7 @@ def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
         runs,
         prediction,
         point.variances,
-        kind,
+        point.options.reference_kind,
         start_yaws=model.start_yaws,
         stretch=STRETCH,
     )
@@ -133,7 +132,7 @@ def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
     of_shape: dict[Shape, Floats] = {"robot": axes, "spike": measured, "reference": measured}
     shapes: tuple[Shape, ...] = ("robot",)
     if told.ways is not None and not runs.headings_alone:
-        shapes += ("reference",) if kind == "local_map" else ("spike",)
+        shapes += ("reference",) if point.options.reference_kind == "local_map" else ("spike",)
     tests = len(shapes) * int(told.known.any(axis=-1).sum())
     steps: list[Step] = []
     chances: list[float] = []

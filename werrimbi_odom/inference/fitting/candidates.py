@@ -18,7 +18,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.directions import CALIBRATED as CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import STEP, Knob, Model, knobs_of
@@ -161,7 +160,6 @@ class Signature(NamedTuple):
 def signatures(
     runs: Together,
     point: Point,
-    kind: ReferenceKind,
     knobs: Sequence[Knob],
     tried: Sequence[Candidate],
 ) -> tuple[Floats, Iterator[Signature]]:
@@ -183,8 +181,8 @@ def signatures(
     if not columns:
         return np.zeros(0), iter(())
     change = np.stack(columns, axis=-1)
-    marks = unexpected(runs, point, kind, prediction).marks(change)[..., :-1]
-    frame, rest = unexplained(runs, point, kind, knobs, prediction)
+    marks = unexpected(runs, point, prediction).marks(change)[..., :-1]
+    frame, rest = unexplained(runs, point, knobs, prediction)
     owned = np.array(owners)
 
     def each() -> Iterator[Signature]:
@@ -199,10 +197,10 @@ def signatures(
 
 
 def unexplained(
-    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob], prediction: Prediction
+    runs: Together, point: Point, knobs: Sequence[Knob], prediction: Prediction
 ) -> tuple[Nuisance, Floats]:
     """What `knobs` can turn, and the innovations (n,) clear of it."""
-    white, basis = stacked(runs, point, kind, knobs, prediction).flat()
+    white, basis = stacked(runs, point, knobs, prediction).flat()
     frame = nuisance(basis)
     return frame, frame.residual(white)
 
@@ -216,12 +214,11 @@ def of_each_run(runs: Together, marks: Floats) -> Floats:
 def scores(
     runs: Together,
     point: Point,
-    kind: ReferenceKind,
     knobs: Sequence[Knob],
     tried: Sequence[Candidate],
 ) -> tuple[Score, ...]:
     """Score of each candidate beside what `knobs` can turn; those without any effect left out."""
-    rest, found = signatures(runs, point, kind, knobs, tried)
+    rest, found = signatures(runs, point, knobs, tried)
     results = []
     for candidate, flat, free in found:
         test = score_test(flat, free, rest)

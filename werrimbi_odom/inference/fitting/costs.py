@@ -7,7 +7,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
 from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all
@@ -22,7 +21,6 @@ class Costs:
 
     runs: Sequence[MatchedRun] | Together
     point: Point
-    kind: ReferenceKind
 
     def prediction(self) -> Prediction:
         """Of all runs."""
@@ -36,7 +34,7 @@ class Costs:
             laid_out(self.runs),
             prediction,
             sets,
-            self.kind,
+            self.point.options.reference_kind,
             excluded=self.point.skip,
             start_yaws=model.start_yaws,
         )

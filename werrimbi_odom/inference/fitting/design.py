@@ -11,7 +11,7 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.fitting.knobs import (
     HEADING_AT_START,
     MULTIPLIERS,
@@ -33,6 +33,8 @@ class Point:
     model: Model
     variances: Variances
     excluded: tuple[NDArray[np.bool_], ...]
+    options: EvaluationOptions
+    """What is known of the reference."""
 
     @property
     def skip(self) -> NDArray[np.bool_]:
@@ -59,19 +61,18 @@ class Design:
 def unexpected(
     runs: Together,
     point: Point,
-    kind: ReferenceKind,
     prediction: Prediction | None = None,
 ) -> Innovations:
     """Innovations of all runs; the latest are remembered with them."""
     seen = prediction or predict_all(point.model, runs)
     return runs.latest(
-        (point, kind, seen),
+        (point, seen),
         lambda: innovations(
             point.model.robot,
             runs,
             seen,
             point.variances,
-            kind,
+            point.options.reference_kind,
             excluded=point.skip,
             start_yaws=point.model.start_yaws,
         ),
@@ -101,13 +102,12 @@ def _slope(runs: Together, model: Model, knob: Knob) -> Floats:
 def stacked(
     runs: Together,
     point: Point,
-    kind: ReferenceKind,
     knobs: Sequence[Knob],
     prediction: Prediction | None = None,
 ) -> Design:
     """The design for knobs at a point; start headings that were not measured are among them."""
     local = [knob for knob in knobs if knob.name != START_YAW]
-    found = unexpected(runs, point, kind, prediction)
+    found = unexpected(runs, point, prediction)
     marks = found.marks(slopes_of(runs, point.model, local))
     return spread_out(runs, point.model, found.whitened(), marks, local)
 

@@ -10,7 +10,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import NORMAL_95, student_quantile
 from werrimbi_odom.inference.fitting.design import Design, Point, slopes_of, spread_out, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
@@ -28,7 +27,6 @@ class Precision:
 
     runs: Together
     point: Point
-    kind: ReferenceKind
     local: tuple[Knob, ...]
     """Columns of `slopes`."""
     slopes: Floats
@@ -40,17 +38,16 @@ class Precision:
         cls,
         runs: Together,
         point: Point,
-        kind: ReferenceKind,
         local: Sequence[Knob],
         moves: Floats,
     ) -> Precision:
         """Of a fit that ended at a point; start headings are no local knobs."""
         knobs = tuple(local)
-        return cls(runs, point, kind, knobs, slopes_of(runs, point.model, knobs), moves)
+        return cls(runs, point, knobs, slopes_of(runs, point.model, knobs), moves)
 
     def _design(self, variances: Variances) -> Design:
         point = replace(self.point, variances=variances)
-        found = unexpected(self.runs, point, self.kind)
+        found = unexpected(self.runs, point)
         marks = found.marks(self.slopes)
         return spread_out(self.runs, point.model, found.whitened(), marks, self.local)
 

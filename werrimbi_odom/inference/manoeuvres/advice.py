@@ -44,8 +44,8 @@ def told_of(given: Recordings, show: Show = silent) -> Told:
         given.runs,
         given.robot,
         effects,
+        given.evaluation,
         holdout=given.holdout,
-        **given.judging,
         show=show,
     )
     show(0.97, "the next step")

@@ -86,14 +86,14 @@ def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
     first = _as_fitted(rivals[0], this, diagnosis)
     looked_at = _once([*rivals, *(Candidate(find(name), {}) for name in CALIBRATED)])
     point, knobs = this.before.point, this.before.knobs
-    before = sensitivities_of(Experiment(diagnosis.runs, point, diagnosis.kind), looked_at, knobs)
+    before = sensitivities_of(Experiment(diagnosis.runs, point), looked_at, knobs)
     target = trace_at(before, first)
     sizes = {item.name: best_alias(before, target, item) for item in rivals[1:]}
     pace = pace_of(diagnosis.runs, point.model.robot)
     positions = measured_in(diagnosis.runs)[0]
     found = []
     for ideal in MANOEUVRES:
-        drives, minutes = imagined(ideal, diagnosis.runs, point, diagnosis.kind, pace)
+        drives, minutes = imagined(ideal, diagnosis.runs, point, pace)
         ahead = sensitivities_of(drives, looked_at, knobs)
         there = trace_at(ahead, first)
         stands = {rivals[0].name: ((before, target), (ahead, there))} | {
