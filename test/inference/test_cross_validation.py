@@ -19,7 +19,7 @@ from werrimbi_odom.inference.diagnosis.cross_validation import (
 )
 from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.fitting.concatenated_runs import Together, together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.robot import Robot
 

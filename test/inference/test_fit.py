@@ -21,11 +21,11 @@ from werrimbi_odom.inference.comparison.legs import (
     statistics,
 )
 from werrimbi_odom.inference.diagnosis.evidence import dependences
+from werrimbi_odom.inference.fitting.concatenated_runs import together
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
 from werrimbi_odom.inference.fitting.noise import NOISES, noise_estimates
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.robot import Robot
 

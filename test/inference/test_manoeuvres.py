@@ -16,9 +16,9 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.fitting.candidates import Candidate
+from werrimbi_odom.inference.fitting.concatenated_runs import together
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.prediction import legs_shown
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, Pace, ideal_run
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre

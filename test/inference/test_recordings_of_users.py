@@ -23,8 +23,8 @@ from werrimbi_odom.inference.diagnosis.diagnosis import SURE, diagnose
 from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence
 from werrimbi_odom.inference.diagnosis.values import values_of
 from werrimbi_odom.inference.diagnosis.variables import Variable, curve_knots, variables_of
+from werrimbi_odom.inference.fitting.concatenated_runs import together
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.rules import DRIFT_LEGS
 from werrimbi_odom.inference.set_up.search import look_for_mistakes

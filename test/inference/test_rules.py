@@ -66,7 +66,7 @@ ELSEWHERE = {
     },
     "diagnosis/cross_validation.py": {"_RANK": "a rank"},
     "diagnosis/evidence.py": {"BATCH": "size of a block", "_BLOCK": "size of a block"},
-    "comparison/suspect.py": {"_PAIRED": "time that it takes"},
+    "comparison/reference_checks.py": {"_PAIRED": "time that it takes"},
     "diagnosis/response.py": {
         "PARTS": "of a figure",
         "_UNTOLD": "of a figure: which error bars are too long to draw",
@@ -89,7 +89,7 @@ ELSEWHERE = {
         "_LOWEST": "where the search of a variance ends",
     },
     "fitting/prediction.py": {"_BLOCK": "size of a block"},
-    "fitting/together.py": {
+    "fitting/concatenated_runs.py": {
         "MODELS": "size of a cache",
         "DELAYS": "size of a cache",
         "DRIVES": "size of a cache",

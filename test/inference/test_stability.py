@@ -13,7 +13,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
 from werrimbi_odom.inference.diagnosis.stability import halves, rivals_in_halves
-from werrimbi_odom.inference.fitting.together import together
+from werrimbi_odom.inference.fitting.concatenated_runs import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.robot import Robot
 

@@ -15,9 +15,9 @@ import numpy as np
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.fitting.concatenated_runs import together
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, knobs_of
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 
 TRUE = WhiteNoiseRobot(left_noise=2e-4, right_noise=2e-4)

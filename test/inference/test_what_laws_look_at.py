@@ -20,9 +20,9 @@ from test.model.test_effects_live_and_recorded import assert_alike, drive, estim
 from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.effects.shapes import mean_sin, share_inside
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.fitting.concatenated_runs import together
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.effect import Effect, Parameter, body_effect, wheel_effect
 from werrimbi_odom.model.odometer import Odometer

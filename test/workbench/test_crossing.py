@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from werrimbi_odom.effects.collection import all_effects
-from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.workbench.work import packed, unpacked
 

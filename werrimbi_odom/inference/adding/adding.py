@@ -19,12 +19,12 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, Side
 from werrimbi_odom.inference.adding.fits import fits_without_jumps
-from werrimbi_odom.inference.adding.known import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.start import (
     Drives,
     drives_of,
     with_set_up,
 )
+from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.values import (
     parameters_of,
     std_of,
@@ -38,10 +38,11 @@ from werrimbi_odom.inference.comparison.prepared import Prepared
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import Misfit, misfit_of_found
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
-from werrimbi_odom.inference.diagnosis.pairs import Sides, sides_of
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, sizes_needed, with_sizes
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.concatenated_runs import together
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     MULTIPLIERS,
@@ -49,7 +50,6 @@ from werrimbi_odom.inference.fitting.knobs import (
     Model,
 )
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, of_no_wheel, with_noise
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.rules import VERY_SURE
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect

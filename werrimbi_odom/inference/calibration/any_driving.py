@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
+from werrimbi_odom.inference.fitting.concatenated_runs import together
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, MULTIPLIERS, START_YAW
@@ -24,7 +25,6 @@ from werrimbi_odom.inference.fitting.noise import (
 )
 from werrimbi_odom.inference.fitting.precision import Precision
 from werrimbi_odom.inference.fitting.prediction import predict
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.rules import STRANGE_NOISE, SURE
 from werrimbi_odom.model.pose import Floats

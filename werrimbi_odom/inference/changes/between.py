@@ -3,8 +3,8 @@
 """Changes between the drives of one diagnosis: beside everything that it found, and no effect.
 
 A change is told if the drives need it (`search`), if the parts of the drives before it agree with
-each other and those after it do (`lasting`), and if neither another effect nor a dependence on a
-measured variable explains as much. Held-out drives have no part in it.
+each other and those after it do (`homogeneity`), and if neither another effect nor a dependence on
+a measured variable explains as much. Held-out drives have no part in it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from werrimbi_odom.inference.changes.search import Segmented, Step, segmented
 from werrimbi_odom.inference.changes.shapes import Kind
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.lasting import lasting_columns
+from werrimbi_odom.inference.diagnosis.homogeneity import lasting_columns
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import (
     Candidate,
@@ -38,9 +38,9 @@ from werrimbi_odom.inference.fitting.candidates import (
     scores,
     signatures,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.design import Design, Point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, STEP, Knob
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import DATED, MOST_ALONE, RIVAL, SURE
 from werrimbi_odom.model.effect import Effect

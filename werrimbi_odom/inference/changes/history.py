@@ -31,9 +31,9 @@ from werrimbi_odom.inference.changes.numbers import MOUNT, Group, groups_of, num
 from werrimbi_odom.inference.changes.search import Segmented, levels_of, segmented
 from werrimbi_odom.inference.changes.shapes import Kind, rows_of
 from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.fitting.concatenated_runs import together
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import (

@@ -22,8 +22,8 @@ from werrimbi_odom.inference.comparison.legs import (
     statistics,
 )
 from werrimbi_odom.inference.comparison.prepared import Prepared, prepare
+from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.comparison.reference_noise import Residual
-from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.comparison.systematic import (
     NoiseFactor,
     Systematic,

@@ -28,10 +28,10 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     Residual,
     residuals_of,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.knobs import YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.own_values import known_at_home
 from werrimbi_odom.inference.fitting.prediction import legs_shown
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import (
     DRIFT_LEGS,
     FAR_ABOVE_NOISE,

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.local_map import errors_on_map
 from werrimbi_odom.inference.comparison.position_filter import position_errors
+from werrimbi_odom.inference.fitting.concatenated_runs import Together, together
 from werrimbi_odom.inference.fitting.joined_legs import predict_joined
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.likelihood import (
@@ -22,7 +23,6 @@ from werrimbi_odom.inference.fitting.likelihood import (
     wheel_part,
 )
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
-from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of

@@ -17,8 +17,8 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     reference_noise,
     stamp_noise,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW, TYPICAL_MATCH
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

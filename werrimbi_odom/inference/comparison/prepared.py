@@ -25,8 +25,8 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     measured_alike,
     residuals_of,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Together, together
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import (
     Record,
     cut_finely,

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.rules import FOLD_PARTS, FOLDS, USELESS_NUMBER
 
 _RANK = 1e-6

@@ -24,8 +24,8 @@ from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
+from werrimbi_odom.inference.diagnosis.homogeneity import lasting, lasting_effect
 from werrimbi_odom.inference.diagnosis.in_place_of_held import rivals_of_held
-from werrimbi_odom.inference.diagnosis.lasting import lasting, lasting_effect
 from werrimbi_odom.inference.diagnosis.search import (
     Instead,
     Round,
@@ -40,8 +40,8 @@ from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict
 from werrimbi_odom.inference.events.events import Events, Side, events_among, without
 from werrimbi_odom.inference.events.noise import noise_of_most
 from werrimbi_odom.inference.fitting.candidates import Score
+from werrimbi_odom.inference.fitting.concatenated_runs import Together, together
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
-from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
 from werrimbi_odom.inference.rules import (
     CELLS_ASKED,

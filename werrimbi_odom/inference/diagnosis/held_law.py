@@ -15,7 +15,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.lasting import lasting, pattern_of
+from werrimbi_odom.inference.diagnosis.homogeneity import lasting, pattern_of
 from werrimbi_odom.inference.diagnosis.search import Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted, rise_without
 from werrimbi_odom.inference.diagnosis.support import Support, support_of
@@ -26,10 +26,10 @@ from werrimbi_odom.inference.fitting.candidates import (
     signatures,
     unexplained,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import LEFT_ASKED, LITTLE_OF_A_LAW, REST_EXPLAINED, SURE
 from werrimbi_odom.model.effect import AppliedEffect

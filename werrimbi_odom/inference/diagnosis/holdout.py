@@ -14,13 +14,19 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
 from werrimbi_odom.inference.comparison.prepared import Prepared, finely, judged_by, prepare
-from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise, recorded_otherwise
-from werrimbi_odom.inference.diagnosis.pairs import Sides, Unit, error_of, median_of, sides_of
+from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise, recorded_otherwise
+from werrimbi_odom.inference.diagnosis.paired_comparison import (
+    Sides,
+    Unit,
+    error_of,
+    median_of,
+    sides_of,
+)
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.own_values import at_home, known_at_home
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes

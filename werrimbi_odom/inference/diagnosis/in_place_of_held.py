@@ -21,8 +21,8 @@ from werrimbi_odom.inference.fitting.candidates import (
     put_in,
     scores,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import INSTEAD_FITTED, RIVAL, WORTH_A_FIT
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot

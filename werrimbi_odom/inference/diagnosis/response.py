@@ -20,10 +20,10 @@ from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence, legs_
 from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, unexplained
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, Model
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import SILENT
 from werrimbi_odom.model.pose import Floats
 

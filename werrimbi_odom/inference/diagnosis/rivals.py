@@ -12,7 +12,7 @@ from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.stability import rivals_in_halves
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.rules import RIVAL
 from werrimbi_odom.inference.set_up.search import SetUpFinding
 from werrimbi_odom.model.robot import Robot

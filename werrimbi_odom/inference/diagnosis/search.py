@@ -20,6 +20,7 @@ from werrimbi_odom.inference.fitting.candidates import (
     put_in,
     scores,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
@@ -28,7 +29,6 @@ from werrimbi_odom.inference.fitting.knobs import (
     changed,
 )
 from werrimbi_odom.inference.fitting.own_values import with_own_values
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import (
     EDGE,
     EDGE_LEGS,

@@ -20,6 +20,7 @@ import numpy as np
 
 from werrimbi_odom.inference.calibration_sizes import calibration_deviation
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
 from werrimbi_odom.inference.fitting.directions import SIZE, Directions, determined, every_direction
 from werrimbi_odom.inference.fitting.fit import fit_model
@@ -31,7 +32,6 @@ from werrimbi_odom.inference.fitting.knobs import (
     own_of,
     shared_of,
 )
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import (
     CALIBRATION_KNOWN,

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.design import Design, stacked
 from werrimbi_odom.inference.fitting.fit import moved
@@ -26,7 +27,6 @@ from werrimbi_odom.inference.fitting.knobs import (
     own_of,
     shared_of,
 )
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance
 from werrimbi_odom.inference.rules import RIVAL, STILL
 from werrimbi_odom.model.pose import Floats

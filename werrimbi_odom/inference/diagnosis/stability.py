@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.diagnosis.search import Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.design import unexpected
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import HALF_PARTS, RIVAL
 from werrimbi_odom.model.pose import Floats
 

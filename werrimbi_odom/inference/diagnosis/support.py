@@ -11,7 +11,7 @@ import numpy as np
 
 from werrimbi_odom.inference.diagnosis.variables import ON_THE_FLOOR
 from werrimbi_odom.inference.fitting.candidates import Candidate
-from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.effects_over_run import watched

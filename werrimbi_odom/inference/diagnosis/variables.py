@@ -10,9 +10,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.prediction import anchors, headings_of, path_of, right_handed
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import (
     CURVE_KNOTS,
     FLOOR_CELL,

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.chances import binomial_above, in_any_of
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.prediction import Prediction
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import (
     ALIKE_SHARE,
     AT_REVERSAL,

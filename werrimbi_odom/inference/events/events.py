@@ -14,9 +14,9 @@ import numpy as np
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.events.alike import Alike, alike
 from werrimbi_odom.inference.events.steps import Steps, steps_of
+from werrimbi_odom.inference.fitting.concatenated_runs import Together, together
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun, divided
 from werrimbi_odom.inference.rules import (
     EDGE,

@@ -19,11 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.chances import chi2_above, chi2_median
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.filtering import Shocks
 from werrimbi_odom.inference.fitting.likelihood import Innovations, innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import EVENT_SLOW, MOST_EVENTS, SURE_OF_EVENT
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats

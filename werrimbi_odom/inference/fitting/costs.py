@@ -7,10 +7,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from werrimbi_odom.inference.fitting.concatenated_runs import Together, laid_out
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
 from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all
-from werrimbi_odom.inference.fitting.together import Together, laid_out
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.pose import Floats
 

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.knobs import (
     HEADING_AT_START,
     MULTIPLIERS,
@@ -22,7 +23,6 @@ from werrimbi_odom.inference.fitting.knobs import (
 )
 from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
 from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.pose import Floats
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.inference.fitting.concatenated_runs import Together, laid_out
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.directions import Directions, determined, put_back
@@ -30,7 +31,6 @@ from werrimbi_odom.inference.fitting.knobs import (
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import held_variances, likeliest, prior_cost
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict, predict_all
-from werrimbi_odom.inference.fitting.together import Together, laid_out
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.linear import solved
 from werrimbi_odom.inference.rules import (

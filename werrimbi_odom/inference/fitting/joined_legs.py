@@ -10,9 +10,9 @@ from __future__ import annotations
 
 import numpy as np
 
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model
 from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.driving import acts
 from werrimbi_odom.model.effect import view_of, wiring_of
 from werrimbi_odom.model.pose import Floats

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.filtering import (
     STRETCH,
     UNMEASURED,
@@ -26,7 +27,6 @@ from werrimbi_odom.inference.fitting.filtering import (
     filtered,
 )
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.fitting.wandering import LaidHeading, Wander, filtered_wandering
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.rules import EVENT_STEP

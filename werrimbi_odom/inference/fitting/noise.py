@@ -16,10 +16,10 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.chances import NORMAL_95, upper_part
+from werrimbi_odom.inference.fitting.concatenated_runs import laid_out
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.prediction import Prediction
-from werrimbi_odom.inference.fitting.together import laid_out
 from werrimbi_odom.inference.rules import (
     GYRO_WALK_SPREAD,
     MATCH_SPREAD,

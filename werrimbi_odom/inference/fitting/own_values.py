@@ -13,6 +13,7 @@ from dataclasses import replace
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate, put_in, scores
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import (
@@ -23,7 +24,6 @@ from werrimbi_odom.inference.fitting.knobs import (
     changed,
     knobs_of,
 )
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.effect import AppliedEffect
 
 

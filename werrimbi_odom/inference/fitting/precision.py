@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.inference.chances import NORMAL_95, student_quantile
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.design import Design, Point, slopes_of, spread_out, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, with_noises
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import covariance_of
 from werrimbi_odom.inference.rules import LEAST_KNOWN
 from werrimbi_odom.model.pose import Floats

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
 from werrimbi_odom.inference.rules import (
     FASTEST_PACE,

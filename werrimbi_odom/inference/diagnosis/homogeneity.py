@@ -5,9 +5,9 @@
 Scores and the evidence map take innovations for independent. Those of a reference that wanders (a
 camera, a map that is matched) are not, and go with something by chance much farther. So runs are
 cut into parts, and what a pattern explains in all of them is held against how much more it would
-explain if each part had coefficients of its own: Fisher's F. Where something is really there the
-parts agree, to within the noise. And what one drive alone shows, where the others could as well, is
-something that happened on that drive.
+explain if each part had coefficients of its own: a test of homogeneity, by Fisher's F. Where
+something is really there the parts agree, to within the noise. And what one drive alone shows,
+where the others could as well, is something that happened on that drive.
 """
 
 from __future__ import annotations
@@ -28,10 +28,10 @@ from werrimbi_odom.inference.fitting.candidates import (
     signatures,
     unexplained,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Together
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import (
     DRIVES_TO_LEAVE_ONE,
     LASTING_FEWEST,

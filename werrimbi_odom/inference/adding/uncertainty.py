@@ -13,7 +13,7 @@ import numpy as np
 from werrimbi_odom.inference.adding.start import Drives
 from werrimbi_odom.inference.calibration_sizes import with_sizes_in_multipliers
 from werrimbi_odom.inference.chances import upper_part
-from werrimbi_odom.inference.diagnosis.choices import Law, spread_over_choices
+from werrimbi_odom.inference.diagnosis.post_selection import Law, spread_over_choices
 from werrimbi_odom.inference.diagnosis.selection import Fitted, grain_of
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, choices
 from werrimbi_odom.inference.fitting.costs import Costs

@@ -16,10 +16,10 @@ from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.evidence import dependences
-from werrimbi_odom.inference.diagnosis.lasting import _chance, lasting
+from werrimbi_odom.inference.diagnosis.homogeneity import _chance, lasting
 from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.fitting.concatenated_runs import together
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
