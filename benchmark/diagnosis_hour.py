@@ -32,7 +32,7 @@ from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.fitting.concatenated_runs import together
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.legs.cutting import match_finely
@@ -104,7 +104,7 @@ def main() -> None:
 
 def legs_predicted(robot: Robot, runs: list[Run]) -> str:
     """Seconds for one prediction of all legs, by the package and by plain Python."""
-    laid = together(match_finely(runs, robot, 1.0))
+    laid = concatenated(match_finely(runs, robot, 1.0))
     model = Model(robot, tuple({} for _ in runs))
     begun = time.perf_counter()
     ours = predict_all(model, laid)

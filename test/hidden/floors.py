@@ -24,7 +24,7 @@ from werrimbi_odom.inference.fitting.candidates import (
     put_in,
     scores,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import Together, together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.effect import Effect
@@ -61,7 +61,7 @@ class Floor:
         self.given = robot
         self.options = EvaluationOptions(reference_kind=kind, leg=LEG, limits=limits)
         self.judge: Judge = judge_of(runs, holdout, robot, self.options)
-        self.laid: Together = together(match_finely(runs, robot, LEG, limits))
+        self.laid: Concatenated = concatenated(match_finely(runs, robot, LEG, limits))
 
     def as_given(self) -> float:
         """Held-out error of the robot file [m]."""

@@ -22,7 +22,7 @@ from werrimbi_odom.inference.adding.start import Drives
 from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.values import parameters_of, std_of
 from werrimbi_odom.inference.diagnosis.sizes import sizes_needed, with_sizes
-from werrimbi_odom.inference.fitting.concatenated_runs import together
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, changed
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.effect import Effect, view_of
@@ -121,7 +121,7 @@ def stated(case: Case) -> dict[str, tuple[float, float]]:
 
     All of `add` but the search for set-up mistakes before it, and the judgement after.
     """
-    runs = together(match_finely(case.runs, GIVEN, leg=1.0))
+    runs = concatenated(match_finely(case.runs, GIVEN, leg=1.0))
     nothing = tuple(np.zeros(run.legs, dtype=np.bool_) for run in runs.runs)
     drives = Drives(runs, nothing, EvaluationOptions())
     fit = fits_of([case.effect], drives, GIVEN, GIVEN, (), lambda share, words: None).all

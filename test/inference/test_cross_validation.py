@@ -19,18 +19,18 @@ from werrimbi_odom.inference.diagnosis.cross_validation import (
 )
 from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.fitting.concatenated_runs import Together, together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.robot import Robot
 
 GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 
 
-def laid_out(truth: Robot, seeds: range) -> Together:
-    return together(match_finely(runs_of(truth, seeds, seconds=60), GIVEN, 1.0))
+def laid_out(truth: Robot, seeds: range) -> Concatenated:
+    return concatenated(match_finely(runs_of(truth, seeds, seconds=60), GIVEN, 1.0))
 
 
-def with_effect(runs: Together, name: str) -> tuple[Fitted, Fitted]:
+def with_effect(runs: Concatenated, name: str) -> tuple[Fitted, Fitted]:
     before = first_fit(runs, GIVEN)
     (after,) = search_round(runs, before, [find(name)], GIVEN).tried
     return before, after

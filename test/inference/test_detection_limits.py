@@ -16,7 +16,7 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.chances import chi2_above, noncentrality
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
-from werrimbi_odom.inference.fitting.concatenated_runs import together
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.manoeuvres.detection_limits import information_limits
@@ -44,7 +44,7 @@ def limits(
 
 
 def drives_of(runs: list[Run]) -> Experiment:
-    laid = together(match_finely(runs, ROBOT, 1.0))
+    laid = concatenated(match_finely(runs, ROBOT, 1.0))
     return Experiment(laid, start_point(laid, ROBOT, NOISE))
 
 

@@ -21,7 +21,7 @@ from werrimbi_odom.inference.comparison.legs import (
     statistics,
 )
 from werrimbi_odom.inference.diagnosis.evidence import dependences
-from werrimbi_odom.inference.fitting.concatenated_runs import together
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
@@ -171,7 +171,7 @@ def test_an_incremental_reference_calibrates_too() -> None:
 def test_under_a_true_model_nothing_depends_on_anything() -> None:
     matched = [match(run, NOMINAL, 0.25) for run in runs_of(2)]
     fit = fit_model(matched, start_point(matched, NOMINAL))
-    assert dependences(together(matched), fit.point, CALIBRATION)[0].p_value > 0.01
+    assert dependences(concatenated(matched), fit.point, CALIBRATION)[0].p_value > 0.01
 
 
 def test_a_missing_effect_shows_as_a_dependence() -> None:
@@ -182,7 +182,7 @@ def test_a_missing_effect_shows_as_a_dependence() -> None:
         run.reference.y[:] += 0.03 * np.cos(run.reference.yaw)
     matched = [match(run, NOMINAL, 0.25) for run in runs]
     fit = fit_model(matched, start_point(matched, NOMINAL))
-    strongest = dependences(together(matched), fit.point, CALIBRATION)[0]
+    strongest = dependences(concatenated(matched), fit.point, CALIBRATION)[0]
     assert strongest.p_value < 1e-12
     assert (strongest.channel, strongest.name) == ("along", "turn")
 

@@ -16,7 +16,7 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.prepared import prepare
-from werrimbi_odom.inference.fitting.concatenated_runs import together
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.likelihood import innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
@@ -106,7 +106,7 @@ def test_a_gap_is_not_counted_and_what_follows_is_white(
 ) -> None:
     if kind == "incremental" and which == "positions":
         pytest.skip("positions without headings have no increments")
-    laid = together(match_finely([silent(parts(run, which)) for run in runs], ROBOT, 1.0))
+    laid = concatenated(match_finely([silent(parts(run, which)) for run in runs], ROBOT, 1.0))
     assert laid.gap.sum() == 2 * len(runs)
     truth = replace(ROBOT, left_wheel_noise=1e-5, right_wheel_noise=1e-5)
     point = start_point(
@@ -142,7 +142,7 @@ def test_a_wrong_way_through_a_gap_does_not_move_a_fit(runs: list[Run]) -> None:
         )
     fits = []
     for some in ([silent(run) for run in runs], lost):
-        laid = together(match_finely(some, ROBOT, 1.0))
+        laid = concatenated(match_finely(some, ROBOT, 1.0))
         fits.append(
             fit_model(
                 laid,

@@ -16,7 +16,7 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.fitting.candidates import Candidate
-from werrimbi_odom.inference.fitting.concatenated_runs import together
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.prediction import legs_shown
 from werrimbi_odom.inference.legs.cutting import match
@@ -40,7 +40,7 @@ BY_NAME = {ideal.name: ideal for ideal in MANOEUVRES}
 
 def driven(ideal: Ideal, robot: Robot = ROBOT, yaw: bool = True) -> Experiment:
     run = ideal_run(ideal, robot, PACE, ticks=0.02, poses=0.05, measures=(True, yaw))
-    runs = together([match(run, robot, 0.25, None, 0.4)])
+    runs = concatenated([match(run, robot, 0.25, None, 0.4)])
     return Experiment(runs, start_point(runs, robot))
 
 

@@ -23,7 +23,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import SURE, diagnose
 from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence
 from werrimbi_odom.inference.diagnosis.values import values_of
 from werrimbi_odom.inference.diagnosis.variables import Variable, curve_knots, variables_of
-from werrimbi_odom.inference.fitting.concatenated_runs import together
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.rules import DRIFT_LEGS
@@ -139,7 +139,7 @@ def test_nothing_goes_with_an_acceleration_that_no_wheel_can_make() -> None:
     stamps = np.sort(run.ticks.time[kept] + random.uniform(0.0, 0.09, kept.size))
     late = Ticks(stamps, run.ticks.left[kept], run.ticks.right[kept])
     for ticks, told in ((run.ticks, True), (late, False)):
-        laid = together(match_finely([replace(run, ticks=ticks)], ROBOT, 1.0))
+        laid = concatenated(match_finely([replace(run, ticks=ticks)], ROBOT, 1.0))
         names = {item.name for item in variables_of(laid, Model(ROBOT, ({},)))}
         assert ("acceleration" in names) == told
         assert "speed" in names

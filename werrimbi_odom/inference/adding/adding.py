@@ -42,7 +42,7 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, sizes_needed, with_sizes
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.concatenated_runs import together
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     MULTIPLIERS,
@@ -271,7 +271,7 @@ def _on_all(
     ]
     laid = tuple(run for part in both for run in part.laid.runs)
     jumped = tuple(legs for part in both for legs in part.jumped)
-    every = replace(drives, laid=together(laid), jumped=jumped)
+    every = replace(drives, laid=concatenated(laid), jumped=jumped)
     home = judge.at_home(fit.point.model)
     own = (*fit.point.model.own, *home.model.own)
     point = replace(fit.point, model=Model(fit.point.model.robot, own), excluded=jumped)

@@ -25,7 +25,7 @@ from werrimbi_odom.inference.fitting.candidates import (
     put_in,
     scores,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import Together, together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, knobs_of
@@ -41,7 +41,7 @@ from werrimbi_odom.model.robot import Robot
 class Drives:
     """The drives of a fit, in short legs, without those on which the reference jumped."""
 
-    laid: Together
+    laid: Concatenated
     jumped: tuple[np.ndarray[tuple[int], np.dtype[np.bool_]], ...]
     options: EvaluationOptions
     """With what the records state of the reference's noise."""
@@ -89,7 +89,7 @@ def drives_of(
         for index, every, jumps in zip(group.index, group.every.runs, group.jumps, strict=True):
             nodes = np.searchsorted(every.measured.time, runs[index].measured.time)
             jumped[index] = jumped_legs(jumps, nodes, options.reference_kind)
-    return Drives(together(runs), tuple(jumped), options)
+    return Drives(concatenated(runs), tuple(jumped), options)
 
 
 def is_of_set_up(effect: Effect, set_up: SetUp) -> bool:

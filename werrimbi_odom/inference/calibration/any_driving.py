@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.fitting.concatenated_runs import together
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, MULTIPLIERS, START_YAW
@@ -94,12 +94,12 @@ def calibrate(
     )
     held = options.sigmas_known
     local = [knob for knob in knobs if knob.name != START_YAW]
-    precision = Precision.of(together(runs), fit.point, local, fit.ways.matrix)
+    precision = Precision.of(concatenated(runs), fit.point, local, fit.ways.matrix)
     noises = noise_estimates(
         Costs(runs, fit.point), fit.point.variances, held, precision.information
     )
     turned = [knob for knob in knobs if knob.per_run or knob in fit.free]
-    found = dependences(together(runs), fit.point, turned)
+    found = dependences(concatenated(runs), fit.point, turned)
     misfit = tuple(item for item in found if item.p_value < SURE)
     strange = _strange(fit, noises)
     names = [knob.name for knob in fit.free]

@@ -38,7 +38,7 @@ from werrimbi_odom.inference.fitting.candidates import (
     scores,
     signatures,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, STEP, Knob
 from werrimbi_odom.inference.linear import nuisance, score_test
@@ -163,7 +163,7 @@ def driven_in_order(starts: Sequence[float]) -> NDArray[np.intp]:
     return np.arange(len(starts))
 
 
-def evidence_of(runs: Together, point: Point, design: Design, scatter: float = 1.0) -> Evidence:
+def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float = 1.0) -> Evidence:
     """The innovations at a point and their derivatives in all numbers.
 
     Parameters
@@ -222,7 +222,7 @@ def _of_several(step: Step, drives: int, kind: ReferenceKind) -> bool:
 
 
 def _lasts(
-    runs: Together,
+    runs: Concatenated,
     evidence: Evidence,
     steps: Sequence[Step],
     step: Step,

@@ -31,7 +31,7 @@ from werrimbi_odom.inference.changes.numbers import MOUNT, Group, groups_of, num
 from werrimbi_odom.inference.changes.search import Segmented, levels_of, segmented
 from werrimbi_odom.inference.changes.shapes import Kind, rows_of
 from werrimbi_odom.inference.diagnosis.search import first_fit
-from werrimbi_odom.inference.fitting.concatenated_runs import together
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
@@ -122,7 +122,7 @@ def drive_told(
     InputError
         When it has no usable reference or no ticks.
     """
-    laid = together(
+    laid = concatenated(
         match_finely([looked_at(run, robot, options.limits)], robot, options.leg, options.limits)
     )
     fit = first_fit(laid, robot, with_stated_noise(options, laid.runs))

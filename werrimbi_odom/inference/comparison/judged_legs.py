@@ -28,7 +28,7 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     Residual,
     residuals_of,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.knobs import YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.own_values import known_at_home
 from werrimbi_odom.inference.fitting.prediction import legs_shown
@@ -147,7 +147,7 @@ def _of_group(group: Group, model: Model) -> Model:
     return Model(model.robot, tuple(model.own[index] for index in group.index))
 
 
-def _with_drifts(model: Model, runs: Together) -> Model:
+def _with_drifts(model: Model, runs: Concatenated) -> Model:
     """The model with the drift of each run's gyro, which is no error of the robot.
 
     That is the slope of the heading errors over time that most legs have (least absolute values: a
@@ -169,7 +169,9 @@ def _with_drifts(model: Model, runs: Together) -> Model:
     return Model(model.robot, tuple(own))
 
 
-def _table(prepared: Prepared, group: Group, runs: Together, errors: LegErrors, leg: float) -> Legs:
+def _table(
+    prepared: Prepared, group: Group, runs: Concatenated, errors: LegErrors, leg: float
+) -> Legs:
     times = [run.measured.time for run in runs.runs]
     begin = np.concatenate([time[:-1] for time in times])
     end = np.concatenate([time[1:] for time in times])
@@ -189,7 +191,9 @@ def _table(prepared: Prepared, group: Group, runs: Together, errors: LegErrors, 
     return legs.chosen(~runs.gap) if runs.gap.any() else legs
 
 
-def _variables(runs: Together, errors: LegErrors, begin: Floats, end: Floats) -> dict[str, Floats]:
+def _variables(
+    runs: Concatenated, errors: LegErrors, begin: Floats, end: Floats
+) -> dict[str, Floats]:
     first = runs.legs[runs.run_of_leg]
     driven = np.concatenate([[0.0], np.cumsum(errors.length)])
     middle = 0.5 * (begin + end)

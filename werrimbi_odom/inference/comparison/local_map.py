@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
-from werrimbi_odom.inference.fitting.concatenated_runs import Together, together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.likelihood import Variances, errors_between, innovations
@@ -52,7 +52,7 @@ def wandering_of(
 
     So a wrong base or radius does not pass for a walk of the reference.
     """
-    laid = together([cut_finely(record, robot, options.leg) for record in records])
+    laid = concatenated([cut_finely(record, robot, options.leg) for record in records])
     point = start_point(laid, robot, options)
     if laid.data < NOISE_NUMBERS:
         return Wandering(point.variances, False)
@@ -68,7 +68,7 @@ def wandering_of(
 
 def errors_on_map(
     model: Model,
-    runs: Together,
+    runs: Concatenated,
     prediction: Prediction,
     variances: Variances,
     jumped: NDArray[np.bool_],

@@ -17,7 +17,7 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     reference_noise,
     stamp_noise,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW, TYPICAL_MATCH
 from werrimbi_odom.model.pose import Floats
@@ -66,7 +66,7 @@ class OwnNoise:
 
 def noise_of(
     robot: Robot,
-    every: Together,
+    every: Concatenated,
     residuals: Sequence[Residual],
     measure: Measure,
     options: EvaluationOptions,

@@ -25,7 +25,7 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     measured_alike,
     residuals_of,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import Together, together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.legs.cutting import (
     Record,
@@ -58,7 +58,7 @@ class Group:
 
     index: tuple[int, ...]
     measure: Measure
-    every: Together
+    every: Concatenated
     whole: tuple[bool, ...]
     """Whether all rows of a run's reference are in `every`."""
     jumps: tuple[Floats, ...]
@@ -77,7 +77,7 @@ class Prepared:
     options: EvaluationOptions
     runs: tuple[Run, ...]
     groups: tuple[Group, ...]
-    cuts: Mapping[float, tuple[Together, ...]]
+    cuts: Mapping[float, tuple[Concatenated, ...]]
     """By length, for each group."""
 
     @property
@@ -152,7 +152,7 @@ def prepare(
 
 def _cut_to_lengths(
     groups: Sequence[Group], robot: Robot, leg: float
-) -> dict[float, tuple[Together, ...]]:
+) -> dict[float, tuple[Concatenated, ...]]:
     """Legs of all lengths of which there are enough, joined of the shortest.
 
     A length is as good as another where both have the same legs, for the reference is too rare.
@@ -183,10 +183,10 @@ def _cut_to_lengths(
             np.unique(np.concatenate(ends))
             for ends in zip(*(r[number] for r in rows.values()), strict=True)
         ]
-        parts.append(together([divided(*one) for one in zip(own, every, strict=True)]))
+        parts.append(concatenated([divided(*one) for one in zip(own, every, strict=True)]))
     return {
         length: tuple(
-            together([joined_legs(*one) for one in zip(part.runs, own, strict=True)], part)
+            concatenated([joined_legs(*one) for one in zip(part.runs, own, strict=True)], part)
             for part, own in zip(parts, found, strict=True)
         )
         for length, found in rows.items()
@@ -200,7 +200,7 @@ def _way(record: Record, robot: Robot, leg: float) -> Floats:
     return np.interp(record.measured.time, counters.time, way)
 
 
-def finely(prepared: Prepared) -> Together:
+def finely(prepared: Prepared) -> Concatenated:
     """Cut the runs into the short legs of a fit: what `match_finely` does, from what is there."""
     found = {}
     for group in prepared.groups:
@@ -212,7 +212,7 @@ def finely(prepared: Prepared) -> Together:
                 [found[index]] = match_finely(
                     [run], prepared.robot, prepared.options.leg, prepared.options.limits
                 )
-    return together([found[index] for index in range(len(prepared.runs))])
+    return concatenated([found[index] for index in range(len(prepared.runs))])
 
 
 def _group(
@@ -221,7 +221,7 @@ def _group(
     members: list[tuple[int, Record, bool]],
     options: EvaluationOptions,
 ) -> Group:
-    every = together([every_pose(record) for _, record, _ in members])
+    every = concatenated([every_pose(record) for _, record, _ in members])
     plain = Model(robot, tuple({} for _ in members))
     residuals, _ = residuals_of(plain, every, measure)
     own = noise_of(robot, every, residuals, measure, options)
@@ -239,7 +239,7 @@ def _group(
     )
 
 
-def jumped_in(group: Group, runs: Together, kind: ReferenceKind) -> NDArray[np.bool_]:
+def jumped_in(group: Group, runs: Concatenated, kind: ReferenceKind) -> NDArray[np.bool_]:
     """Legs that a jump of the reference spoils, shape (m,)."""
     both = zip(group.jumps, runs.runs, strict=True)
     return np.concatenate([jumped_legs(jumps, run.rows, kind) for jumps, run in both])

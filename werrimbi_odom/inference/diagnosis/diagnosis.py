@@ -40,7 +40,7 @@ from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict
 from werrimbi_odom.inference.events.events import Events, Side, events_among, without
 from werrimbi_odom.inference.events.noise import noise_of_most
 from werrimbi_odom.inference.fitting.candidates import Score
-from werrimbi_odom.inference.fitting.concatenated_runs import Together, together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
 from werrimbi_odom.inference.rules import (
@@ -133,7 +133,7 @@ def _searched(
     show(0.0, "set-up")
     begun = begin(runs, holdout, robot, options)
     judge, set_up = begun.judge, begun.set_up
-    laid = together(match_finely(judge.fitted_on, set_up.robot, options.leg, options.limits))
+    laid = concatenated(match_finely(judge.fitted_on, set_up.robot, options.leg, options.limits))
     effects = askable(effects, laid, set_up.robot)
     show(0.1, "calibration")
     fit = first_fit(laid, set_up.robot, with_stated_noise(options, laid.runs))
@@ -172,7 +172,7 @@ def _searched(
     return replace(found, misfit=misfit, rivals_of_held=held), judge
 
 
-def _best(this: Round, runs: Together) -> Fitted | None:
+def _best(this: Round, runs: Concatenated) -> Fitted | None:
     """The cheapest model of a round, if chance does not explain it."""
     fit = next((fit for fit in this.tried if not fit.at_bound), None)
     if fit is None:
@@ -186,7 +186,7 @@ def _best(this: Round, runs: Together) -> Fitted | None:
     return fit if lasts else None
 
 
-def _beyond_the_library(this: Round, best: Fitted | None, runs: Together) -> Dependence | None:
+def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) -> Dependence | None:
     """A dependence that explains more than a right law could leave to it: no effect is what it is.
 
     It competes with the best effect as a model of its own, by the same fall of the cost and the
@@ -225,5 +225,5 @@ def _fall(gain: float, data: int) -> float:
     return -data * math.log1p(-min(max(gain / data, 0.0), 0.999))
 
 
-def _support(score: Score, runs: Together, model: Model) -> Support:
+def _support(score: Score, runs: Concatenated, model: Model) -> Support:
     return support_of(score.candidate, runs.drive(model.robot))

@@ -26,7 +26,7 @@ from werrimbi_odom.inference.fitting.candidates import (
     signatures,
     unexplained,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob
 from werrimbi_odom.inference.fitting.prediction import predict_all
@@ -50,7 +50,7 @@ class Misfit:
 
 
 def misfit_of_held_law(
-    this: Round, best: Fitted | None, beyond: Dependence | None, runs: Together
+    this: Round, best: Fitted | None, beyond: Dependence | None, runs: Concatenated
 ) -> Misfit | None:
     """The misfit that a round found in the place of an effect; None where it found one.
 
@@ -83,7 +83,9 @@ def misfit_of_held_law(
     return None
 
 
-def misfit_of_found(fit: Fitted, certain: Sequence[Dependence], runs: Together) -> Misfit | None:
+def misfit_of_found(
+    fit: Fitted, certain: Sequence[Dependence], runs: Concatenated
+) -> Misfit | None:
     """What is left beside everything found, if anything lasts: what explains most for its numbers.
 
     Parameters
@@ -103,7 +105,7 @@ def misfit_of_found(fit: Fitted, certain: Sequence[Dependence], runs: Together) 
     return None
 
 
-def _laws(fit: Fitted, runs: Together) -> Iterator[tuple[AppliedEffect, Support, float]]:
+def _laws(fit: Fitted, runs: Concatenated) -> Iterator[tuple[AppliedEffect, Support, float]]:
     """Laws of a model with their reach, and by how much each lowers the cost."""
     robot = fit.point.model.robot
     drive = runs.drive(fit.point.model.laid_out(runs.steps))
@@ -124,7 +126,7 @@ def _shares(support: Support, cell: Dependence) -> bool:
 
 
 def _gain_beside(
-    runs: Together,
+    runs: Concatenated,
     point: Point,
     knobs: Sequence[Knob],
     score: Score,

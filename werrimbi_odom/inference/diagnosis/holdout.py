@@ -23,7 +23,7 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import (
     sides_of,
 )
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.own_values import at_home, known_at_home
@@ -62,7 +62,7 @@ class Judge:
     kept_back: tuple[Run, ...]
     train: Prepared
     holdout: Prepared
-    fine: Together
+    fine: Concatenated
     """Held-out runs in the short legs of a fit, for what each run has of its own."""
 
     @property

@@ -28,7 +28,7 @@ from werrimbi_odom.inference.fitting.candidates import (
     signatures,
     unexplained,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
@@ -55,7 +55,7 @@ class Lasting(NamedTuple):
     """The one drive that shows it where the others could and do not."""
 
 
-def lasting_effect(runs: Together, point: Point, knobs: Sequence[Knob], score: Score) -> float:
+def lasting_effect(runs: Concatenated, point: Point, knobs: Sequence[Knob], score: Score) -> float:
     """How often chance would score an effect as high, by the disagreement of the parts.
 
     `knobs` are those that it was scored beside.
@@ -68,7 +68,7 @@ def lasting_effect(runs: Together, point: Point, knobs: Sequence[Knob], score: S
 
 
 def lasting(
-    runs: Together,
+    runs: Concatenated,
     point: Point,
     knobs: Sequence[Knob],
     cells: Iterable[Dependence],
@@ -90,7 +90,7 @@ def lasting(
         yield Lasting(cell, p_value, None if alone is None else runs.runs[alone].name)
 
 
-def pattern_of(runs: Together, point: Point, cell: Dependence) -> Floats:
+def pattern_of(runs: Concatenated, point: Point, cell: Dependence) -> Floats:
     """What a dependence of a cell's form does to the whitened innovations, (3 m, k)."""
     path = path_of(point.model, runs)
     sides = zip(
@@ -105,7 +105,9 @@ def pattern_of(runs: Together, point: Point, cell: Dependence) -> Floats:
     return np.asarray(own.reshape(3 * runs.count, -1))
 
 
-def lasting_columns(runs: Together, gain: float, degrees: int, free: Floats, rest: Floats) -> float:
+def lasting_columns(
+    runs: Concatenated, gain: float, degrees: int, free: Floats, rest: Floats
+) -> float:
     """How often chance would explain as much by some columns, by the disagreement of the parts.
 
     Parameters
@@ -118,7 +120,7 @@ def lasting_columns(runs: Together, gain: float, degrees: int, free: Floats, res
     return 0.0 if _too_few(runs) else _chance(gain, degrees, free, rest, _parts(runs))
 
 
-def _too_few(runs: Together) -> bool:
+def _too_few(runs: Concatenated) -> bool:
     """Whether legs are so long, or so few, that each stands for itself."""
     return runs.count < LASTING_LEGS * LASTING_FEWEST * len(runs.runs)
 
@@ -138,7 +140,7 @@ def parts_of(run: NDArray[np.intp]) -> NDArray[np.intp]:
     return np.asarray(each * run + part)
 
 
-def _parts(runs: Together) -> NDArray[np.intp]:
+def _parts(runs: Concatenated) -> NDArray[np.intp]:
     """The part to which each innovation belongs, (3 m,)."""
     return np.repeat(parts_of(runs.run_of_leg), 3)
 

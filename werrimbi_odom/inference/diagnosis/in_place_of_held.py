@@ -21,7 +21,7 @@ from werrimbi_odom.inference.fitting.candidates import (
     put_in,
     scores,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.rules import INSTEAD_FITTED, RIVAL, WORTH_A_FIT
 from werrimbi_odom.model.effect import Effect
@@ -31,7 +31,7 @@ Sigma = tuple[float | None, float | None]
 
 
 def rivals_of_held(
-    runs: Together,
+    runs: Concatenated,
     fit: Fitted,
     effects: Sequence[Effect],
     given: Robot,
@@ -48,7 +48,7 @@ def rivals_of_held(
 
 
 def _rivals(
-    runs: Together,
+    runs: Concatenated,
     fit: Fitted,
     effects: Sequence[Effect],
     given: Robot,

@@ -20,7 +20,7 @@ from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence, legs_
 from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, unexplained
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, Model
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
@@ -54,7 +54,7 @@ def parts_of(left: Floats, right: Floats, *, turns: bool) -> Floats:
 
 
 def response(
-    runs: Together,
+    runs: Concatenated,
     point: Point,
     knobs: Sequence[Knob],
     amount: Amount,

@@ -12,7 +12,7 @@ from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.stability import rivals_in_halves
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.rules import RIVAL
 from werrimbi_odom.inference.set_up.search import SetUpFinding
 from werrimbi_odom.model.robot import Robot
@@ -65,7 +65,9 @@ def _near(name: str, this: Round) -> tuple[str, ...]:
     return tuple(other for other in dict.fromkeys(near) if other != name)
 
 
-def own_scale_instead(name: str, final: Fitted, given: Robot, laid: Together) -> tuple[str, ...]:
+def own_scale_instead(
+    name: str, final: Fitted, given: Robot, laid: Concatenated
+) -> tuple[str, ...]:
     """What of the reference itself does the same as a size of the robot, to headings alone.
 
     Positions are measured by tape or by satellites, whose metre is one; nobody knows a gyro's
@@ -88,7 +90,7 @@ def own_scale_instead(name: str, final: Fitted, given: Robot, laid: Together) ->
 
 
 def torn_by_halves(
-    first: str, rounds: tuple[Round, ...], final: Fitted, laid: Together
+    first: str, rounds: tuple[Round, ...], final: Fitted, laid: Concatenated
 ) -> tuple[str, ...]:
     """Effects that halves of the data prefer to the one that was found.
 

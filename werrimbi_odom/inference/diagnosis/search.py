@@ -20,7 +20,7 @@ from werrimbi_odom.inference.fitting.candidates import (
     put_in,
     scores,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
@@ -60,7 +60,7 @@ class Round:
 
 
 def first_fit(
-    runs: Together,
+    runs: Concatenated,
     robot: Robot,
     options: EvaluationOptions = EvaluationOptions(),
 ) -> Fitted:
@@ -74,7 +74,7 @@ def first_fit(
 
 
 def jumps_anew(
-    runs: Together,
+    runs: Concatenated,
     fit: Fitted,
     robot: Robot,
 ) -> Fitted:
@@ -91,7 +91,7 @@ def jumps_anew(
     return fitted(runs, point, fit.names, fit.knobs, robot)
 
 
-def _edges(runs: Together) -> tuple[NDArray[np.bool_], ...]:
+def _edges(runs: Concatenated) -> tuple[NDArray[np.bool_], ...]:
     """Legs that a shifted clock would move out of the ticks' time; of few legs none.
 
     A record that begins or ends in motion knows nothing of the motion beyond, so such legs would
@@ -116,7 +116,7 @@ class Instead:
 
 
 def instead_of_calibration(
-    runs: Together,
+    runs: Concatenated,
     calibrated: Fitted,
     effects: Sequence[Effect],
     given: Robot,
@@ -154,7 +154,7 @@ def instead_of_calibration(
 
 
 def search_round(
-    runs: Together,
+    runs: Concatenated,
     before: Fitted,
     effects: Sequence[Effect],
     given: Robot,

@@ -20,7 +20,7 @@ import numpy as np
 
 from werrimbi_odom.inference.calibration_sizes import calibration_deviation
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
 from werrimbi_odom.inference.fitting.directions import SIZE, Directions, determined, every_direction
 from werrimbi_odom.inference.fitting.fit import fit_model
@@ -95,12 +95,12 @@ class Fitted:
         return self.cost + self.needless + self.price * self.scatter
 
 
-def price_of_one(runs: Together) -> float:
+def price_of_one(runs: Concatenated) -> float:
     """What one free number must be worth: the logarithm of the number of data (BIC), or more."""
     return max(PENALTY_FLOOR, math.log(max(runs.data, 2)))
 
 
-def scatter_of(runs: Together, design: Design) -> float:
+def scatter_of(runs: Concatenated, design: Design) -> float:
     """By how much costs are too large where few data could not tell the noise; else 1."""
     if runs.data >= NOISE_NUMBERS:
         return 1.0
@@ -109,7 +109,7 @@ def scatter_of(runs: Together, design: Design) -> float:
 
 
 def fitted(
-    runs: Together,
+    runs: Concatenated,
     point: Point,
     names: Sequence[str],
     knobs: Sequence[Knob],

@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.design import Design, stacked
 from werrimbi_odom.inference.fitting.fit import moved
@@ -84,7 +84,7 @@ def sizes_needed(fit: Fitted, given: Robot, wanted: Collection[str]) -> Sizes:
     return min(weighed, key=lambda item: item[0])[1]
 
 
-def with_sizes(runs: Together, fit: Fitted, given: Robot, sizes: Sizes) -> Fitted:
+def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: Sizes) -> Fitted:
     """The fit again, with those sizes alone free to differ from the given file's.
 
     The fit itself where all are free, or where putting back does not do what it promised.

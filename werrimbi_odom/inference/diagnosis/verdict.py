@@ -32,7 +32,7 @@ from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.rules import CALIBRATION_WORTH, SIGNIFICANT, SURE
@@ -79,7 +79,7 @@ class Diagnosis:
     rounds: tuple[Round, ...]
     final: Fitted
     """The model with everything found."""
-    runs: Together
+    runs: Concatenated
     train: Sides
     """Position error with the robot as given, and with everything found [m]."""
     holdout: Sides
@@ -126,7 +126,7 @@ def told(
     final: Fitted,
     beyond: Dependence | None,
     remaining: tuple[Dependence, ...],
-    laid: Together,
+    laid: Concatenated,
     instead: tuple[Instead, ...],
 ) -> Diagnosis:
     """Everything put together."""

@@ -9,7 +9,7 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.inference.chances import chi2_median
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.likelihood import Variances
@@ -20,7 +20,7 @@ _ROUNDS = 4
 
 
 def noise_of_most(
-    runs: Together,
+    runs: Concatenated,
     point: Point,
 ) -> Variances:
     """Variances fitted anew without the legs that deviate far more than most; the model stays."""

@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.directions import CALIBRATED as CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import STEP, Knob, Model, knobs_of
@@ -158,7 +158,7 @@ class Signature(NamedTuple):
 
 
 def signatures(
-    runs: Together,
+    runs: Concatenated,
     point: Point,
     knobs: Sequence[Knob],
     tried: Sequence[Candidate],
@@ -197,7 +197,7 @@ def signatures(
 
 
 def unexplained(
-    runs: Together, point: Point, knobs: Sequence[Knob], prediction: Prediction
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], prediction: Prediction
 ) -> tuple[Nuisance, Floats]:
     """What `knobs` can turn, and the innovations (n,) clear of it."""
     white, basis = stacked(runs, point, knobs, prediction).flat()
@@ -205,14 +205,14 @@ def unexplained(
     return frame, frame.residual(white)
 
 
-def of_each_run(runs: Together, marks: Floats) -> Floats:
+def of_each_run(runs: Concatenated, marks: Floats) -> Floats:
     """Columns (m, 3, k) once for each run, and zero in the others: (m, 3, runs * k)."""
     here = (runs.run_of_leg == run for run in range(len(runs.runs)))
     return np.concatenate([marks * legs[:, None, None] for legs in here], axis=-1)
 
 
 def scores(
-    runs: Together,
+    runs: Concatenated,
     point: Point,
     knobs: Sequence[Knob],
     tried: Sequence[Candidate],
@@ -232,7 +232,7 @@ def scores(
 
 
 def _slope(
-    runs: Together,
+    runs: Concatenated,
     model: Model,
     candidate: Candidate,
     coordinate: Mapping[str, float],

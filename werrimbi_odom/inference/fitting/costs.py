@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from werrimbi_odom.inference.fitting.concatenated_runs import Together, laid_out
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
 from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all
@@ -19,7 +19,7 @@ from werrimbi_odom.model.pose import Floats
 class Costs:
     """Minus two log-likelihood of sets of variances, the model being given."""
 
-    runs: Sequence[MatchedRun] | Together
+    runs: Sequence[MatchedRun] | Concatenated
     point: Point
 
     def prediction(self) -> Prediction:

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.knobs import (
     HEADING_AT_START,
     MULTIPLIERS,
@@ -59,7 +59,7 @@ class Design:
 
 
 def unexpected(
-    runs: Together,
+    runs: Concatenated,
     point: Point,
     prediction: Prediction | None = None,
 ) -> Innovations:
@@ -79,7 +79,7 @@ def unexpected(
     )
 
 
-def slopes_of(runs: Together, model: Model, knobs: Sequence[Knob]) -> Floats:
+def slopes_of(runs: Concatenated, model: Model, knobs: Sequence[Knob]) -> Floats:
     """Derivatives of the legs' relative poses in knobs, (m, 3, p), by central differences.
 
     A knob of the runs' own is moved in all of them at once: legs feel their own run's alone.
@@ -88,7 +88,7 @@ def slopes_of(runs: Together, model: Model, knobs: Sequence[Knob]) -> Floats:
     return np.stack(columns, axis=-1) if columns else np.zeros((runs.count, 3, 0))
 
 
-def _slope(runs: Together, model: Model, knob: Knob) -> Floats:
+def _slope(runs: Concatenated, model: Model, knob: Knob) -> Floats:
     if knob.name == YAW_DRIFT:
         return np.outer(runs.duration, [0.0, 0.0, 1.0])
     ahead, behind = model.moved_by(knob, knob.scale), model.moved_by(knob, -knob.scale)
@@ -100,7 +100,7 @@ def _slope(runs: Together, model: Model, knob: Knob) -> Floats:
 
 
 def stacked(
-    runs: Together,
+    runs: Concatenated,
     point: Point,
     knobs: Sequence[Knob],
     prediction: Prediction | None = None,
@@ -113,7 +113,7 @@ def stacked(
 
 
 def spread_out(
-    runs: Together, model: Model, white: Floats, slopes: Floats, local: Sequence[Knob]
+    runs: Concatenated, model: Model, white: Floats, slopes: Floats, local: Sequence[Knob]
 ) -> Design:
     """Local columns, those of the runs' own given a column for each run.
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
-from werrimbi_odom.inference.fitting.concatenated_runs import Together, laid_out
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
 from werrimbi_odom.inference.fitting.costs import Costs
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.directions import Directions, determined, put_back
@@ -85,7 +85,7 @@ class ModelFit:
 
 
 def start_point(
-    runs: Sequence[MatchedRun] | Together,
+    runs: Sequence[MatchedRun] | Concatenated,
     robot: Robot,
     options: EvaluationOptions = EvaluationOptions(),
 ) -> Point:
@@ -111,7 +111,7 @@ def start_point(
 
 
 def fit_model(
-    runs: Sequence[MatchedRun] | Together,
+    runs: Sequence[MatchedRun] | Concatenated,
     point: Point,
     knobs: Sequence[Knob] = CALIBRATION,
     *,
@@ -173,7 +173,7 @@ def _at_bound(value: float, knob: Knob) -> bool:
     return value <= low + margin or value >= high - margin
 
 
-def _robustly(runs: Together, point: Point, knobs: Sequence[Knob]) -> Point:
+def _robustly(runs: Concatenated, point: Point, knobs: Sequence[Knob]) -> Point:
     """Come near the answer whatever the reference's jumps, then find these."""
     for _ in range(12):
         design = stacked(runs, point, knobs)
@@ -189,12 +189,12 @@ def _robustly(runs: Together, point: Point, knobs: Sequence[Knob]) -> Point:
     return replace(point, excluded=_jumps(runs, point))
 
 
-def without_jumps(runs: Together, point: Point) -> Point:
+def without_jumps(runs: Concatenated, point: Point) -> Point:
     """The point with the legs left out on which its model cannot believe the reference."""
     return replace(point, excluded=_jumps(runs, point))
 
 
-def _jumps(runs: Together, point: Point) -> tuple[NDArray[np.bool_], ...]:
+def _jumps(runs: Concatenated, point: Point) -> tuple[NDArray[np.bool_], ...]:
     nothing = tuple(np.zeros(size, dtype=np.bool_) for size in np.diff(runs.legs))
     if runs.headings_alone:
         return nothing  # a gyro does not jump; legs that deviate are those that turn
@@ -209,7 +209,7 @@ def _jumps(runs: Together, point: Point) -> tuple[NDArray[np.bool_], ...]:
 
 
 def _gauss_newton(
-    runs: Together, point: Point, knobs: Sequence[Knob], ways: Directions
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], ways: Directions
 ) -> tuple[Point, bool]:
     """The point of least squares near a point, and whether it is another one."""
     prediction = predict_all(point.model, runs)
@@ -273,7 +273,7 @@ def _nuisances(robot: Robot, run: MatchedRun) -> dict[str, float]:
     return own
 
 
-def _turned_to_the_first_legs(runs: Together, point: Point) -> Point:
+def _turned_to_the_first_legs(runs: Concatenated, point: Point) -> Point:
     """The point with each start heading that was not measured guessed anew, where that is better.
 
     A heading that suited a model without some effect may be so far off with it that least squares

@@ -13,7 +13,7 @@ from dataclasses import replace
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate, put_in, scores
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import (
@@ -27,7 +27,7 @@ from werrimbi_odom.inference.fitting.knobs import (
 from werrimbi_odom.model.effect import AppliedEffect
 
 
-def known_at_home(model: Model, runs: Together, kind: ReferenceKind) -> Model:
+def known_at_home(model: Model, runs: Concatenated, kind: ReferenceKind) -> Model:
     """A model in other runs, without what belongs to the references alone."""
     plain = model.without_nuisances()
     if not any(plain.own) and all(applied.ready for applied in plain.robot.effects):
@@ -35,7 +35,7 @@ def known_at_home(model: Model, runs: Together, kind: ReferenceKind) -> Model:
     return at_home(model, runs, kind).model.without_nuisances()
 
 
-def at_home(model: Model, runs: Together, kind: ReferenceKind) -> Point:
+def at_home(model: Model, runs: Concatenated, kind: ReferenceKind) -> Point:
     """A model in other runs: shared values stay, what those runs have of their own is fitted."""
     own = sorted({name for mine in model.own for name in mine if name not in NUISANCES})
     effects = tuple(
@@ -61,7 +61,7 @@ def at_home(model: Model, runs: Together, kind: ReferenceKind) -> Point:
     return fit_model(runs, point, knobs, find_jumps=False, rounds=1).point
 
 
-def with_own_values(runs: Together, point: Point) -> tuple[Point, tuple[Knob, ...]]:
+def with_own_values(runs: Concatenated, point: Point) -> tuple[Point, tuple[Knob, ...]]:
     """The point with what each run has of its own in the robot's effects, and all their knobs.
 
     A phase can be anywhere, so it is looked for by its score, which knows no start value.
@@ -81,7 +81,7 @@ def with_own_values(runs: Together, point: Point) -> tuple[Point, tuple[Knob, ..
     return point, tuple(knobs)
 
 
-def _learnt(runs: Together, point: Point, applied: AppliedEffect) -> Model:
+def _learnt(runs: Concatenated, point: Point, applied: AppliedEffect) -> Model:
     """The model with the phases of an effect in each run."""
     robot = point.model.robot
     others = tuple(item for item in robot.effects if item is not applied)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.inference.chances import NORMAL_95, student_quantile
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point, slopes_of, spread_out, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.likelihood import Variances
@@ -25,7 +25,7 @@ from werrimbi_odom.model.pose import Floats
 class Precision:
     """What whitened derivatives say of the numbers that were free, at any noise."""
 
-    runs: Together
+    runs: Concatenated
     point: Point
     local: tuple[Knob, ...]
     """Columns of `slopes`."""
@@ -36,7 +36,7 @@ class Precision:
     @classmethod
     def of(
         cls,
-        runs: Together,
+        runs: Concatenated,
         point: Point,
         local: Sequence[Knob],
         moves: Floats,

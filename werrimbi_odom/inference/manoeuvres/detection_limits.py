@@ -33,7 +33,7 @@ from werrimbi_odom.inference.fitting.candidates import (
     OF_THE_MEASUREMENT,
     Candidate,
 )
-from werrimbi_odom.inference.fitting.concatenated_runs import together
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import STEP
 from werrimbi_odom.inference.legs.cutting import match_finely
@@ -140,7 +140,7 @@ def information_limits(
         By effect and parameter the distance from null, in the parameter's unit; infinite where the
         drives do not show it.
     """
-    laid = together(match_finely(runs, robot, options.leg))
+    laid = concatenated(match_finely(runs, robot, options.leg))
     look = sensitivities_of(
         Experiment(
             laid,

@@ -8,7 +8,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from werrimbi_odom.inference.fitting.concatenated_runs import Together, together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import NUISANCES
@@ -24,7 +24,7 @@ from werrimbi_odom.inference.rules import (
 )
 
 
-def measured_in(runs: Together) -> tuple[bool, bool]:
+def measured_in(runs: Concatenated) -> tuple[bool, bool]:
     """Whether the reference measures positions, and headings."""
     return (
         any(bool(run.measured.has_position.any()) for run in runs.runs),
@@ -34,7 +34,7 @@ def measured_in(runs: Together) -> tuple[bool, bool]:
 
 def imagined(
     ideal: Ideal,
-    runs: Together,
+    runs: Concatenated,
     point: Point,
     pace: Pace,
     *,
@@ -71,7 +71,7 @@ def imagined(
         ideal, robot, pace, ticks=ticks, poses=poses, measures=measures, channels=ranges
     )
     leg = pace.size / PARTS_OF_A_LEG
-    laid = together([match(run, robot, leg, None, QUARTER_TURN / PARTS_OF_A_LEG)])
+    laid = concatenated([match(run, robot, leg, None, QUARTER_TURN / PARTS_OF_A_LEG)])
     start = start_point(laid, robot, options)
     first = point.model.own[0]
     own = {name: value for name, value in first.items() if name not in NUISANCES}

@@ -16,7 +16,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
-from werrimbi_odom.inference.fitting.concatenated_runs import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob, Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
@@ -29,7 +29,7 @@ from werrimbi_odom.model.pose import Floats
 class Experiment:
     """Some drives, the model to begin from, and how all that may be fitted acts in them."""
 
-    runs: Together
+    runs: Concatenated
     point: Point
 
     def whitened(self, changes: Floats) -> Floats:
