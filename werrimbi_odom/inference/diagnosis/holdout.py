@@ -39,7 +39,6 @@ class Errors:
 
     train: float
     holdout: float
-    train_median: float
     holdout_median: float
     holdout_yaw: float
     """Root mean square heading error [rad]."""
@@ -83,7 +82,6 @@ class Judge:
         return Errors(
             error_of(train, unit),
             error_of(holdout, unit),
-            median_of(train, unit),
             median_of(holdout, unit),
             error_of(holdout, "rad"),
             unit,

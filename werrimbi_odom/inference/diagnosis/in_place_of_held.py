@@ -27,8 +27,6 @@ from werrimbi_odom.inference.rules import INSTEAD_FITTED, RIVAL, WORTH_A_FIT
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
-Sigma = tuple[float | None, float | None]
-
 
 def rivals_of_held(
     runs: Concatenated,
