@@ -186,12 +186,7 @@ def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> 
     from werrimbi_odom.report.adding.words import json_of
 
     found = add_effects(
-        effects,
-        given.runs,
-        given.robot,
-        given.evaluation,
-        holdout=given.holdout,
-        show=show,
+        effects, given.runs, given.robot, given.evaluation, holdout=given.holdout, show=show
     )
     return Result(
         found=found,

@@ -98,13 +98,7 @@ def add_effects(
     if any(base_name(effect) is not None for effect in effects):
         robot = replace(robot, wheels_a_side=max(robot.wheels_a_side, 2))  # so says who asks for it
     show(0.0, "set-up")
-    started = begin(
-        runs,
-        holdout,
-        robot,
-        options,
-        given=given,
-    )
+    started = begin(runs, holdout, robot, options, given=given)
     judge, set_up = started.judge, started.set_up
     begun, also = with_set_up(effects, robot, set_up)
     stated = replace(
@@ -138,11 +132,7 @@ def add_effects(
     if explained:
         final = with_noise(final, {name: _told(noises[name]) for name in WHEEL_NOISES})
     show(0.95, "comparing")
-    compared = compare(
-        judge.kept_back if holdout else runs,
-        final,
-        options,
-    )
+    compared = compare(judge.kept_back if holdout else runs, final, options)
     return Added(
         effects=tuple(effects),
         fitted={effect.name: parameters_of(effect, known, robot) for effect in effects},
@@ -255,12 +245,7 @@ def _with_noise_of(robot: Robot, given: Robot) -> Robot:
 
 
 def _on_all(
-    judge: Judge,
-    drives: Drives,
-    fit: Fitted,
-    given: Robot,
-    runs: Sequence[Run],
-    sizes: Sizes,
+    judge: Judge, drives: Drives, fit: Fitted, given: Robot, runs: Sequence[Run], sizes: Sizes
 ) -> tuple[Drives, Fitted]:
     """The same model fitted on all runs, those put aside among them."""
     if len(runs) < 2:

@@ -77,11 +77,7 @@ class Start:
     """What its score promises, of an effect that begins where that points."""
 
 
-def drives_of(
-    prepared: Prepared,
-    robot: Robot,
-    options: EvaluationOptions,
-) -> Drives:
+def drives_of(prepared: Prepared, robot: Robot, options: EvaluationOptions) -> Drives:
     """Cut the drives of a fit by the travel of `robot`."""
     runs = match_finely(prepared.runs, robot, options.leg, options.limits)
     jumped = [np.zeros(run.legs, dtype=np.bool_) for run in runs]

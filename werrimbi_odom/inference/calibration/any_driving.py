@@ -80,18 +80,12 @@ class Calibration:
 
 
 def calibrate(
-    runs: Sequence[MatchedRun],
-    robot: Robot,
-    options: EvaluationOptions = EvaluationOptions(),
+    runs: Sequence[MatchedRun], robot: Robot, options: EvaluationOptions = EvaluationOptions()
 ) -> Calibration:
     """Fit base, radii and noise to all runs at once, and question the result."""
     begin = start_point(runs, robot, options)
     knobs = (*CALIBRATION, *begin.model.nuisance_knobs)
-    fit = fit_model(
-        runs,
-        begin,
-        knobs,
-    )
+    fit = fit_model(runs, begin, knobs)
     held = options.sigmas_known
     local = [knob for knob in knobs if knob.name != START_YAW]
     precision = Precision.of(concatenated(runs), fit.point, local, fit.ways.matrix)

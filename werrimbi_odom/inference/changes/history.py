@@ -110,11 +110,7 @@ class Course:
     """What the robot file has otherwise than the last drives."""
 
 
-def drive_told(
-    run: Run,
-    robot: Robot,
-    options: EvaluationOptions,
-) -> DriveTold:
+def drive_told(run: Run, robot: Robot, options: EvaluationOptions) -> DriveTold:
     """Fit one drive by itself.
 
     Raises

@@ -142,12 +142,7 @@ def compare(
         When a run has no usable reference or no ticks.
     """
     own = robot.robot if isinstance(robot, Model) else robot
-    prepared = prepare(
-        runs,
-        own,
-        options,
-        show=lambda share, words: show(0.5 * share, words),
-    )
+    prepared = prepare(runs, own, options, show=lambda share, words: show(0.5 * share, words))
     return judged(prepared, robot, show=lambda share, words: show(0.5 + 0.5 * share, words))
 
 

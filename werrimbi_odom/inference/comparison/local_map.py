@@ -43,11 +43,7 @@ class Wandering:
     """Else there were too few poses, and it is what such references usually have."""
 
 
-def wandering_of(
-    records: Sequence[Record],
-    robot: Robot,
-    options: EvaluationOptions,
-) -> Wandering:
+def wandering_of(records: Sequence[Record], robot: Robot, options: EvaluationOptions) -> Wandering:
     """How a reference errs: likeliest beside a robot whose calibration is free.
 
     So a wrong base or radius does not pass for a walk of the reference.
@@ -58,11 +54,7 @@ def wandering_of(
         return Wandering(point.variances, False)
     point, knobs = with_own_values(laid, point)
     knobs = (*CALIBRATION, *knobs, *point.model.nuisance_knobs)
-    fit = fit_model(
-        laid,
-        point,
-        knobs,
-    )
+    fit = fit_model(laid, point, knobs)
     return Wandering(fit.point.variances, True)
 
 

@@ -126,11 +126,7 @@ def _shares(support: Support, cell: Dependence) -> bool:
 
 
 def _gain_beside(
-    runs: Concatenated,
-    point: Point,
-    knobs: Sequence[Knob],
-    score: Score,
-    cell: Dependence,
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], score: Score, cell: Dependence
 ) -> float:
     """What a candidate would still explain if the model could turn a cell's pattern as well."""
     prediction = predict_all(point.model, runs)

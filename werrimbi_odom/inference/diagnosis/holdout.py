@@ -168,10 +168,7 @@ def _refuse_standing(runs: Sequence[Run]) -> None:
 
 
 def judge_of(
-    runs: Sequence[Run],
-    holdout: Sequence[Run],
-    robot: Robot,
-    options: EvaluationOptions,
+    runs: Sequence[Run], holdout: Sequence[Run], robot: Robot, options: EvaluationOptions
 ) -> Judge:
     """Cut the legs of the runs that are fitted, and of those that judge."""
     fitted_on, kept_back = tuple(runs), tuple(holdout)

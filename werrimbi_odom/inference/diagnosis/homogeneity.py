@@ -68,10 +68,7 @@ def lasting_effect(runs: Concatenated, point: Point, knobs: Sequence[Knob], scor
 
 
 def lasting(
-    runs: Concatenated,
-    point: Point,
-    knobs: Sequence[Knob],
-    cells: Iterable[Dependence],
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], cells: Iterable[Dependence]
 ) -> Iterator[Lasting]:
     """Some cells of a model's map, each with whether it lasts.
 

@@ -29,10 +29,7 @@ from werrimbi_odom.model.robot import Robot
 
 
 def rivals_of_held(
-    runs: Concatenated,
-    fit: Fitted,
-    effects: Sequence[Effect],
-    given: Robot,
+    runs: Concatenated, fit: Fitted, effects: Sequence[Effect], given: Robot
 ) -> dict[str, tuple[str, ...]]:
     """Effects that would explain the drives as well as one that the file holds, by its name."""
     found = {}
@@ -46,11 +43,7 @@ def rivals_of_held(
 
 
 def _rivals(
-    runs: Concatenated,
-    fit: Fitted,
-    effects: Sequence[Effect],
-    given: Robot,
-    held: Effect,
+    runs: Concatenated, fit: Fitted, effects: Sequence[Effect], given: Robot, held: Effect
 ) -> tuple[str, ...]:
     """Scored beside the held one where that is taken out; the best few are fitted in its place."""
     model, mine = fit.point.model, f"{held.name}."

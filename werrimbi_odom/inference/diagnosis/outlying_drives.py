@@ -42,10 +42,7 @@ class RecordedOtherwise:
 
 
 def recorded_otherwise(
-    fitted: Prepared,
-    held_out: Prepared,
-    mended: Robot,
-    options: EvaluationOptions,
+    fitted: Prepared, held_out: Prepared, mended: Robot, options: EvaluationOptions
 ) -> tuple[RecordedOtherwise, ...]:
     """Drives on either side that were not recorded as most of the fitted ones.
 

@@ -60,9 +60,7 @@ class Round:
 
 
 def first_fit(
-    runs: Concatenated,
-    robot: Robot,
-    options: EvaluationOptions = EvaluationOptions(),
+    runs: Concatenated, robot: Robot, options: EvaluationOptions = EvaluationOptions()
 ) -> Fitted:
     """The robot as given, calibrated."""
     point = start_point(runs, robot, options)
@@ -73,11 +71,7 @@ def first_fit(
     return fitted(runs, point, (), knobs, robot, rounds=3)
 
 
-def jumps_anew(
-    runs: Concatenated,
-    fit: Fitted,
-    robot: Robot,
-) -> Fitted:
+def jumps_anew(runs: Concatenated, fit: Fitted, robot: Robot) -> Fitted:
     """The fit with the reference's jumps found by its own, better model.
 
     Only a reference whose errors last has jumps that stay: of one whose poses are each their own, a
@@ -116,10 +110,7 @@ class Instead:
 
 
 def instead_of_calibration(
-    runs: Concatenated,
-    calibrated: Fitted,
-    effects: Sequence[Effect],
-    given: Robot,
+    runs: Concatenated, calibrated: Fitted, effects: Sequence[Effect], given: Robot
 ) -> tuple[Instead, ...]:
     """Effects that would do in place of the calibration that a model needs, cheapest first.
 
@@ -140,13 +131,7 @@ def instead_of_calibration(
     for score in worth_fitting(best_of_each(found))[:INSTEAD_FITTED]:
         start = replace(point, model=put_in(point.model, score))
         knobs = (*calibrated.knobs, *knobs_of_candidate(score.candidate), *nuisances)
-        fit = fit_model(
-            runs,
-            start,
-            knobs,
-            find_jumps=False,
-            rounds=2,
-        )
+        fit = fit_model(runs, start, knobs, find_jumps=False, rounds=2)
         if not fit.at_bound:
             price = calibrated.price_of_one * len(fit.free) * calibrated.scatter
             results.append(Instead(score.candidate.name, fit.minus_two_log_likelihood + price))
@@ -154,10 +139,7 @@ def instead_of_calibration(
 
 
 def search_round(
-    runs: Concatenated,
-    before: Fitted,
-    effects: Sequence[Effect],
-    given: Robot,
+    runs: Concatenated, before: Fitted, effects: Sequence[Effect], given: Robot
 ) -> Round:
     """Look for one more effect."""
     point = before.point

@@ -119,13 +119,7 @@ def fitted(
 ) -> Fitted:
     """Fit a model, calibration and all, and say which multipliers it needs."""
     every = (*CALIBRATION, *knobs, *point.model.nuisance_knobs)
-    result = fit_model(
-        runs,
-        point,
-        every,
-        find_jumps=False,
-        rounds=rounds,
-    )
+    result = fit_model(runs, point, every, find_jumps=False, rounds=rounds)
     design = stacked(runs, result.point, [*CALIBRATION, *own_of(every), *shared_of(knobs)])
     ways = determined(design, result.robot)
     price, scatter = price_of_one(runs), scatter_of(runs, design)

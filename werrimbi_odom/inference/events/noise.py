@@ -19,10 +19,7 @@ from werrimbi_odom.inference.rules import NOISE_NUMBERS, NOISE_TRIMMED
 _ROUNDS = 4
 
 
-def noise_of_most(
-    runs: Concatenated,
-    point: Point,
-) -> Variances:
+def noise_of_most(runs: Concatenated, point: Point) -> Variances:
     """Variances fitted anew without the legs that deviate far more than most; the model stays."""
     held = point.options.sigmas_known
     bounds = list(zip(runs.legs[:-1].tolist(), runs.legs[1:].tolist(), strict=True))

@@ -158,10 +158,7 @@ class Signature(NamedTuple):
 
 
 def signatures(
-    runs: Concatenated,
-    point: Point,
-    knobs: Sequence[Knob],
-    tried: Sequence[Candidate],
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], tried: Sequence[Candidate]
 ) -> tuple[Floats, Iterator[Signature]]:
     """Innovations (n,) that `knobs` cannot explain, and what each candidate does to them."""
     if runs.headings_alone:
@@ -212,10 +209,7 @@ def of_each_run(runs: Concatenated, marks: Floats) -> Floats:
 
 
 def scores(
-    runs: Concatenated,
-    point: Point,
-    knobs: Sequence[Knob],
-    tried: Sequence[Candidate],
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], tried: Sequence[Candidate]
 ) -> tuple[Score, ...]:
     """Score of each candidate beside what `knobs` can turn; those without any effect left out."""
     rest, found = signatures(runs, point, knobs, tried)

@@ -59,9 +59,7 @@ class Design:
 
 
 def unexpected(
-    runs: Concatenated,
-    point: Point,
-    prediction: Prediction | None = None,
+    runs: Concatenated, point: Point, prediction: Prediction | None = None
 ) -> Innovations:
     """Innovations of all runs; the latest are remembered with them."""
     seen = prediction or predict_all(point.model, runs)
@@ -100,10 +98,7 @@ def _slope(runs: Concatenated, model: Model, knob: Knob) -> Floats:
 
 
 def stacked(
-    runs: Concatenated,
-    point: Point,
-    knobs: Sequence[Knob],
-    prediction: Prediction | None = None,
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], prediction: Prediction | None = None
 ) -> Design:
     """The design for knobs at a point; start headings that were not measured are among them."""
     local = [knob for knob in knobs if knob.name != START_YAW]

@@ -35,11 +35,7 @@ class Precision:
 
     @classmethod
     def of(
-        cls,
-        runs: Concatenated,
-        point: Point,
-        local: Sequence[Knob],
-        moves: Floats,
+        cls, runs: Concatenated, point: Point, local: Sequence[Knob], moves: Floats
     ) -> Precision:
         """Of a fit that ended at a point; start headings are no local knobs."""
         knobs = tuple(local)

@@ -41,12 +41,7 @@ def told_of(given: Recordings, show: Show = silent) -> Told:
     """
     effects = given.collection.effects
     diagnosis = diagnose(
-        given.runs,
-        given.robot,
-        effects,
-        given.evaluation,
-        holdout=given.holdout,
-        show=show,
+        given.runs, given.robot, effects, given.evaluation, holdout=given.holdout, show=show
     )
     show(0.97, "the next step")
     manoeuvre = next_manoeuvre(diagnosis)

@@ -33,12 +33,7 @@ def measured_in(runs: Concatenated) -> tuple[bool, bool]:
 
 
 def imagined(
-    ideal: Ideal,
-    runs: Concatenated,
-    point: Point,
-    pace: Pace,
-    *,
-    better: bool = False,
+    ideal: Ideal, runs: Concatenated, point: Point, pace: Pace, *, better: bool = False
 ) -> tuple[Experiment, float]:
     """What the manoeuvre would record, and its minutes.
 

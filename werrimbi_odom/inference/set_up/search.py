@@ -77,9 +77,7 @@ class SetUp:
 
 
 def look_for_mistakes(
-    runs: Sequence[Run],
-    robot: Robot,
-    options: EvaluationOptions = EvaluationOptions(),
+    runs: Sequence[Run], robot: Robot, options: EvaluationOptions = EvaluationOptions()
 ) -> SetUp:
     """Search the whole range of what can be set up wrongly.
 
