@@ -22,7 +22,7 @@ from werrimbi_odom.inference.comparison.legs import (
 )
 from werrimbi_odom.inference.diagnosis.evidence import dependences
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.costs import Costs
+from werrimbi_odom.inference.fitting.design import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
 from werrimbi_odom.inference.fitting.noise import NOISES, noise_estimates

@@ -102,8 +102,6 @@ def read(
     ----------
     collection
         What the robot file may name.
-    show
-        Told the share done, and what is being done.
 
     Raises
     ------

@@ -78,8 +78,6 @@ def add_effects(
         other that the fit begins with.
     holdout
         Runs to judge on alone. None given: parts of `runs` are put aside for it.
-    show
-        Told the share done, and what is being done.
 
     Raises
     ------

@@ -16,8 +16,7 @@ from werrimbi_odom.inference.chances import upper_part
 from werrimbi_odom.inference.diagnosis.post_selection import Law, spread_over_choices
 from werrimbi_odom.inference.diagnosis.selection import Fitted, grain_of
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, choices
-from werrimbi_odom.inference.fitting.costs import Costs
-from werrimbi_odom.inference.fitting.design import stacked
+from werrimbi_odom.inference.fitting.design import Costs, stacked
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     MULTIPLIERS,

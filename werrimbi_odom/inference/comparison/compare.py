@@ -133,8 +133,6 @@ def compare(
     robot : Robot or Model
         A `Model` brings values that each run has of its own (phases, start headings); those that a
         robot file does not say are learnt in each run.
-    show
-        Told the share done, and what is being done.
 
     Raises
     ------

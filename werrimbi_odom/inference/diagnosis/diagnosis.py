@@ -77,8 +77,6 @@ def diagnose(
         The library, and whatever the user brings.
     holdout
         Runs to judge on alone. None given: some of `runs` are put aside for it.
-    show
-        Told the share done, and what is being done.
 
     Raises
     ------

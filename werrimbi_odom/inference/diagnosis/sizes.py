@@ -16,8 +16,7 @@ import numpy as np
 
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.costs import Costs
-from werrimbi_odom.inference.fitting.design import Design, stacked
+from werrimbi_odom.inference.fitting.design import Costs, Design, stacked
 from werrimbi_odom.inference.fitting.fit import moved
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,

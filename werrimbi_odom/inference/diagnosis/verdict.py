@@ -11,6 +11,7 @@ from typing import Literal
 
 import numpy as np
 
+from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
 from werrimbi_odom.inference.chances import chi2_above, in_any_of
 from werrimbi_odom.inference.comparison.another_drive import of_another_drive
@@ -36,7 +37,9 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.rules import CALIBRATION_WORTH, SIGNIFICANT, SURE
+from werrimbi_odom.inference.set_up.findings import IN_DEGREES
 from werrimbi_odom.inference.set_up.search import SetUp
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
 Verdict = Literal["none", "named", "ambiguous", "unknown"]
@@ -110,6 +113,14 @@ class Diagnosis:
     def robot(self) -> Robot:
         """With everything that was found put in."""
         return self.final.point.model.robot
+
+    def effect_named(self, name: str) -> Effect | None:
+        """The effect of a name, a user's own among them; None for a finding that is no effect."""
+        if name == IN_DEGREES:
+            return None
+        known = [score.candidate.effect for this in self.rounds for score in this.scores]
+        known += [applied.effect for applied in self.robot.effects]
+        return next((effect for effect in known if effect.name == name), None) or find(name)
 
 
 def chance(fit: Fitted, before: Fitted, tried: int) -> float:

@@ -10,8 +10,7 @@ import numpy as np
 
 from werrimbi_odom.inference.chances import chi2_median
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.costs import Costs
-from werrimbi_odom.inference.fitting.design import Point, unexpected
+from werrimbi_odom.inference.fitting.design import Costs, Point, unexpected
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import likeliest
 from werrimbi_odom.inference.rules import NOISE_NUMBERS, NOISE_TRIMMED

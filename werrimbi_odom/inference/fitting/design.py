@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whitened innovations of all legs, and how they change with every knob: what a fit solves."""
+"""Whitened innovations of all legs, what they cost, and how they change with every knob."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
-from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
 from werrimbi_odom.inference.fitting.knobs import (
     HEADING_AT_START,
     MULTIPLIERS,
@@ -23,6 +23,7 @@ from werrimbi_odom.inference.fitting.knobs import (
 )
 from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
 from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
+from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.pose import Floats
 
 
@@ -75,6 +76,36 @@ def unexpected(
             start_yaws=point.model.start_yaws,
         ),
     )
+
+
+@dataclass(frozen=True, slots=True)
+class Costs:
+    """Minus two log-likelihood of sets of variances, the model being given."""
+
+    runs: Sequence[MatchedRun] | Concatenated
+    point: Point
+
+    def prediction(self) -> Prediction:
+        """Of all runs."""
+        return predict_all(self.point.model, laid_out(self.runs))
+
+    def innovations(self, sets: Variances, prediction: Prediction) -> Innovations:
+        """For each set."""
+        model = self.point.model
+        return innovations(
+            model.robot,
+            laid_out(self.runs),
+            prediction,
+            sets,
+            self.point.options.reference_kind,
+            excluded=self.point.skip,
+            start_yaws=model.start_yaws,
+        )
+
+    def __call__(self, sets: Variances, prediction: Prediction | None = None) -> Floats:
+        """Cost of each set."""
+        found = self.innovations(sets, prediction or self.prediction())
+        return found.minus_two_log_likelihood()
 
 
 def slopes_of(runs: Concatenated, model: Model, knobs: Sequence[Knob]) -> Floats:

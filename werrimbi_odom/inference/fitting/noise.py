@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.chances import NORMAL_95, upper_part
 from werrimbi_odom.inference.fitting.concatenated_runs import laid_out
-from werrimbi_odom.inference.fitting.costs import Costs
+from werrimbi_odom.inference.fitting.design import Costs
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.prediction import Prediction
 from werrimbi_odom.inference.rules import (

@@ -18,7 +18,6 @@ import numpy as np
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import sizes_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.search import Round
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins, twin_where
@@ -68,7 +67,7 @@ class Discrimination:
 def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
     """The next thing to do; None where the diagnosis leaves nothing open that it could answer."""
     if diagnosis.verdict == "ambiguous":
-        named = [effect_named(diagnosis, name) for name in diagnosis.rivals]
+        named = [diagnosis.effect_named(name) for name in diagnosis.rivals]
         by_hand = for_twins([effect for effect in named if effect], measured_in(diagnosis.runs)[0])
         if by_hand is not None:
             return by_hand
