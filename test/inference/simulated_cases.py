@@ -18,7 +18,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.fits import fits_of
-from werrimbi_odom.inference.adding.start import Drives
+from werrimbi_odom.inference.adding.start_values import Drives
 from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.values import parameters_of, std_of
 from werrimbi_odom.inference.diagnosis.sizes import sizes_needed, with_sizes

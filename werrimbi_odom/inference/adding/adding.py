@@ -19,7 +19,7 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, Side
 from werrimbi_odom.inference.adding.fits import fits_without_jumps
-from werrimbi_odom.inference.adding.start import (
+from werrimbi_odom.inference.adding.start_values import (
     Drives,
     drives_of,
     with_set_up,

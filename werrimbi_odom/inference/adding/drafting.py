@@ -24,7 +24,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.adding.draft_laws import Form, Seen, forms_of, spot_form
 from werrimbi_odom.inference.adding.draft_source import name_of, source_of
-from werrimbi_odom.inference.adding.start import Drives, scored, start_at
+from werrimbi_odom.inference.adding.start_values import Drives, scored, start_at
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.adding.start import (
+from werrimbi_odom.inference.adding.start_values import (
     Drives,
     Start,
     knobs_held,

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.adding.start import is_of_set_up
+from werrimbi_odom.inference.adding.start_values import is_of_set_up
 from werrimbi_odom.inference.adding.values import FittedParameter
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED

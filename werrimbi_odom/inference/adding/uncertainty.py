@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from werrimbi_odom.inference.adding.start import Drives
+from werrimbi_odom.inference.adding.start_values import Drives
 from werrimbi_odom.inference.calibration_sizes import with_sizes_in_multipliers
 from werrimbi_odom.inference.chances import upper_part
 from werrimbi_odom.inference.diagnosis.post_selection import Law, spread_over_choices

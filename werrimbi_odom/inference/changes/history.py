@@ -25,7 +25,7 @@ from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.chances import chi2_above, fisher_above, in_any_of
-from werrimbi_odom.inference.changes.between import Moved, evidence_of, moves_of
+from werrimbi_odom.inference.changes.between_drives import Moved, evidence_of, moves_of
 from werrimbi_odom.inference.changes.drives import Drives
 from werrimbi_odom.inference.changes.numbers import MOUNT, Group, groups_of, numbers_of, value_at
 from werrimbi_odom.inference.changes.search import Segmented, levels_of, segmented

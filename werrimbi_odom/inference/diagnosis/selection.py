@@ -22,8 +22,13 @@ from werrimbi_odom.inference.calibration_sizes import calibration_deviation
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
-from werrimbi_odom.inference.fitting.directions import SIZE, Directions, determined, every_direction
 from werrimbi_odom.inference.fitting.fit import fit_model
+from werrimbi_odom.inference.fitting.identifiable import (
+    SIZE,
+    Directions,
+    determined,
+    every_direction,
+)
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     MULTIPLIERS,

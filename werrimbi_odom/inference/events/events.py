@@ -12,7 +12,7 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.events.alike import Alike, alike
+from werrimbi_odom.inference.events.common_cause import Alike, alike
 from werrimbi_odom.inference.events.steps import Steps, steps_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.design import Point

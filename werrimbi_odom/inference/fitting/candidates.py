@@ -20,7 +20,7 @@ import numpy as np
 
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
-from werrimbi_odom.inference.fitting.directions import CALIBRATED as CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED as CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import STEP, Knob, Model, knobs_of
 from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test

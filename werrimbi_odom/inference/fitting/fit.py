@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
 from werrimbi_odom.inference.fitting.design import Costs, Design, Point, stacked, unexpected
-from werrimbi_odom.inference.fitting.directions import Directions, determined, put_back
+from werrimbi_odom.inference.fitting.identifiable import Directions, determined, put_back
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     START_YAW,

@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.files.recordings import Recordings
-from werrimbi_odom.inference.changes.between import Moved, changes_between
+from werrimbi_odom.inference.changes.between_drives import Moved, changes_between
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit, detection_limits

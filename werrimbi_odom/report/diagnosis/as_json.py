@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from werrimbi_odom.inference.changes.between import Moved
+from werrimbi_odom.inference.changes.between_drives import Moved
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
