@@ -27,13 +27,14 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 
 from benchmark.per_tick import PerTick
 from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.simulation import (
@@ -87,7 +88,7 @@ def main() -> None:
     walls, cpus = [], []
     for count in (DRIVES // 4, DRIVES):
         wall, cpu = time.perf_counter(), time.process_time()
-        found = diagnose(runs[:count], file.robot, LIBRARY, limits=file.limits)
+        found = diagnose(runs[:count], file.robot, LIBRARY, EvaluationOptions(limits=file.limits))
         wall, cpu = time.perf_counter() - wall, time.process_time() - cpu
         walls.append(wall)
         cpus.append(cpu)
@@ -103,7 +104,7 @@ def main() -> None:
 
 def legs_predicted(robot: Robot, runs: list[Run]) -> str:
     """Seconds for one prediction of all legs, by the package and by plain Python."""
-    laid = together(match_finely(runs, robot, 1.0))
+    laid = concatenated(match_finely(runs, robot, 1.0))
     model = Model(robot, tuple({} for _ in runs))
     begun = time.perf_counter()
     ours = predict_all(model, laid)

@@ -14,6 +14,7 @@ from typing import Literal
 
 import numpy as np
 
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
@@ -97,7 +98,7 @@ def fitted(case: Case) -> Calibration:
         )
         for path in paths
     ]
-    return calibrate(runs, robot_file.robot, case.kind)
+    return calibrate(runs, robot_file.robot, EvaluationOptions(reference_kind=case.kind))
 
 
 def judged(case: Case, robot: Robot, sigma_xy: float, sigma_yaw: float) -> LegErrors:

@@ -12,6 +12,7 @@ from dataclasses import replace
 
 from test.hidden.right_laws import RIGHT_LAWS
 from werrimbi_odom.effects import find
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.diagnosis.holdout import Judge, judge_of
 from werrimbi_odom.inference.diagnosis.search import first_fit
@@ -23,8 +24,8 @@ from werrimbi_odom.inference.fitting.candidates import (
     put_in,
     scores,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
-from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -58,10 +59,9 @@ class Floor:
         limits: EncoderLimits | None = None,
     ) -> None:
         self.given = robot
-        self.limits = limits
-        self.kind: ReferenceKind = kind
-        self.judge: Judge = judge_of(runs, holdout, robot, kind, LEG, limits, None, None)
-        self.laid: Together = together(match_finely(runs, robot, LEG, limits))
+        self.options = EvaluationOptions(reference_kind=kind, leg=LEG, limits=limits)
+        self.judge: Judge = judge_of(runs, holdout, robot, self.options)
+        self.laid: Concatenated = concatenated(match_finely(runs, robot, LEG, limits))
 
     def as_given(self) -> float:
         """Held-out error of the robot file [m]."""
@@ -74,7 +74,7 @@ class Floor:
         robot = replace(self.given, effects=(*self.given.effects, *mistakes))
         if len(mistakes) == len(names):
             return self.judge.of(Model(robot, self.judge.nothing_of_own)).holdout
-        fit = first_fit(self.laid, robot, self.kind)
+        fit = first_fit(self.laid, robot, self.options)
         for name in names:
             if name not in CALIBRATED and not _is_mistake(name):
                 laws = RIGHT_LAWS.get(name) or (find(name),)
@@ -87,14 +87,14 @@ class Floor:
         channels = set.intersection(*(set(run.counters.channels) for run in self.laid.runs))
         shapes = candidates([effect], held, channels, len(self.laid.runs))
         knobs = (*CALIBRATION, *fit.knobs)
-        found = scores(self.laid, fit.point, self.kind, knobs, shapes)
+        found = scores(self.laid, fit.point, knobs, shapes)
         best = sorted(found, key=lambda score: -score.gain)[:SHAPES]
         fits = []
         for score in best:
             start = replace(fit.point, model=put_in(fit.point.model, score))
             own = (*fit.knobs, *knobs_of_candidate(score.candidate))
             names = (*fit.names, effect.name)
-            fits.append(fitted(self.laid, start, self.kind, names, own, robot, rounds=3))
+            fits.append(fitted(self.laid, start, names, own, robot, rounds=3))
         # A weak phase may differ from run to run or be one for all: the price tells.
         return min(fits, key=lambda one: one.total) if fits else fit
 

@@ -13,11 +13,12 @@ import math
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from importlib import import_module
 from importlib.util import find_spec
 from itertools import pairwise
 from pkgutil import walk_packages
-from typing import Any
+from typing import cast
 
 from test.hidden.judge import judged, options_of
 from test.hidden.judged import Judged, is_right, judgement
@@ -27,6 +28,8 @@ from test.hidden.tables import Table
 from test.hidden.work import Line
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import ReferenceKind
 
 WHERE = "werrimbi_odom.inference.rules"
 """Where the deciding numbers stand."""
@@ -194,8 +197,10 @@ def gap(what: HiddenSet) -> Line:
     train, holdout = (
         [read_run(path, file) for path in runs_of(folder, part)] for part in ("train", "holdout")
     )
-    options: dict[str, Any] = {"kind": options_of(what)[1]} if options_of(what) else {}
-    found = diagnose(train, file.robot, LIBRARY, holdout=holdout, limits=file.limits, **options)
+    options = EvaluationOptions(limits=file.limits)
+    if options_of(what):
+        options = replace(options, reference_kind=cast(ReferenceKind, options_of(what)[1]))
+    found = diagnose(train, file.robot, LIBRARY, options, holdout=holdout)
     first = found.rounds[0]
     fits = [fit for fit in first.tried if not fit.at_bound]
     if not fits:

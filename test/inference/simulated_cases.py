@@ -15,14 +15,15 @@ import numpy as np
 
 from test.white_noise_robot import wandering
 from werrimbi_odom.effects import find
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.fits import fits_of
-from werrimbi_odom.inference.adding.known import as_written, noises_of, with_spread
-from werrimbi_odom.inference.adding.start import Drives
+from werrimbi_odom.inference.adding.start_values import Drives
+from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.values import parameters_of, std_of
 from werrimbi_odom.inference.diagnosis.sizes import sizes_needed, with_sizes
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, changed
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.effect import Effect, view_of
 from werrimbi_odom.model.robot import Robot
@@ -120,12 +121,12 @@ def stated(case: Case) -> dict[str, tuple[float, float]]:
 
     All of `add` but the search for set-up mistakes before it, and the judgement after.
     """
-    runs = together(match_finely(case.runs, GIVEN, leg=1.0))
+    runs = concatenated(match_finely(case.runs, GIVEN, leg=1.0))
     nothing = tuple(np.zeros(run.legs, dtype=np.bool_) for run in runs.runs)
-    drives = Drives(runs, nothing, "absolute", (None, None))
+    drives = Drives(runs, nothing, EvaluationOptions())
     fit = fits_of([case.effect], drives, GIVEN, GIVEN, (), lambda share, words: None).all
     sizes = sizes_needed(fit, GIVEN, ())
-    fit = with_sizes(runs, drives.kind, fit, GIVEN, sizes)
+    fit = with_sizes(runs, fit, GIVEN, sizes)
     noises = noises_of(drives, as_written(drives, fit, GIVEN))
     known = with_spread([case.effect], drives, fit, GIVEN, (), sizes, noises)
     robot = fit.point.model.robot

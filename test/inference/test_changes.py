@@ -13,7 +13,7 @@ import pytest
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.inference.changes.between import Moved, changes_between
+from werrimbi_odom.inference.changes.between_drives import Moved, changes_between
 from werrimbi_odom.inference.changes.drives import Drives
 from werrimbi_odom.inference.changes.numbers import groups_of
 from werrimbi_odom.inference.changes.search import Segmented, segmented

@@ -19,20 +19,20 @@ from werrimbi_odom.inference.diagnosis.cross_validation import (
 )
 from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.fitting.together import Together, together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.robot import Robot
 
 GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 
 
-def laid_out(truth: Robot, seeds: range) -> Together:
-    return together(match_finely(runs_of(truth, seeds, seconds=60), GIVEN, 1.0))
+def laid_out(truth: Robot, seeds: range) -> Concatenated:
+    return concatenated(match_finely(runs_of(truth, seeds, seconds=60), GIVEN, 1.0))
 
 
-def with_effect(runs: Together, name: str) -> tuple[Fitted, Fitted]:
-    before = first_fit(runs, GIVEN, "absolute")
-    (after,) = search_round(runs, before, "absolute", [find(name)], GIVEN).tried
+def with_effect(runs: Concatenated, name: str) -> tuple[Fitted, Fitted]:
+    before = first_fit(runs, GIVEN)
+    (after,) = search_round(runs, before, [find(name)], GIVEN).tried
     return before, after
 
 
@@ -56,7 +56,7 @@ def test_an_effect_that_is_there_holds() -> None:
 def test_leaving_a_fold_out_is_what_refitting_without_it_gives() -> None:
     """The linear short cut against least squares done anew for every fold."""
     runs = laid_out(GIVEN, range(1, 3))
-    fit = first_fit(runs, GIVEN, "absolute")
+    fit = first_fit(runs, GIVEN)
     white, slopes = fit.design.flat()
     rows = np.repeat(fold_of_leg(runs), 3)
     brute = fit.cost
@@ -71,7 +71,7 @@ def test_leaving_a_fold_out_is_what_refitting_without_it_gives() -> None:
 def test_a_useless_number_costs_about_as_much_as_chance_gave_it() -> None:
     """Fitted to the noise it gains 1 on the average; on legs left out it must lose as much."""
     runs = laid_out(GIVEN, range(1, 3))
-    fit = first_fit(runs, GIVEN, "absolute")
+    fit = first_fit(runs, GIVEN)
     white, slopes = fit.design.flat()
     alone = cross_validated_cost(runs, fit)
     random = np.random.default_rng(5)

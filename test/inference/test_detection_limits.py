@@ -4,25 +4,28 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from test.inference.driven import NOISE_XY, NOISE_YAW, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.chances import chi2_above, noncentrality
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.manoeuvres.detection_limits import information_limits
 from werrimbi_odom.inference.manoeuvres.rivals import Experiment
-from werrimbi_odom.inference.rules import SURE
+from werrimbi_odom.inference.rules import POWER, SURE
 from werrimbi_odom.model.pose import Floats
 
 TRIED = 60
-NOISE = {"sigma_xy": NOISE_XY, "sigma_yaw": NOISE_YAW}
+NOISE = EvaluationOptions(sigma_xy=NOISE_XY, sigma_yaw=NOISE_YAW)
 
 
 @pytest.fixture(scope="module")
@@ -30,14 +33,19 @@ def runs() -> list[Run]:
     return runs_of(ROBOT, (1, 2), 30)
 
 
-def limits(names: tuple[str, ...], runs: list[Run], **others: float) -> dict[str, dict[str, float]]:
+def limits(
+    names: tuple[str, ...],
+    runs: list[Run],
+    options: EvaluationOptions = NOISE,
+    power: float = POWER,
+) -> dict[str, dict[str, float]]:
     effects = [find(name) for name in names]
-    return information_limits(effects, ROBOT, runs, tried=TRIED, **{**NOISE, **others})  # type: ignore[arg-type]
+    return information_limits(effects, ROBOT, runs, options, tried=TRIED, power=power)
 
 
 def drives_of(runs: list[Run]) -> Experiment:
-    laid = together(match_finely(runs, ROBOT, 1.0))
-    return Experiment(laid, start_point(laid, ROBOT, NOISE_XY, NOISE_YAW), "absolute")
+    laid = concatenated(match_finely(runs, ROBOT, 1.0))
+    return Experiment(laid, start_point(laid, ROBOT, NOISE))
 
 
 def change(drives: Experiment, name: str, **values: float) -> Floats:
@@ -102,7 +110,7 @@ def test_more_noise_and_fewer_drives_show_less(runs: list[Run]) -> None:
     names = ("lateral_slip",)
     here = limits(names, runs)["lateral_slip"]["creep"]
     assert limits(names, runs[:1])["lateral_slip"]["creep"] > 1.2 * here
-    noisy = limits(names, runs, sigma_xy=5.0 * NOISE_XY)["lateral_slip"]["creep"]
+    noisy = limits(names, runs, replace(NOISE, sigma_xy=5.0 * NOISE_XY))["lateral_slip"]["creep"]
     assert noisy > 1.5 * here
     half = limits(names, runs, power=0.5)["lateral_slip"]["creep"]
     assert half < here

@@ -19,10 +19,10 @@ from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.fitting.candidates import candidates, scores
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, path_of, predict, predict_all
-from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -38,11 +38,11 @@ def runs() -> list[Any]:
 
 
 @pytest.fixture(scope="module")
-def laid(runs: list[Any]) -> Together:
-    return together([match(run, ROBOT, 0.25, turn=0.4) for run in runs])
+def laid(runs: list[Any]) -> Concatenated:
+    return concatenated([match(run, ROBOT, 0.25, turn=0.4) for run in runs])
 
 
-def test_runs_laid_end_to_end_are_predicted_as_one_by_one(laid: Together) -> None:
+def test_runs_laid_end_to_end_are_predicted_as_one_by_one(laid: Concatenated) -> None:
     slipping = replace(
         ROBOT,
         effects=(
@@ -61,21 +61,21 @@ def test_runs_laid_end_to_end_are_predicted_as_one_by_one(laid: Together) -> Non
         np.testing.assert_allclose(every.along[own], alone.along, atol=1e-12)
 
 
-def slope(laid: Together, ahead: Robot, behind: Robot, step: float) -> Floats:
+def slope(laid: Concatenated, ahead: Robot, behind: Robot, step: float) -> Floats:
     poses = [
         legs_shown(Model(side, tuple({} for _ in laid.runs)), laid) for side in (ahead, behind)
     ]
     return np.asarray((poses[0] - poses[1]) / (2.0 * step))
 
 
-def pushed(laid: Together, amount: Amount) -> Floats:
+def pushed(laid: Concatenated, amount: Amount) -> Floats:
     point = start_point(laid, ROBOT)
     left, right = pushes_of(laid, path_of(point.model, laid), [amount], point)
     ones = np.ones((laid.run_of_step.size, 1))
     return np.asarray((legs_pushed(laid, ones, left) + legs_pushed(laid, ones, right))[..., 0])
 
 
-def test_an_error_pushes_the_legs_as_the_law_that_makes_it(laid: Together) -> None:
+def test_an_error_pushes_the_legs_as_the_law_that_makes_it(laid: Concatenated) -> None:
     """The evidence map's linear patterns against finite differences of laws that say the same."""
 
     def with_effect(name: str, **values: float) -> Robot:
@@ -127,13 +127,11 @@ def test_every_amount_has_a_channel_of_the_contract() -> None:
     assert {amount.channel for amount in AMOUNTS} == channels
 
 
-def test_a_right_robot_needs_no_calibration_and_no_effect_scores(laid: Together) -> None:
-    fit = first_fit(laid, ROBOT, "absolute")
+def test_a_right_robot_needs_no_calibration_and_no_effect_scores(laid: Concatenated) -> None:
+    fit = first_fit(laid, ROBOT)
     assert fit.calibrated == ()
     tried = candidates(LIBRARY, (), (), len(laid.runs))
-    best = max(
-        scores(laid, fit.point, "absolute", CALIBRATION, tried), key=lambda score: score.excess
-    )
+    best = max(scores(laid, fit.point, CALIBRATION, tried), key=lambda score: score.excess)
     assert best.gain < best.degrees + 25.0
 
 
@@ -155,13 +153,13 @@ def test_of_the_multipliers_those_are_kept_that_are_wrong(
     runs: list[Any], wrong: dict[str, float], named: str
 ) -> None:
     robot = replace(ROBOT, **wrong)  # type: ignore[arg-type]
-    wronged = together([match(run, robot, 0.25, turn=0.4) for run in runs])
-    fit = first_fit(wronged, robot, "absolute")
+    wronged = concatenated([match(run, robot, 0.25, turn=0.4) for run in runs])
+    fit = first_fit(wronged, robot)
     assert named in fit.calibrated
     assert max(fit.importance, key=lambda name: fit.importance[name]) == named
 
 
-def test_what_an_effect_looks_at_and_acts_on_is_found_by_trying_it(laid: Together) -> None:
+def test_what_an_effect_looks_at_and_acts_on_is_found_by_trying_it(laid: Concatenated) -> None:
     steps = laid.drive(ROBOT)
     by_name = {each.name: each for each in candidates(LIBRARY, (), (), len(laid.runs))}
     castor = support_of(by_name["castor_kick"], steps)

@@ -16,7 +16,7 @@ from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
-from werrimbi_odom.inference.events.alike import alike
+from werrimbi_odom.inference.events.common_cause import alike
 from werrimbi_odom.inference.events.events import looked_at
 from werrimbi_odom.inference.fitting.likelihood import innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all

@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.legs import (
     LegErrors,
@@ -20,11 +21,11 @@ from werrimbi_odom.inference.comparison.legs import (
     statistics,
 )
 from werrimbi_odom.inference.diagnosis.evidence import dependences
-from werrimbi_odom.inference.fitting.costs import Costs
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.design import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
 from werrimbi_odom.inference.fitting.noise import NOISES, noise_estimates
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.robot import Robot
 
@@ -46,10 +47,10 @@ def runs_of(seed: int, *, count: int = 4, seconds: float = 60.0) -> list[Any]:
     return [drive(TRUE, wandering(random, seconds), random) for _ in range(count)]
 
 
-def fitted(runs: list[Any], kind: ReferenceKind = "absolute") -> tuple[ModelFit, dict[str, Any]]:
+def fitted(runs: list[Any]) -> tuple[ModelFit, dict[str, Any]]:
     matched = [match(run, NOMINAL, 0.25) for run in runs]
-    fit = fit_model(matched, start_point(matched, NOMINAL), kind)
-    costs = Costs(matched, fit.point, kind)
+    fit = fit_model(matched, start_point(matched, NOMINAL))
+    costs = Costs(matched, fit.point)
     return fit, noise_estimates(costs, fit.point.variances, (False, False))
 
 
@@ -134,7 +135,7 @@ def test_headings_alone_hold_two_numbers(kind: ReferenceKind) -> None:
     """The right and the left radius over the base; both radii keep their mean as given."""
     given = replace(NOMINAL, left_wheel_radius_multiplier=1.02, right_wheel_radius_multiplier=1.03)
     matched = [match(run, given, 0.25) for run in headings_alone(runs_of(8))]
-    fit = fit_model(matched, start_point(matched, given), kind)
+    fit = fit_model(matched, start_point(matched, given, EvaluationOptions(reference_kind=kind)))
     assert (fit.numbers, fit.held) == (2, ("wheel_radius_scale",))
     base, left, right = (getattr(fit.robot, name) for name in list(TRUTH)[:3])
     assert left * right == pytest.approx(1.02 * 1.03, rel=1e-6)
@@ -160,7 +161,8 @@ def test_an_incremental_reference_calibrates_too() -> None:
         reference.x[:] += drift[0]
         reference.y[:] += drift[1]
     matched = [match(run, NOMINAL, 0.25) for run in runs]
-    fit = fit_model(matched, start_point(matched, NOMINAL), "incremental")
+    incremental = EvaluationOptions(reference_kind="incremental")
+    fit = fit_model(matched, start_point(matched, NOMINAL, incremental))
     for index, knob in enumerate(fit.free):
         spread = np.sqrt(fit.covariance[index, index])
         assert abs(fit.point.model.value(knob) - TRUTH[knob.name]) < 4.0 * spread
@@ -169,7 +171,7 @@ def test_an_incremental_reference_calibrates_too() -> None:
 def test_under_a_true_model_nothing_depends_on_anything() -> None:
     matched = [match(run, NOMINAL, 0.25) for run in runs_of(2)]
     fit = fit_model(matched, start_point(matched, NOMINAL))
-    assert dependences(together(matched), fit.point, "absolute", CALIBRATION)[0].p_value > 0.01
+    assert dependences(concatenated(matched), fit.point, CALIBRATION)[0].p_value > 0.01
 
 
 def test_a_missing_effect_shows_as_a_dependence() -> None:
@@ -180,7 +182,7 @@ def test_a_missing_effect_shows_as_a_dependence() -> None:
         run.reference.y[:] += 0.03 * np.cos(run.reference.yaw)
     matched = [match(run, NOMINAL, 0.25) for run in runs]
     fit = fit_model(matched, start_point(matched, NOMINAL))
-    strongest = dependences(together(matched), fit.point, "absolute", CALIBRATION)[0]
+    strongest = dependences(concatenated(matched), fit.point, CALIBRATION)[0]
     assert strongest.p_value < 1e-12
     assert (strongest.channel, strongest.name) == ("along", "turn")
 

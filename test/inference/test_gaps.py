@@ -12,13 +12,14 @@ import pytest
 from test.inference.driven import NOISE_XY, NOISE_YAW, run_of, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects.collection import find
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.prepared import prepare
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.likelihood import innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import leg_ends, match, match_finely, record_of
 from werrimbi_odom.inference.legs.gaps import gaps_in
 from werrimbi_odom.model.effect import AppliedEffect
@@ -101,17 +102,17 @@ def test_legs_without_a_gap_stay_where_they_were(runs: list[Run]) -> None:
 @pytest.mark.parametrize("which", ["poses", "positions", "yaw"])
 @pytest.mark.parametrize("kind", ["absolute", "incremental"])
 def test_a_gap_is_not_counted_and_what_follows_is_white(
-    runs: list[Run], which: str, kind: str
+    runs: list[Run], which: str, kind: ReferenceKind
 ) -> None:
     if kind == "incremental" and which == "positions":
         pytest.skip("positions without headings have no increments")
-    laid = together(match_finely([silent(parts(run, which)) for run in runs], ROBOT, 1.0))
+    laid = concatenated(match_finely([silent(parts(run, which)) for run in runs], ROBOT, 1.0))
     assert laid.gap.sum() == 2 * len(runs)
     truth = replace(ROBOT, left_wheel_noise=1e-5, right_wheel_noise=1e-5)
-    point = start_point(laid, truth, NOISE_XY, NOISE_YAW)
-    point = fit_model(
-        laid, point, kind, (), sigma_xy=NOISE_XY, sigma_yaw=NOISE_YAW, find_jumps=False, rounds=1
-    ).point
+    point = start_point(
+        laid, truth, EvaluationOptions(reference_kind=kind, sigma_xy=NOISE_XY, sigma_yaw=NOISE_YAW)
+    )
+    point = fit_model(laid, point, (), find_jumps=False, rounds=1).point
     found = innovations(
         point.model.robot,
         laid,
@@ -141,8 +142,14 @@ def test_a_wrong_way_through_a_gap_does_not_move_a_fit(runs: list[Run]) -> None:
         )
     fits = []
     for some in ([silent(run) for run in runs], lost):
-        laid = together(match_finely(some, ROBOT, 1.0))
-        fits.append(fit_model(laid, start_point(laid, ROBOT, 1e-3, 2e-3), find_jumps=False).robot)
+        laid = concatenated(match_finely(some, ROBOT, 1.0))
+        fits.append(
+            fit_model(
+                laid,
+                start_point(laid, ROBOT, EvaluationOptions(sigma_xy=1e-3, sigma_yaw=2e-3)),
+                find_jumps=False,
+            ).robot
+        )
     for name in ("wheel_separation_multiplier", "left_wheel_radius_multiplier"):
         assert getattr(fits[0], name) == pytest.approx(getattr(fits[1], name), abs=1e-9)
 

@@ -13,6 +13,7 @@ from test.inference.driven import runs_of
 from test.recorded_robots import ROBOTS, with_recordings
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY, find
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
@@ -122,7 +123,11 @@ def gyro_drive(
 
 
 def test_a_gyro_does_not_jump_at_starts_and_fast_turns() -> None:
-    prepared = prepare([gyro_drive(seed, late=0.08) for seed in (1, 2)], NOMINAL, "incremental")
+    prepared = prepare(
+        [gyro_drive(seed, late=0.08) for seed in (1, 2)],
+        NOMINAL,
+        EvaluationOptions(reference_kind="incremental"),
+    )
     assert judged_by(prepared) == "heading"
     assert not any(jumps.any() for group in prepared.groups for jumps in group.jumps)
 
@@ -169,7 +174,9 @@ def test_scans_state_how_well_they_are_matched_and_nothing_of_their_stamps(stamp
 @pytest.mark.parametrize("kind", ["absolute", "incremental"])
 def test_no_reference_is_better_than_the_step_of_its_values(kind: ReferenceKind) -> None:
     step = 2e-3
-    [(_, noise)] = prepare([gyro_drive(4, rounding=step)], NOMINAL, kind).noises
+    [(_, noise)] = prepare(
+        [gyro_drive(4, rounding=step)], NOMINAL, EvaluationOptions(reference_kind=kind)
+    ).noises
     assert noise.sigma_yaw >= 0.999 * step / np.sqrt(12.0)
 
 
@@ -179,7 +186,7 @@ def test_a_gyro_gives_base_and_delay_and_nothing_else_at_any_rate(
     kind: ReferenceKind, every: int
 ) -> None:
     runs = [gyro_drive(seed, late=0.08, stamps=2e-3, every=every) for seed in range(20, 24)]
-    found = diagnose(runs, NOMINAL, LIBRARY, kind)
+    found = diagnose(runs, NOMINAL, LIBRARY, EvaluationOptions(reference_kind=kind))
     assert set(found.found) == {"reference_delay", "track_width"}
     first = found.effect == "track_width"
     assert found.rivals == (("track_width", "reference_scale") if first else ())
@@ -200,7 +207,7 @@ def test_a_gyros_own_scale_is_told_beside_the_base_and_not_as_certain(scale: flo
         time, nothing = run.reference.time, np.full(run.reference.time.size, np.nan)
         seen = Reference(time, nothing, nothing, scale * run.reference.yaw)
         gyros.append(replace(run, name=f"run_{number}", reference=seen))
-    found = diagnose(gyros, NOMINAL, LIBRARY, "incremental")
+    found = diagnose(gyros, NOMINAL, LIBRARY, EvaluationOptions(reference_kind="incremental"))
     assert (found.verdict, found.rivals) == ("ambiguous", ("track_width", "reference_scale"))
     own = values_of(found, "reference_scale")["multiplier"]
     assert abs(own.value - scale) < max(3.0 * own.std, 1e-3 * scale)
@@ -208,7 +215,10 @@ def test_a_gyros_own_scale_is_told_beside_the_base_and_not_as_certain(scale: flo
     assert move is not None
     assert move.name == "ten_turns_by_hand"
     known = replace(NOMINAL, effects=(find("reference_scale").using(multiplier=scale),))
-    assert diagnose(gyros, known, LIBRARY, "incremental").verdict == "none"
+    assert (
+        diagnose(gyros, known, LIBRARY, EvaluationOptions(reference_kind="incremental")).verdict
+        == "none"
+    )
 
 
 @pytest.mark.parametrize(
@@ -237,7 +247,7 @@ def test_an_effects_own_length_is_no_way_for_a_gyro_to_the_size_of_the_wheels(
 def test_a_base_beyond_what_a_gyro_can_be_off_is_the_base() -> None:
     runs = [gyro_drive(seed) for seed in (40, 41)]
     narrow = replace(NOMINAL, wheel_separation_multiplier=0.8)
-    found = diagnose(runs, narrow, LIBRARY, "incremental")
+    found = diagnose(runs, narrow, LIBRARY, EvaluationOptions(reference_kind="incremental"))
     assert found.effect == "track_width"
     assert "reference_scale" not in found.rivals
 
@@ -249,7 +259,7 @@ def test_a_noise_that_no_wheel_has_is_not_written() -> None:
     run.reference.x[:] += 0.5 * np.cos(run.reference.yaw)
     run.reference.y[:] += 0.5 * np.sin(run.reference.yaw)
     runs = match_finely([run], NOMINAL, 1.0)
-    result = calibrate(runs, NOMINAL, sigma_xy=1e-3, sigma_yaw=2e-3)
+    result = calibrate(runs, NOMINAL, EvaluationOptions(sigma_xy=1e-3, sigma_yaw=2e-3))
     strange = [
         name
         for name, item in result.noises.items()
@@ -276,7 +286,9 @@ def test_the_kobuki_has_a_late_gyro_and_a_wide_base_at_any_rate(
         rows = np.arange(0, run.reference.time.size, every)
         thinned.append(replace(run, reference=run.reference.chosen(rows)))
     robot = read_robot_file(folder / "robot.yaml").robot
-    found = diagnose(thinned[:2], robot, LIBRARY, kind, holdout=thinned[2:])
+    found = diagnose(
+        thinned[:2], robot, LIBRARY, EvaluationOptions(reference_kind=kind), holdout=thinned[2:]
+    )
     assert set(found.found) == {"reference_delay", "track_width"}
     assert found.rivals == ()
     assert found.robot.wheel_separation_multiplier == pytest.approx(1.035, abs=0.004)

@@ -12,6 +12,7 @@ import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects.collection import all_effects, find
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.merged_reference import merged
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference.calibration.any_driving import calibrate
@@ -193,7 +194,9 @@ def test_after_a_jump_the_pose_is_where_the_wheels_brought_it() -> None:
 
 def test_noise_walk_and_memory_are_told_apart(runs: list[Run]) -> None:
     robot = TRUE.entered()
-    found = calibrate(match_finely(runs, robot, 1.0), robot, "local_map")
+    found = calibrate(
+        match_finely(runs, robot, 1.0), robot, EvaluationOptions(reference_kind="local_map")
+    )
     noises = found.noises
     assert noises["reference_walk_xy"].value == pytest.approx(WALK[0], rel=0.15)
     assert noises["reference_walk_yaw"].value == pytest.approx(WALK[1], rel=0.2)
@@ -210,7 +213,7 @@ def test_noise_walk_and_memory_are_told_apart(runs: list[Run]) -> None:
 
 def test_legs_are_as_wrong_as_promised_at_every_length(runs: list[Run]) -> None:
     """By poses that each err by themselves the covariance is far off at one length or another."""
-    found = compare(runs, TRUE.entered(), "local_map")
+    found = compare(runs, TRUE.entered(), EvaluationOptions(reference_kind="local_map"))
     nees = [each.all.figures.nees for each in found.lengths if each.all.figures.count >= 30]
     assert len(nees) >= 4
     assert 0.75 < min(nees) <= max(nees) < 1.3
@@ -222,7 +225,7 @@ def test_legs_are_as_wrong_as_promised_at_every_length(runs: list[Run]) -> None:
 def test_a_localiser_shows_a_wrong_base(runs: list[Run]) -> None:
     robot = replace(TRUE.entered(), wheel_separation_multiplier=1.0 / 1.03)
     others = [find(name) for name in ("castor_kick", "floor_slope", "lateral_slip")]
-    found = diagnose(runs[:3], robot, others, "local_map")
+    found = diagnose(runs[:3], robot, others, EvaluationOptions(reference_kind="local_map"))
     assert (found.verdict, found.effect) == ("named", "track_width")
 
 
@@ -250,7 +253,9 @@ def test_a_gyros_scale_is_no_wide_base_and_hides_none(wide: float) -> None:
     robot = replace(TRUE.entered(), wheel_separation_multiplier=1.0 / wide)
     drives = with_gyro(range(6), TRUE, 1.004)
     names = ("track_width", "castor_kick", "longitudinal_slip", "eccentric_left_wheel")
-    found = diagnose(drives, robot, [find(name) for name in names], "local_map")
+    found = diagnose(
+        drives, robot, [find(name) for name in names], EvaluationOptions(reference_kind="local_map")
+    )
     assert found.effect == (None if wide == 1.0 else "track_width")
     assert found.verdict == ("none" if wide == 1.0 else "named")
 
@@ -259,7 +264,9 @@ def test_a_gyros_scale_is_no_wide_base_and_hides_none(wide: float) -> None:
 @pytest.mark.parametrize("seed", range(4))
 def test_a_localiser_shows_nothing_where_nothing_is(seed: int) -> None:
     runs = session(range(10 * seed, 10 * seed + 4), jumps=2)
-    found = diagnose(runs, TRUE.entered(), all_effects().effects, "local_map")
+    found = diagnose(
+        runs, TRUE.entered(), all_effects().effects, EvaluationOptions(reference_kind="local_map")
+    )
     assert found.verdict == "none"
 
 
@@ -268,7 +275,10 @@ def test_a_wrong_base_shows_in_turns_and_not_in_the_lines_after_them(runs: list[
     robot = TRUE.entered()
     wrong = replace(robot, wheel_separation_multiplier=1.0 / 1.1)
     right, off = (
-        compare(runs[:3], one, "local_map").main.by_motion["line"].figures for one in (robot, wrong)
+        compare(runs[:3], one, EvaluationOptions(reference_kind="local_map"))
+        .main.by_motion["line"]
+        .figures
+        for one in (robot, wrong)
     )
     assert off.rmse_position_m < 1.4 * right.rmse_position_m
 
@@ -279,6 +289,8 @@ def test_few_poses_have_the_noise_that_is_usual() -> None:
     rows = np.zeros(run.reference.time.size, dtype=np.bool_)
     rows[[0, -1]] = True
     short = replace(run, reference=run.reference.chosen(rows))
-    [(_, noise)] = compare([short], TRUE.entered(), "local_map").prepared.noises
+    [(_, noise)] = compare(
+        [short], TRUE.entered(), EvaluationOptions(reference_kind="local_map")
+    ).prepared.noises
     assert (noise.xy_told, noise.yaw_told) == ("assumed", "assumed")
     assert 0.0 < noise.sigma_xy < noise.wander[0] < 0.1

@@ -16,9 +16,9 @@ from werrimbi_odom.effects.library import LIBRARY
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.fitting.candidates import Candidate
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.prediction import legs_shown
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, Pace, ideal_run
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
@@ -40,8 +40,8 @@ BY_NAME = {ideal.name: ideal for ideal in MANOEUVRES}
 
 def driven(ideal: Ideal, robot: Robot = ROBOT, yaw: bool = True) -> Experiment:
     run = ideal_run(ideal, robot, PACE, ticks=0.02, poses=0.05, measures=(True, yaw))
-    runs = together([match(run, robot, 0.25, None, 0.4)])
-    return Experiment(runs, start_point(runs, robot), "absolute")
+    runs = concatenated([match(run, robot, 0.25, None, 0.4)])
+    return Experiment(runs, start_point(runs, robot))
 
 
 @pytest.mark.parametrize("name", BY_NAME)

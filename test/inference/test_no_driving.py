@@ -249,7 +249,7 @@ def test_a_jump_of_the_reference_is_no_hand() -> None:
 def test_all_verbs_leave_it_out_and_find_what_they_find_without_it() -> None:
     wide = replace(ROBOT, wheel_separation_multiplier=1.03)
     runs = [held(run_of(wide, 1), 30.0, 36.0)[0], carried(run_of(wide, 4), 45.0, 3.0)]
-    assert look_for_mistakes(runs, ROBOT, "absolute").findings == ()
+    assert look_for_mistakes(runs, ROBOT).findings == ()
     judged = compare(runs, ROBOT).prepared
     cut = [part for run in match_finely(runs, ROBOT, 1.0) for part in run.record.left_out]
     assert [part for part in judged.left_out if part.why != "reference"] == cut

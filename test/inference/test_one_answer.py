@@ -19,6 +19,7 @@ from test.inference.test_gaps import parts, silent, without_ticks
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects.collection import all_effects, find
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.recordings import DriveOptions, Recordings
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
@@ -96,10 +97,14 @@ LONG = ("positions alone", "a gap of the ticks", "a gap of the reference", "on a
 def test_every_verb_gives_the_same_figures(case: str) -> None:
     change, kind, robot = CASES[case]
     train, held = ([change(run) for run in drives(seeds, robot)] for seeds in ((50, 51), (52,)))
-    compared = [compare(runs, robot, kind) for runs in (train, held)]
+    compared = [
+        compare(runs, robot, EvaluationOptions(reference_kind=kind)) for runs in (train, held)
+    ]
     of_compare = [figures(each.main.all.figures) for each in compared]
-    added = add_effects([find("track_width")], train, robot, kind, holdout=held)
-    diagnosis = diagnose(train, robot, (), kind, holdout=held)
+    added = add_effects(
+        [find("track_width")], train, robot, EvaluationOptions(reference_kind=kind), holdout=held
+    )
+    diagnosis = diagnose(train, robot, (), EvaluationOptions(reference_kind=kind), holdout=held)
     given = Recordings(
         ANY_FILE, all_effects(), tuple(train), tuple(held), DriveOptions(reference_kind=kind), robot
     )
@@ -107,7 +112,10 @@ def test_every_verb_gives_the_same_figures(case: str) -> None:
     for other in (
         [figures(side.figures("before")) for side in (added.train, added.holdout)],
         [figures(each.main.all.figures) for each in (look.train, look.holdout)],
-        [figures(figures_of(prepare(runs, robot, kind), robot)) for runs in (train, held)],
+        [
+            figures(figures_of(prepare(runs, robot, EvaluationOptions(reference_kind=kind)), robot))
+            for runs in (train, held)
+        ],
     ):
         np.testing.assert_array_equal(other, of_compare)
     judged = 0 if diagnosis.train.unit == "m" else 2

@@ -14,6 +14,7 @@ from test.inference.driven import run_of, runs_of
 from test.model.drives import ROBOT
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.effects.collection import load_file
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run, Ticks
 from werrimbi_odom.inference.adding.drafting import draft_effect
 from werrimbi_odom.inference.comparison.compare import compare
@@ -22,8 +23,8 @@ from werrimbi_odom.inference.diagnosis.diagnosis import SURE, diagnose
 from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence
 from werrimbi_odom.inference.diagnosis.values import values_of
 from werrimbi_odom.inference.diagnosis.variables import Variable, curve_knots, variables_of
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.rules import DRIFT_LEGS
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
@@ -53,7 +54,7 @@ def test_four_driven_wheels_are_no_mistake_of_entering(base: float, headings: bo
     """
     runs = runs_of(as_turning(ROBOT, base), [1, 2])
     runs = [headings_of(run) for run in runs] if headings else runs
-    (finding,) = look_for_mistakes(runs, ROBOT, "absolute").findings
+    (finding,) = look_for_mistakes(runs, ROBOT).findings
     assert finding.effect == "track_width"
     assert finding.values["multiplier"] == pytest.approx(base, rel=0.03)
     assert "four driven wheels" in finding.words
@@ -62,9 +63,7 @@ def test_four_driven_wheels_are_no_mistake_of_entering(base: float, headings: bo
 
 @pytest.mark.parametrize("base", [0.5, 4.0])
 def test_no_wheels_skid_as_much(base: float) -> None:
-    (finding,) = look_for_mistakes(
-        runs_of(as_turning(ROBOT, base), [1, 2]), ROBOT, "absolute"
-    ).findings
+    (finding,) = look_for_mistakes(runs_of(as_turning(ROBOT, base), [1, 2]), ROBOT).findings
     assert "four driven wheels" not in finding.words
 
 
@@ -124,7 +123,7 @@ def test_a_drift_of_a_gyro_is_not_learnt_from_one_leg() -> None:
     rows = np.flatnonzero(run.reference.time < run.reference.time[0] + 2.5)
     short = replace(run, reference=run.reference.chosen(rows))
     for some, fewest in ((short, 1), (run, DRIFT_LEGS)):
-        legs = compare([some], ROBOT, leg=0.5).legs
+        legs = compare([some], ROBOT, EvaluationOptions(leg=0.5)).legs
         assert legs.run.size >= fewest
         assert (legs.run.size < DRIFT_LEGS) == (some is short)
         assert statistics(legs.errors).rmse_yaw_rad > 0.05
@@ -140,7 +139,7 @@ def test_nothing_goes_with_an_acceleration_that_no_wheel_can_make() -> None:
     stamps = np.sort(run.ticks.time[kept] + random.uniform(0.0, 0.09, kept.size))
     late = Ticks(stamps, run.ticks.left[kept], run.ticks.right[kept])
     for ticks, told in ((run.ticks, True), (late, False)):
-        laid = together(match_finely([replace(run, ticks=ticks)], ROBOT, 1.0))
+        laid = concatenated(match_finely([replace(run, ticks=ticks)], ROBOT, 1.0))
         names = {item.name for item in variables_of(laid, Model(ROBOT, ({},)))}
         assert ("acceleration" in names) == told
         assert "speed" in names

@@ -34,7 +34,7 @@ ELSEWHERE = {
     "changes/history.py": {"_MEDIAN_CHI2_1": "a quantile"},
     "changes/search.py": {"_FEW": "time that it takes"},
     "chances.py": {"MEDIAN_TO_SIGMA": "of the normal law", "NORMAL_95": "a quantile"},
-    "events/alike.py": {"MOVES": "as good as standing, in a leg of a tenth of a second"},
+    "events/common_cause.py": {"MOVES": "as good as standing, in a leg of a tenth of a second"},
     "events/noise.py": {"_ROUNDS": "passes of a robust fit"},
     "events/steps.py": {"STRETCH": "time that it takes", "_HEARD": "a rank"},
     "comparison/legs.py": {"CHI2_95": "quantiles"},
@@ -66,7 +66,7 @@ ELSEWHERE = {
     },
     "diagnosis/cross_validation.py": {"_RANK": "a rank"},
     "diagnosis/evidence.py": {"BATCH": "size of a block", "_BLOCK": "size of a block"},
-    "comparison/suspect.py": {"_PAIRED": "time that it takes"},
+    "comparison/reference_checks.py": {"_PAIRED": "time that it takes"},
     "diagnosis/response.py": {
         "PARTS": "of a figure",
         "_UNTOLD": "of a figure: which error bars are too long to draw",
@@ -89,7 +89,7 @@ ELSEWHERE = {
         "_LOWEST": "where the search of a variance ends",
     },
     "fitting/prediction.py": {"_BLOCK": "size of a block"},
-    "fitting/together.py": {
+    "fitting/concatenated_runs.py": {
         "MODELS": "size of a cache",
         "DELAYS": "size of a cache",
         "DRIVES": "size of a cache",
@@ -254,7 +254,9 @@ def test_every_rule_has_its_reason_and_is_used(name: str) -> None:
     assert name in USED, f"{name} is used by nobody"
 
 
-@pytest.mark.parametrize("file", ["model/slip.py", "ros/compare_motion.py", "ros/kept.py"])
+@pytest.mark.parametrize(
+    "file", ["model/slip.py", "ros/compare_motion.py", "ros/recent_messages.py"]
+)
 def test_what_decides_on_the_robot_has_its_reason_where_it_stands(file: str) -> None:
     """The core and the nodes cannot import from the rules, or need not."""
     tree = ast.parse((PACKAGE / file).read_text(encoding="utf-8"))

@@ -72,7 +72,7 @@ def session(tmp_path_factory: pytest.TempPathFactory) -> list[Run]:
 
 def found(runs: list[Run], robot: Robot, mistake: Mistake) -> SetUp:
     tampered, wrong = mistake.made(runs, robot)
-    return look_for_mistakes(tampered, wrong, "absolute")
+    return look_for_mistakes(tampered, wrong)
 
 
 @pytest.fixture(scope="module")
@@ -82,7 +82,7 @@ def searched(session: list[Run]) -> Search:
     @cache
     def search(name: str) -> tuple[list[Run], SetUp]:
         tampered, wrong = EVERY[name].made(session, NOMINAL)
-        return tampered, look_for_mistakes(tampered, wrong, "absolute")
+        return tampered, look_for_mistakes(tampered, wrong)
 
     return search
 
@@ -115,7 +115,7 @@ def both(*mistakes: Mistake) -> Callable[[list[Run]], SetUp]:
         robot = NOMINAL
         for mistake in mistakes:
             runs, robot = mistake.made(runs, robot)
-        return look_for_mistakes(runs, robot, "absolute")
+        return look_for_mistakes(runs, robot)
 
     return look
 
@@ -142,7 +142,7 @@ def test_an_effect_that_the_file_holds_already_is_changed_not_doubled(session: l
         ),
     )
     turned, _ = REFERENCE["mount 90"].made(session, held)
-    mended = look_for_mistakes(turned, held, "absolute").robot
+    mended = look_for_mistakes(turned, held).robot
     assert [each.name for each in mended.effects] == ["reference_yaw_offset"]
     assert mended.effects[0].values["angle"] == pytest.approx(math.pi / 2, abs=0.01)
 
@@ -167,11 +167,11 @@ def test_an_ordinary_effect_is_no_mistake(tmp_path: Path, effect: str) -> None:
     runs = recorded(tmp_path, effect, names=["train/free_calm"])
     for poorer in (list, without_yaw, gyro, once_a_second, two_poses):
         poor = runs if poorer is list else [poorer(run) for run in runs]
-        assert look_for_mistakes(poor, NOMINAL, "absolute").findings == ()
+        assert look_for_mistakes(poor, NOMINAL).findings == ()
 
 
 def test_a_set_up_that_is_right_comes_back_as_it_is(session: list[Run]) -> None:
-    assert look_for_mistakes(session, NOMINAL, "absolute") == SetUp((), NOMINAL)
+    assert look_for_mistakes(session, NOMINAL) == SetUp((), NOMINAL)
 
 
 def test_a_reference_of_something_else_claims_nothing(session: list[Run]) -> None:
@@ -181,7 +181,7 @@ def test_a_reference_of_something_else_claims_nothing(session: list[Run]) -> Non
         Run(run.name, run.path, run.ticks, reference)
         for run, reference in zip(session, (second, third, first), strict=True)
     ]
-    assert look_for_mistakes(wrong, NOMINAL, "absolute").findings == ()
+    assert look_for_mistakes(wrong, NOMINAL).findings == ()
 
 
 # -- poorer references --------------------------------------------------------------------------
@@ -213,7 +213,7 @@ def test_a_gyro_shows_wiring_and_radius_over_base(session: list[Run], name: str)
 
 def test_a_gyro_does_not_show_a_mount(session: list[Run]) -> None:
     runs, robot = REFERENCE["mount 90"].made(session, NOMINAL)
-    assert look_for_mistakes([gyro(run) for run in runs], robot, "absolute").findings == ()
+    assert look_for_mistakes([gyro(run) for run in runs], robot).findings == ()
 
 
 @pytest.mark.parametrize("name", [*WIRING, *THINNED, "mount 180", "mount 90"])
@@ -231,12 +231,12 @@ def test_two_poses_a_drive_name_the_commonest(session: list[Run], name: str) -> 
 
 def test_no_reference_no_findings(session: list[Run]) -> None:
     bare = [Run(run.name, run.path, run.ticks) for run in session]
-    assert look_for_mistakes(bare, NOMINAL, "absolute") == SetUp((), NOMINAL)
+    assert look_for_mistakes(bare, NOMINAL) == SetUp((), NOMINAL)
     blank = [without_yaw(run) for run in session]
     for run in blank:
         assert run.reference is not None
         run.reference.x[:] = np.nan
-    assert look_for_mistakes(blank, NOMINAL, "absolute") == SetUp((), NOMINAL)
+    assert look_for_mistakes(blank, NOMINAL) == SetUp((), NOMINAL)
 
 
 def test_an_effect_of_the_file_that_looks_at_the_place_is_no_hindrance() -> None:
@@ -247,4 +247,4 @@ def test_an_effect_of_the_file_that_looks_at_the_place_is_no_hindrance() -> None
     spot = loaded(source_of("slippery_spot", amount, seen, form, 4, "p = 1e-9"))
     plain = Robot(0.35, 0.05, 2000.0, 2000.0)
     robot = replace(plain, effects=(spot.using(share=-0.1, x=0.2, y=0.1, radius=0.4),))
-    assert look_for_mistakes(runs_of(robot, (1, 2)), robot, "absolute").findings == ()
+    assert look_for_mistakes(runs_of(robot, (1, 2)), robot).findings == ()

@@ -11,6 +11,7 @@ import pytest
 
 from test.inference.set_up_mistakes import DELAYS, FACTORS, ONE_SIDE, REFERENCE, SIZES, WIRING
 from test.recorded_robots import ROBOTS, with_recordings
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.files.run_folder import read_run_folder
@@ -35,7 +36,7 @@ def looked_at(name: str, mistake_name: str = "") -> SetUp:
     if mistake_name:
         runs, robot = every[mistake_name].made(runs, robot)
     kind: ReferenceKind = "incremental" if "khepera" in name else "absolute"
-    return look_for_mistakes(runs, robot, kind)
+    return look_for_mistakes(runs, robot, EvaluationOptions(reference_kind=kind))
 
 
 def test_nothing_is_wrong_with_the_optitrack_robots_set_up() -> None:

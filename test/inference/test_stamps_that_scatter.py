@@ -15,9 +15,9 @@ import numpy as np
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, knobs_of
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 
 TRUE = WhiteNoiseRobot(left_noise=2e-4, right_noise=2e-4)
@@ -36,9 +36,9 @@ def scattered(seed: int) -> Run:
 def test_stamps_that_scatter_are_no_slip() -> None:
     slip = find("longitudinal_slip")
     robot = replace(TRUE.entered(), effects=(slip.using(coefficient=0.0),))
-    runs = together(match_finely([scattered(seed) for seed in range(10)], robot, 1.0))
+    runs = concatenated(match_finely([scattered(seed) for seed in range(10)], robot, 1.0))
     knobs = (*CALIBRATION, *(replace(each, bounds=(-0.3, 0.3)) for each in knobs_of(slip)))
-    found = fit_model(runs, start_point(runs, robot), "absolute", knobs)
+    found = fit_model(runs, start_point(runs, robot), knobs)
     which = [knob.name for knob in found.free].index("longitudinal_slip.coefficient")
     size = found.point.model.value(found.free[which])
     assert abs(size) < 3.0 * np.sqrt(found.covariance[which, which])
@@ -47,7 +47,7 @@ def test_stamps_that_scatter_are_no_slip() -> None:
 def test_speeds_of_the_body_add_up_to_its_path_and_turn() -> None:
     """Else what is off by a share of the turn would not be the base alone: a gyro sees as much."""
     robot = TRUE.entered()
-    runs = together(match_finely([scattered(1)], robot, 1.0))
+    runs = concatenated(match_finely([scattered(1)], robot, 1.0))
     seen, travel = runs.drive(robot), runs.raw(robot)
     turned = (travel.right - travel.left) / robot.track
     assert np.allclose(seen.yaw_rate.end * seen.duration, turned, rtol=0.0, atol=1e-12)

@@ -20,9 +20,9 @@ from test.model.test_effects_live_and_recorded import assert_alike, drive, estim
 from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.effects.shapes import mean_sin, share_inside
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.effect import Effect, Parameter, body_effect, wheel_effect
 from werrimbi_odom.model.odometer import Odometer
@@ -123,7 +123,7 @@ def assert_three_alike(effect: Effect, amount: float = 0.05) -> None:
     assert_alike(estimates(live, ticks), path)
     reference = Reference(path.time, path.x, path.y, path.yaw)
     record = Ticks(ticks.time, ticks.left.astype(float), ticks.right.astype(float))
-    runs = together([match(Run("run", Path("run"), record, reference), robot, 0.3)])
+    runs = concatenated([match(Run("run", Path("run"), record, reference), robot, 0.3)])
     model = Model(robot, ({},))
     moved = runs.finish - runs.start
     ahead = (moved[:, 0] + 1j * moved[:, 1]) * np.exp(-1j * runs.start[:, 2])

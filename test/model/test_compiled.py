@@ -25,9 +25,9 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.model import course
 from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
-from werrimbi_odom.model.march import March, march
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.odometer import Odometer
+from werrimbi_odom.model.scalar_loop import March, march
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 
 pytest.importorskip("numba")

@@ -13,13 +13,14 @@ import pytest
 from conftest import AMPLITUDE, PLAIN, eccentric_run
 
 from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.inference.comparison.compare import Comparison, compare
 from werrimbi_odom.inference.comparison.dead_reckoning import covariance_along
 from werrimbi_odom.inference.comparison.over_variable import once_a_turn, over_a_turn, wheel_errors
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Amount
-from werrimbi_odom.inference.diagnosis.pairs import Sides
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.response import before_after, parts_of, response
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.model.declared import DRAWINGS
@@ -69,9 +70,7 @@ def test_parts_in_which_nothing_was_driven_are_left_out(diagnosis: Diagnosis) ->
     drive = runs.drive(diagnosis.robot)
     rate = drive.yaw_rate.end
     edges = parts_of(rate, rate, turns=False)
-    found = response(
-        runs, fit.point, diagnosis.kind, (), Amount("heading", "turn"), (rate, rate), edges
-    )
+    found = response(runs, fit.point, (), Amount("heading", "turn"), (rate, rate), edges)
     assert 2 < found.centre.size <= edges.size - 1
     assert found.std.max() <= 10.0 * np.median(found.std) * 1.5
     assert np.abs(found.value / found.std).max() < 5.0
@@ -152,7 +151,7 @@ def points_and_marks(figure: Any) -> tuple[int, int]:
 
 def test_every_leg_is_counted_and_few_are_drawn() -> None:
     """A quarter of an hour: more legs than a mark each is worth, all in the means."""
-    found = compare([eccentric_run("long", 5, 15.0)], PLAIN, leg=0.05)
+    found = compare([eccentric_run("long", 5, 15.0)], PLAIN, EvaluationOptions(leg=0.05))
     assert found.legs.run.size > 5 * MARKS
     for figure in (
         path_figure(found),

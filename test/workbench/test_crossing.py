@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from werrimbi_odom.effects.collection import all_effects
-from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.workbench.work import packed, unpacked
 
@@ -56,7 +56,7 @@ def test_what_is_remembered_of_laws_stays_behind() -> None:
     """A diagnosis with a candidate's prediction in memory could not be sent: no verdict came."""
     collection = all_effects([])
     whole, few = np.zeros(2, dtype=np.intp), np.zeros((1, 3))
-    runs = Together(
+    runs = Concatenated(
         runs=(), steps=whole, legs=whole, begin=whole[:1], end=whole[:1], run_of_leg=whole[:1],
         start=few, finish=few, intervals=few[0, :1], duration=few[0, :1],
         gap=np.zeros(1, dtype=np.bool_), stepped=np.zeros(1, dtype=np.bool_),

@@ -52,27 +52,19 @@ def calibrate_fit(
 def calibrated(given: Recordings) -> Result[Calibration]:
     """`calibrate_fit` for what was read already."""
     from werrimbi_odom.inference.calibration.any_driving import calibrate
-    from werrimbi_odom.inference.legs.cutting import match_finely, sigmas_known
+    from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
     from werrimbi_odom.inference.legs.no_driving import looked_at
     from werrimbi_odom.report.calibration.document import calibration_document
     from werrimbi_odom.report.calibration.fit_words import fit_in_words
     from werrimbi_odom.report.document import paragraphs
     from werrimbi_odom.report.phrases import left_out_json, left_out_words
 
-    source, how = given.source, given.how
+    source = given.source
     given = replace(
         given, runs=tuple(looked_at(run, source.robot, source.limits) for run in given.runs)
     )
-    runs = match_finely(given.runs, source.robot, how.leg, source.limits)
-    kind = given.judging["kind"]
-    sigma_xy, sigma_yaw = sigmas_known(runs, kind, how.reference_sigma_xy, how.reference_sigma_yaw)
-    found = calibrate(
-        runs,
-        source.robot,
-        kind,
-        sigma_xy=sigma_xy,
-        sigma_yaw=sigma_yaw,
-    )
+    runs = match_finely(given.runs, source.robot, given.evaluation.leg, source.limits)
+    found = calibrate(runs, source.robot, with_stated_noise(given.evaluation, runs))
     left_out = _left_out(given, runs, found)
     figures = _json(found)
     figures["left_out"] = left_out_json(left_out)
@@ -139,7 +131,7 @@ def _judged(runs: Sequence[Run], given: Recordings, result: Calibration) -> dict
     from werrimbi_odom.inference.comparison.judged_legs import figures_of
     from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
 
-    prepared = prepare(runs, given.source.robot, **given.judging)
+    prepared = prepare(runs, given.source.robot, given.evaluation)
     before, after = (figures_of(prepared, each) for each in (given.source.robot, result.robot))
     return {
         "judged_by": judged_by(prepared),

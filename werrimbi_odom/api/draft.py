@@ -97,9 +97,9 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
         given.runs,
         robot,
         given.collection.effects,
+        given.evaluation,
         holdout=given.holdout,
         show=show,
-        **given.judging,
     )
     if diagnosis.verdict != "unknown" and insist:
         raise InputError(_known(diagnosis, given, insist))
@@ -108,10 +108,10 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
         (found.effect,),
         given.runs,
         diagnosis.robot,
+        given.evaluation,
         given=robot,
         holdout=given.holdout,
         show=show,
-        **given.judging,
     )
     return Drafted(
         found=found,

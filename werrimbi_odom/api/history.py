@@ -137,7 +137,7 @@ def _looked_at(run: Run | Path, robot: RobotFile, how: DriveOptions) -> Dated:
     given = gathered(robot, _collection(how.effects), [run], (), how)
     for words in refuse_circles(given):
         warnings.warn(words, stacklevel=2)
-    told = drive_told(given.runs[0], given.robot, **given.judging)
+    told = drive_told(given.runs[0], given.robot, given.evaluation)
     return _dated(given.runs[0].path, told)
 
 

@@ -70,7 +70,7 @@ def compared(
     from werrimbi_odom.report.comparison.document import document_of
 
     if over is None:
-        found = judge(given.runs, given.robot, **given.judging, show=show)
+        found = judge(given.runs, given.robot, given.evaluation, show=show)
     else:
         found = judged(over, given.robot, show=show)
     return Result(
@@ -186,12 +186,7 @@ def added(given: Recordings, effects: Sequence[Effect], show: Show = silent) -> 
     from werrimbi_odom.report.adding.words import json_of
 
     found = add_effects(
-        effects,
-        given.runs,
-        given.robot,
-        holdout=given.holdout,
-        **given.judging,
-        show=show,
+        effects, given.runs, given.robot, given.evaluation, holdout=given.holdout, show=show
     )
     return Result(
         found=found,

@@ -26,9 +26,9 @@ from werrimbi_odom.api.drives import Options, read_robot, read_run
 from werrimbi_odom.api.verbs import add, diagnose
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag_writing import BagWriter
-from werrimbi_odom.files.judgeable import refuse_unjudgeable
 from werrimbi_odom.files.replacing import replacing
 from werrimbi_odom.files.run import Run, Ticks
+from werrimbi_odom.files.run_checks import refuse_unjudgeable
 
 MESSAGES, ASKED, FOUND, BETTER = "messages", "asked.json", "found.json", "better.yaml"
 """Files of the folder."""

@@ -111,8 +111,8 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     """
     from werrimbi_odom.api.drives import refuse_circles
     from werrimbi_odom.cli.progress import share_done
-    from werrimbi_odom.files.judgeable import words_about
     from werrimbi_odom.files.recordings import Asked, read
+    from werrimbi_odom.files.run_checks import words_about
 
     holdout = tuple(getattr(arguments, "holdout", None) or ())
     asked = Asked(arguments.robot, tuple(arguments.runs), holdout, how_of(arguments))

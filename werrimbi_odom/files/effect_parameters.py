@@ -125,10 +125,9 @@ def parameters_of(effect: Effect) -> tuple[Parameter, ...]:
     return tuple(
         Parameter(
             f"{effect.name}.{name}",
-            "float",
-            item.null,
-            item.unit,
+            float(item.null),
             f"{item.says[:1].upper()}{item.says[1:]}.",
+            unit=item.unit,
             minimum=item.bounds[0],
             maximum=item.bounds[1],
         )

@@ -17,6 +17,14 @@ from werrimbi_odom.model.robot import Robot
 
 Kind = Literal["float", "integer", "boolean", "string", "strings"]
 Value = float | int | bool | str | tuple[str, ...]
+_KINDS: Mapping[type, Kind] = {
+    float: "float",
+    type(None): "float",
+    int: "integer",
+    bool: "boolean",
+    str: "string",
+    tuple: "strings",
+}
 
 TICKS = ("left_ticks_per_revolution", "right_ticks_per_revolution")
 VIRTUAL_TICKS_PER_REVOLUTION = 2.0e6 * math.pi
@@ -28,18 +36,20 @@ class Parameter:
     """One parameter: its type, unit, range, and what a wrong value does."""
 
     name: str
-    kind: Kind
     default: Value | None
-    """None: the file must say it."""
-    unit: str
+    """Tells the type, too; None: a number that the file must say."""
     says: str
+    unit: str = ""
     minimum: float | None = None
     above: float | None = None
     """Lower bound that is itself not allowed."""
     maximum: float | None = None
     choices: tuple[str, ...] = ()
-    may_be_empty: bool = False
-    """Of a text: whether "" is one."""
+
+    @property
+    def kind(self) -> Kind:
+        """The type of its values."""
+        return _KINDS[type(self.default)]
 
     def checked(self, value: object) -> Value:
         """The value in this parameter's type.
@@ -56,7 +66,7 @@ class Parameter:
                 raise self._wrong(value, "true or false")
             return value
         if self.kind == "string":
-            if not isinstance(value, str) or not (value or self.may_be_empty):
+            if not isinstance(value, str) or not (value or self.default == ""):
                 raise self._wrong(value, "a text")
             if self.choices and value not in self.choices:
                 raise self._wrong(value, "one of " + ", ".join(self.choices))
@@ -93,201 +103,163 @@ class Parameter:
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         "wheel_separation",
-        "float",
         None,
-        "m",
         "Nominal distance between the wheels' contact points. Too large: turns come out too small.",
+        unit="m",
         above=0.0,
     ),
     Parameter(
         "wheel_radius",
-        "float",
         None,
-        "m",
         "Nominal radius of both wheels. Too large: every distance comes out too long.",
+        unit="m",
         above=0.0,
     ),
     Parameter(
         "wheel_separation_multiplier",
-        "float",
         1.0,
-        "",
         "C_B of the UMBmark calibration: effective over nominal separation.",
         above=0.0,
     ),
     Parameter(
         "left_wheel_radius_multiplier",
-        "float",
         1.0,
-        "",
         "C_L of the UMBmark calibration: effective over nominal radius of the left wheel.",
         above=0.0,
     ),
     Parameter(
         "right_wheel_radius_multiplier",
-        "float",
         1.0,
-        "",
         "C_R of the UMBmark calibration: effective over nominal radius of the right wheel.",
         above=0.0,
     ),
     Parameter(
         "left_ticks_per_revolution",
-        "float",
         None,
-        "ticks",
         "Counts of the left encoder for one turn of its wheel, gear and edges included. "
         "The node does without it when positions come in radians: then there is no quantisation.",
+        unit="ticks",
         above=0.0,
     ),
     Parameter(
         "right_ticks_per_revolution",
-        "float",
         None,
-        "ticks",
         "The same for the right encoder.",
+        unit="ticks",
         above=0.0,
     ),
     Parameter(
         "encoder_bits",
-        "integer",
         0,
-        "bits",
         "Width at which the counters wrap; 0: they do not. Wrong: the pose jumps at each wrap.",
+        unit="bits",
         choices=("0", "8", "16", "32"),
     ),
     Parameter(
         "left_wheel_noise",
-        "float",
         4.0e-4,
-        "m^0.5",
         "k_L: the left wheel errs by k_L·√s over a travel s. Default: the paper's robot.",
+        unit="m^0.5",
         minimum=0.0,
     ),
     Parameter(
         "right_wheel_noise",
-        "float",
         5.8e-4,
-        "m^0.5",
         "k_R: the same for the right wheel. Default: the paper's robot.",
+        unit="m^0.5",
         minimum=0.0,
     ),
     Parameter(
         "covariance_order",
-        "string",
         "first",
-        "",
         "first: the paper's covariance. exact: exact moments, for headings known to worse than "
         "about 0.3 rad (long drives without a fix); costs a little more time per message.",
         choices=("first", "exact"),
     ),
     Parameter(
         "piece_path_tolerance",
-        "float",
         0.003,
-        "m",
         "How far the path may leave a piece's arc. Smaller: more pieces, not a better pose.",
+        unit="m",
         above=0.0,
     ),
     Parameter(
         "piece_heading_tolerance",
-        "float",
         0.01,
-        "rad",
         "How far the heading may leave a piece's arc. Smaller: more pieces, not a better pose.",
+        unit="rad",
         above=0.0,
     ),
     Parameter(
         "max_wheel_speed",
-        "float",
         0.0,
-        "m/s",
         "Fastest that a wheel can go; 0: unknown. Given, faster steps are refused until a second "
         "message confirms them. Too small: true motion is refused (/diagnostics counts it).",
+        unit="m/s",
         minimum=0.0,
     ),
     Parameter(
         "gap_duration",
-        "float",
         1.0,
-        "s",
         "Intervals longer than this count as gaps on /diagnostics; their motion is kept.",
+        unit="s",
         above=0.0,
     ),
-    Parameter("odom_frame_id", "string", "odom", "", "Frame of the pose (REP-105)."),
-    Parameter("base_frame_id", "string", "base_link", "", "Frame of the robot (REP-105)."),
+    Parameter("odom_frame_id", "odom", "Frame of the pose (REP-105)."),
+    Parameter("base_frame_id", "base_link", "Frame of the robot (REP-105)."),
     Parameter(
         "enable_odom_tf",
-        "boolean",
         False,
-        "",
         "Broadcast odom -> base_link on /tf; needs tf2_ros. Off where an EKF broadcasts it.",
     ),
     Parameter(
         "input_type",
-        "string",
         "joint_state",
-        "",
         "Kind of the input messages.",
         choices=("joint_state", "int32_pair", "int64_pair", "int64_multi_array"),
     ),
     Parameter(
         "position_unit",
-        "string",
         "radians",
-        "",
         "Unit of JointState positions: radians of the wheel, or ticks of its encoder.",
         choices=("radians", "ticks"),
     ),
     Parameter(
         "left_wheel_names",
-        "strings",
         ("left_wheel_joint",),
-        "",
         "Joints of the left side; several (four wheels) are averaged.",
     ),
     Parameter(
         "right_wheel_names",
-        "strings",
         ("right_wheel_joint",),
-        "",
         "Joints of the right side; several (four wheels) are averaged.",
     ),
     Parameter(
         "pairing_window",
-        "float",
         0.02,
-        "s",
         "Left and right counts that arrive within this time are one reading (int32_pair, "
         "int64_pair). Too large: a reading of one wheel may be paired with an older one.",
+        unit="s",
         above=0.0,
     ),
     Parameter(
         "learn_from_topic",
-        "string",
-        "",
         "",
         "Topic of a measured heading from which the node learns what each drive has anew (the "
         "phase of an eccentric wheel); empty: it does not.",
-        may_be_empty=True,
     ),
     Parameter(
         "learn_from_type",
-        "string",
         "imu",
-        "",
         "Kind of its messages: sensor_msgs/Imu (yaw rate), geometry_msgs/PoseStamped or "
         "nav_msgs/Odometry (yaw).",
         choices=("imu", "pose_stamped", "odometry"),
     ),
     Parameter(
         "slip_imu_topic",
-        "string",
-        "",
         "",
         "Topic of a gyro (sensor_msgs/Imu, z up): where it contradicts the wheels, they slip, and "
         "the covariance grows by what was missed; empty: it does not.",
-        may_be_empty=True,
     ),
 )
 

@@ -7,11 +7,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import TypedDict
 
 from werrimbi_odom.effects.collection import Collection
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.judgeable import refuse_unjudgeable
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.merged_reference import with_one_scale
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.repeated_poses import without_held_poses
@@ -19,8 +18,8 @@ from werrimbi_odom.files.replacing import place_of
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.files.run_bag import Topics
+from werrimbi_odom.files.run_checks import refuse_unjudgeable
 from werrimbi_odom.files.run_folder import TICKS
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 
@@ -48,19 +47,6 @@ class DriveOptions:
     """What holds the reference of each run and then of each held-out one; empty: they do."""
     force_reference: bool = False
     """Take a reference that is made from the wheels."""
-
-
-class Judging(TypedDict):
-    """How a robot is judged on drives: what comparing, diagnosing and adding have in common."""
-
-    kind: ReferenceKind
-    leg: float
-    """[m]"""
-    limits: EncoderLimits
-    sigma_xy: float | None
-    """[m]"""
-    sigma_yaw: float | None
-    """[rad]"""
 
 
 @dataclass(frozen=True)
@@ -93,11 +79,11 @@ class Recordings:
         return self.fitted or self.source.robot
 
     @property
-    def judging(self) -> Judging:
+    def evaluation(self) -> EvaluationOptions:
         """How a robot is judged on these runs."""
         how = self.how
-        return Judging(
-            kind=how.reference_kind or "absolute",
+        return EvaluationOptions(
+            reference_kind=how.reference_kind or "absolute",
             leg=how.leg,
             limits=self.source.limits,
             sigma_xy=how.reference_sigma_xy,
@@ -116,8 +102,6 @@ def read(
     ----------
     collection
         What the robot file may name.
-    show
-        Told the share done, and what is being done.
 
     Raises
     ------

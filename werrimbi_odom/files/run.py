@@ -4,10 +4,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Literal, NamedTuple
+from typing import Any, Literal, NamedTuple, TypeVar
+from weakref import ref
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,6 +22,7 @@ EXACT = 2.0**53
 ReferenceKind = Literal["absolute", "incremental", "local_map"]
 """Poses each with noise of its own (motion capture); each told from the last one, so that noise
 adds up (a gyro); or on a map, with an error that wanders slowly as well (a localiser)."""
+Made = TypeVar("Made")
 
 
 @dataclass(frozen=True, eq=False)
@@ -35,11 +37,25 @@ class Ticks:
     """The same for the right wheel."""
     channels: Mapping[str, Floats] = field(default_factory=dict)
     """Other measured columns by name; NaN where not measured."""
+    _latest: list[tuple[object, ref[Any]]] = field(default_factory=list, init=False, repr=False)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        """For another process: without what is remembered."""
+        return Ticks, (self.time, self.left, self.right, self.channels)
 
     @property
     def rows(self) -> int:
         """Number of readings."""
         return int(self.time.size)
+
+    def latest(self, by: object, work: Callable[[], Made]) -> Made:
+        """What `work` makes of them, unless the same was made last, and somebody holds it still."""
+        last, held = self._latest[0] if self._latest else (None, None)
+        made: Made | None = held() if held is not None and last == by else None
+        if made is None:
+            made = work()
+            self._latest[:] = [(by, ref(made))]
+        return made
 
 
 class GyroTurn(NamedTuple):

@@ -10,7 +10,7 @@ from dataclasses import asdict
 from itertools import groupby
 from typing import Any
 
-from werrimbi_odom.inference.changes.between import Moved
+from werrimbi_odom.inference.changes.between_drives import Moved
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.numbers import SMALL, chance_words, in_unit, listed, with_std
 

@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from werrimbi_odom.inference.events.alike import Alike
+from werrimbi_odom.inference.events.common_cause import Alike
 from werrimbi_odom.inference.events.events import Event, Events
 from werrimbi_odom.report.numbers import in_unit, with_std
 from werrimbi_odom.report.phrases import LONGEST_DRIVE

@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, Stretch
+from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, Stretch
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.robot import Robot

@@ -40,9 +40,9 @@ from werrimbi_odom.ros.compare_motion import Motion
 from werrimbi_odom.ros.compare_track import OdometryTrack, Reading
 from werrimbi_odom.ros.compare_window import Window
 from werrimbi_odom.ros.declaring import declared
+from werrimbi_odom.ros.diagnostics import diagnostic, tell
 from werrimbi_odom.ros.graph import Company, full_name
 from werrimbi_odom.ros.running import run
-from werrimbi_odom.ros.telling import diagnostic, tell
 from werrimbi_odom.ros.watching import watching_of
 
 WAITING = 1_000

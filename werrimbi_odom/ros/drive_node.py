@@ -36,10 +36,10 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.ros import drive_parameters, inputs, planar
 from werrimbi_odom.ros.declaring import declared
+from werrimbi_odom.ros.diagnostics import diagnostic, tell
 from werrimbi_odom.ros.drive_records import Records
 from werrimbi_odom.ros.graph import full_name
 from werrimbi_odom.ros.running import run
-from werrimbi_odom.ros.telling import diagnostic, tell
 
 TICK = 0.02
 """Seconds between two looks at the time."""

@@ -12,7 +12,7 @@ from typing import Any
 from diagnostic_msgs.msg import DiagnosticStatus
 
 from werrimbi_odom.model.encoder import EncoderTally
-from werrimbi_odom.ros.telling import diagnostic
+from werrimbi_odom.ros.diagnostics import diagnostic
 
 OK, WARN = DiagnosticStatus.OK, DiagnosticStatus.WARN
 ERROR, STALE = DiagnosticStatus.ERROR, DiagnosticStatus.STALE

@@ -18,27 +18,20 @@ if TYPE_CHECKING:
 PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         "hide",
-        "string",
-        "",
         "",
         "Effect to hide in the robot, `EFFECT` or `EFFECT=STRENGTH` as for `werrimbi simulate "
         "--hide` (`werrimbi simulate --list`); several with commas; `random` takes any; `none`.",
-        may_be_empty=True,
     ),
     Parameter(
         "seed",
-        "integer",
         1,
-        "",
         "Of all that is random: noises, wheel angles, counters, the gyro, what `hide` leaves open.",
         minimum=0,
         maximum=2**31,
     ),
     Parameter(
         "real_time_factor",
-        "float",
         1.0,
-        "",
         "Simulated seconds in a second. Other than 1: with `publish_clock`, and `use_sim_time` for "
         "all other nodes.",
         above=0.0,
@@ -46,88 +39,65 @@ PARAMETERS: tuple[Parameter, ...] = (
     ),
     Parameter(
         "publish_clock",
-        "boolean",
         False,
-        "",
         "Publish simulated time on /clock, and stamp with it; else stamps are the time of day.",
     ),
     Parameter(
-        "use_stamped_vel",
-        "boolean",
-        False,
-        "",
-        "Take geometry_msgs/TwistStamped on `cmd_vel`, else Twist.",
+        "use_stamped_vel", False, "Take geometry_msgs/TwistStamped on `cmd_vel`, else Twist."
     ),
     Parameter(
         "cmd_vel_timeout",
-        "float",
         0.5,
-        "s",
         "The robot stops when no command has come for so long.",
+        unit="s",
         above=0.0,
         maximum=10.0,
     ),
     Parameter(
         "joint_states_rate",
-        "float",
         50.0,
-        "Hz",
         "Messages a second on `joint_states`.",
+        unit="Hz",
         above=0.0,
         maximum=200.0,
     ),
-    Parameter("imu_rate", "float", 100.0, "Hz", "The same on `imu`.", above=0.0, maximum=200.0),
+    Parameter("imu_rate", 100.0, "The same on `imu`.", unit="Hz", above=0.0, maximum=200.0),
     Parameter(
-        "reference_rate",
-        "float",
-        20.0,
-        "Hz",
-        "The same on `reference`.",
-        above=0.0,
-        maximum=200.0,
+        "reference_rate", 20.0, "The same on `reference`.", unit="Hz", above=0.0, maximum=200.0
     ),
     Parameter(
         "reference_sigma_xy",
-        "float",
         0.001,
-        "m",
         "Noise of the reference: standard deviation of x and of y.",
+        unit="m",
         minimum=0.0,
         maximum=10.0,
     ),
     Parameter(
         "reference_sigma_yaw",
-        "float",
         0.002,
-        "rad",
         "The same of its heading.",
+        unit="rad",
         minimum=0.0,
         maximum=1.0,
     ),
     Parameter(
         "room",
-        "string",
         "none",
-        "",
         "What a lidar sees and publishes on `scan`, with walls that the robot drives through; the "
         "robot begins in the middle.",
         choices=("none", "living_room", "arena"),
     ),
     Parameter(
         "enable_tf",
-        "boolean",
         False,
-        "",
         "Broadcast world -> odom (where the robot began) and world -> base_link_true (the truth) "
         "on /tf; needs tf2_ros.",
     ),
     Parameter(
         "robot_file",
-        "string",
-        "",
         "",
         "New file to write: the robot as its maker believes it to be, for odom_node.",
-        may_be_empty=True,
     ),
 )
 

@@ -31,9 +31,9 @@ from std_srvs.srv import Trigger
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.ros import inputs, simulated_parameters
 from werrimbi_odom.ros.declaring import declared
+from werrimbi_odom.ros.diagnostics import diagnostic
 from werrimbi_odom.ros.graph import full_name
 from werrimbi_odom.ros.running import run
-from werrimbi_odom.ros.telling import diagnostic
 from werrimbi_odom.ros.transforms import transform_sender
 
 if TYPE_CHECKING:

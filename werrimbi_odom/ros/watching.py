@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """What is missing in the robot file that runs: told while the robot drives, with compare_node.
 
-Messages of the last minutes of driving are kept (`kept`); now and then a process of its own with
-a low priority diagnoses them (`werrimbi_odom.api.watched`), as the command line would.
+Messages of the last minutes of driving are kept (`recent_messages`); now and then a process of its
+own with a low priority diagnoses them (`werrimbi_odom.api.watched`), as the command line would.
 """
 
 from __future__ import annotations
@@ -32,9 +32,9 @@ from werrimbi_odom.files.replacing import place_of, replacing
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.ros import inputs
+from werrimbi_odom.ros.diagnostics import diagnostic, tell
 from werrimbi_odom.ros.graph import full_name
-from werrimbi_odom.ros.kept import Kept
-from werrimbi_odom.ros.telling import diagnostic, tell
+from werrimbi_odom.ros.recent_messages import Kept
 
 LOOKER = "werrimbi_odom.api.watched"
 """Run as a process, never imported: the node knows neither scipy nor any diagnosis."""

@@ -71,7 +71,7 @@ def opened(given: Recordings) -> Opened:
         When a run has no usable reference or no ticks.
     """
     both = split(given)
-    judge = judge_of(both.runs, both.holdout, given.robot, **given.judging)
+    judge = judge_of(both.runs, both.holdout, given.robot, given.evaluation)
     names = tuple(run.name for run in judge.kept_back)
     return Opened(given, judge.train, judge.holdout, names)
 

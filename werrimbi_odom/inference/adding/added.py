@@ -17,7 +17,7 @@ from werrimbi_odom.inference.comparison.legs import LegStatistics
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
-from werrimbi_odom.inference.diagnosis.pairs import Sides, Unit, error_of, sides_of
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, Unit, error_of, sides_of
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate

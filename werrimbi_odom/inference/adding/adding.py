@@ -15,15 +15,16 @@ from dataclasses import replace
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, Side
 from werrimbi_odom.inference.adding.fits import fits_without_jumps
-from werrimbi_odom.inference.adding.known import as_written, noises_of, with_spread
-from werrimbi_odom.inference.adding.start import (
+from werrimbi_odom.inference.adding.start_values import (
     Drives,
     drives_of,
     with_set_up,
 )
+from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.values import (
     parameters_of,
     std_of,
@@ -37,10 +38,11 @@ from werrimbi_odom.inference.comparison.prepared import Prepared
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import Misfit, misfit_of_found
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
-from werrimbi_odom.inference.diagnosis.pairs import Sides, sides_of
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, sizes_needed, with_sizes
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     MULTIPLIERS,
@@ -48,11 +50,9 @@ from werrimbi_odom.inference.fitting.knobs import (
     Model,
 )
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, of_no_wheel, with_noise
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.rules import VERY_SURE
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 
@@ -61,14 +61,10 @@ def add_effects(
     effects: Sequence[Effect],
     runs: Sequence[Run],
     robot: Robot,
-    kind: ReferenceKind = "absolute",
+    options: EvaluationOptions = EvaluationOptions(),
     *,
     given: Robot | None = None,
     holdout: Sequence[Run] = (),
-    leg: float = 1.0,
-    limits: EncoderLimits | None = None,
-    sigma_xy: float | None = None,
-    sigma_yaw: float | None = None,
     show: Show = silent,
 ) -> Added:
     """Fit effects together with all calibration, and judge each of them.
@@ -82,10 +78,6 @@ def add_effects(
         other that the fit begins with.
     holdout
         Runs to judge on alone. None given: parts of `runs` are put aside for it.
-    leg : float
-        Length of the legs that are judged [m].
-    show
-        Told the share done, and what is being done.
 
     Raises
     ------
@@ -104,17 +96,21 @@ def add_effects(
     if any(base_name(effect) is not None for effect in effects):
         robot = replace(robot, wheels_a_side=max(robot.wheels_a_side, 2))  # so says who asks for it
     show(0.0, "set-up")
-    started = begin(runs, holdout, robot, kind, leg, limits, sigma_xy, sigma_yaw, given=given)
+    started = begin(runs, holdout, robot, options, given=given)
     judge, set_up = started.judge, started.set_up
     begun, also = with_set_up(effects, robot, set_up)
-    sigma = (sigma_xy or _stated(judge, "xy_told"), sigma_yaw or _stated(judge, "yaw_told"))
+    stated = replace(
+        options,
+        sigma_xy=options.sigma_xy or _stated(judge, "xy_told"),
+        sigma_yaw=options.sigma_yaw or _stated(judge, "yaw_told"),
+    )
     show(0.15, "calibration")
-    drives = drives_of(judge.train, begun, kind, limits, sigma)
+    drives = drives_of(judge.train, begun, stated)
     drives, fits = fits_without_jumps(effects, drives, begun, robot, also, show)
     fit = fits.all
     wanted = _calibrations_wanted(effects, set_up)
     sizes = sizes_needed(fit, robot, wanted)
-    fit = with_sizes(drives.laid, kind, fit, robot, sizes)
+    fit = with_sizes(drives.laid, fit, robot, sizes)
     show(0.75, "judging")
     train, kept = _judged(judge, fits.none, fit)
     alone = {name: _at_home(judge, each, kept) for name, each in fits.without.items()}
@@ -127,22 +123,14 @@ def add_effects(
     written = fit
     if not holdout:
         show(0.9, "all runs")
-        drives, written = _on_all(judge, drives, fit, robot, runs, limits, sizes)
+        drives, written = _on_all(judge, drives, fit, robot, runs, sizes)
     known = with_spread(effects, drives, written, robot, wanted, sizes, noises)
     final = to_write(written.point.model, robot)
     final = _with_noise_of(final, robot)
     if explained:
         final = with_noise(final, {name: _told(noises[name]) for name in WHEEL_NOISES})
     show(0.95, "comparing")
-    compared = compare(
-        judge.kept_back if holdout else runs,
-        final,
-        kind,
-        leg=leg,
-        limits=limits,
-        sigma_xy=sigma_xy,
-        sigma_yaw=sigma_yaw,
-    )
+    compared = compare(judge.kept_back if holdout else runs, final, options)
     return Added(
         effects=tuple(effects),
         fitted={effect.name: parameters_of(effect, known, robot) for effect in effects},
@@ -228,7 +216,7 @@ def _noisy(fit: Fitted) -> Model:
 
 
 def _legs(prepared: Prepared, model: Model) -> Legs:
-    return judged_legs(prepared, model.without_nuisances(), prepared.leg)
+    return judged_legs(prepared, model.without_nuisances(), prepared.options.leg)
 
 
 def _noise(
@@ -236,11 +224,11 @@ def _noise(
 ) -> tuple[dict[str, NoiseEstimate], tuple[Dependence, ...], Misfit | None, bool]:
     """Noise of the wheels, what the errors still depend on, as diagnose tells it; sane wheels."""
     noises = noises_of(drives, fit)
-    found = dependences(drives.laid, fit.point, drives.kind, (*CALIBRATION, *fit.knobs))
+    found = dependences(drives.laid, fit.point, (*CALIBRATION, *fit.knobs))
     remaining = tuple(cell for cell in found if cell.p_value < VERY_SURE)
     wheels = [noises[name] for name in WHEEL_NOISES]
     sane = not any(of_no_wheel(item) for item in wheels)
-    return noises, remaining, misfit_of_found(fit, remaining, drives.laid, drives.kind), sane
+    return noises, remaining, misfit_of_found(fit, remaining, drives.laid), sane
 
 
 def _told(noise: NoiseEstimate) -> NoiseEstimate:
@@ -255,26 +243,20 @@ def _with_noise_of(robot: Robot, given: Robot) -> Robot:
 
 
 def _on_all(
-    judge: Judge,
-    drives: Drives,
-    fit: Fitted,
-    given: Robot,
-    runs: Sequence[Run],
-    limits: EncoderLimits | None,
-    sizes: Sizes,
+    judge: Judge, drives: Drives, fit: Fitted, given: Robot, runs: Sequence[Run], sizes: Sizes
 ) -> tuple[Drives, Fitted]:
     """The same model fitted on all runs, those put aside among them."""
     if len(runs) < 2:
         return drives, fit  # of a single run the last part was put aside; the rest is what there is
     both = [
         drives,
-        drives_of(judge.holdout, fit.point.model.robot, judge.kind, limits, drives.sigma),
+        drives_of(judge.holdout, fit.point.model.robot, drives.options),
     ]
     laid = tuple(run for part in both for run in part.laid.runs)
     jumped = tuple(legs for part in both for legs in part.jumped)
-    every = replace(drives, laid=together(laid), jumped=jumped)
+    every = replace(drives, laid=concatenated(laid), jumped=jumped)
     home = judge.at_home(fit.point.model)
     own = (*fit.point.model.own, *home.model.own)
     point = replace(fit.point, model=Model(fit.point.model.robot, own), excluded=jumped)
     again = every.fit(point, fit.names, fit.knobs, given)
-    return every, with_sizes(every.laid, every.kind, again, given, sizes)
+    return every, with_sizes(every.laid, again, given, sizes)

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.adding.start import (
+from werrimbi_odom.inference.adding.start_values import (
     Drives,
     Start,
     knobs_held,
@@ -59,9 +59,9 @@ def fits_without_jumps(
     match that failed within the travel of its interval passes for noise of all the others.
     """
     fits = fits_of(effects, drives, begun, given, also, show)
-    if drives.kind == "absolute":
+    if drives.options.reference_kind == "absolute":
         return drives, fits
-    found = without_jumps(drives.laid, fits.all.point, drives.kind).excluded
+    found = without_jumps(drives.laid, fits.all.point).excluded
     jumped = tuple(old | new for old, new in zip(drives.jumped, found, strict=True))
     if all(np.array_equal(*pair) for pair in zip(jumped, drives.jumped, strict=True)):
         return drives, fits

@@ -10,9 +10,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.adding.start import is_of_set_up
+from werrimbi_odom.inference.adding.start_values import is_of_set_up
 from werrimbi_odom.inference.adding.values import FittedParameter
-from werrimbi_odom.inference.diagnosis.pairs import Sides
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.rules import SURE_WHEN_ASKED
 from werrimbi_odom.inference.set_up.search import SetUp

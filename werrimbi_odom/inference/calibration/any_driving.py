@@ -10,9 +10,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
-from werrimbi_odom.inference.fitting.costs import Costs
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.design import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, MULTIPLIERS, START_YAW
 from werrimbi_odom.inference.fitting.likelihood import relative_errors
@@ -24,7 +25,6 @@ from werrimbi_odom.inference.fitting.noise import (
 )
 from werrimbi_odom.inference.fitting.precision import Precision
 from werrimbi_odom.inference.fitting.prediction import predict
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.rules import STRANGE_NOISE, SURE
 from werrimbi_odom.model.pose import Floats
@@ -80,31 +80,20 @@ class Calibration:
 
 
 def calibrate(
-    runs: Sequence[MatchedRun],
-    robot: Robot,
-    kind: ReferenceKind = "absolute",
-    *,
-    sigma_xy: float | None = None,
-    sigma_yaw: float | None = None,
+    runs: Sequence[MatchedRun], robot: Robot, options: EvaluationOptions = EvaluationOptions()
 ) -> Calibration:
-    """Fit base, radii and noise to all runs at once, and question the result.
-
-    Parameters
-    ----------
-    sigma_xy, sigma_yaw : float, optional
-        The reference's noise [m, rad] where it is known; else it is estimated too.
-    """
-    begin = start_point(runs, robot, sigma_xy, sigma_yaw)
+    """Fit base, radii and noise to all runs at once, and question the result."""
+    begin = start_point(runs, robot, options)
     knobs = (*CALIBRATION, *begin.model.nuisance_knobs)
-    fit = fit_model(runs, begin, kind, knobs, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
-    held = (sigma_xy is not None, sigma_yaw is not None)
+    fit = fit_model(runs, begin, knobs)
+    held = options.sigmas_known
     local = [knob for knob in knobs if knob.name != START_YAW]
-    precision = Precision.of(together(runs), fit.point, kind, local, fit.ways.matrix)
+    precision = Precision.of(concatenated(runs), fit.point, local, fit.ways.matrix)
     noises = noise_estimates(
-        Costs(runs, fit.point, kind), fit.point.variances, held, precision.information
+        Costs(runs, fit.point), fit.point.variances, held, precision.information
     )
     turned = [knob for knob in knobs if knob.per_run or knob in fit.free]
-    found = dependences(together(runs), fit.point, kind, turned)
+    found = dependences(concatenated(runs), fit.point, turned)
     misfit = tuple(item for item in found if item.p_value < SURE)
     strange = _strange(fit, noises)
     names = [knob.name for knob in fit.free]

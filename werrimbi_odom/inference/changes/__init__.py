@@ -4,5 +4,5 @@
 
 Reading order: `numbers` (what may change), `drives` (what each drive tells of it), `shapes` (a
 step, one drive alone, a trend, and what each would explain), `search` (which of them are needed),
-`between` (changes within one diagnosis), `history` (drives of months).
+`between_drives` (changes within one diagnosis), `history` (drives of months).
 """

@@ -22,18 +22,19 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.effects.collection import find
-from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.chances import chi2_above, fisher_above, in_any_of
-from werrimbi_odom.inference.changes.between import Moved, evidence_of, moves_of
+from werrimbi_odom.inference.changes.between_drives import Moved, evidence_of, moves_of
 from werrimbi_odom.inference.changes.drives import Drives
 from werrimbi_odom.inference.changes.numbers import MOUNT, Group, groups_of, numbers_of, value_at
 from werrimbi_odom.inference.changes.search import Segmented, levels_of, segmented
 from werrimbi_odom.inference.changes.shapes import Kind, rows_of
 from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.fitting.together import together
-from werrimbi_odom.inference.legs.cutting import match_finely, sigmas_known
+from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import (
     CALIBRATE_AGAIN,
@@ -43,7 +44,6 @@ from werrimbi_odom.inference.rules import (
     SURE,
     SURE_OF_A_CHANGE,
 )
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -110,15 +110,7 @@ class Course:
     """What the robot file has otherwise than the last drives."""
 
 
-def drive_told(
-    run: Run,
-    robot: Robot,
-    kind: ReferenceKind,
-    leg: float,
-    limits: EncoderLimits | None,
-    sigma_xy: float | None,
-    sigma_yaw: float | None,
-) -> DriveTold:
+def drive_told(run: Run, robot: Robot, options: EvaluationOptions) -> DriveTold:
     """Fit one drive by itself.
 
     Raises
@@ -126,10 +118,11 @@ def drive_told(
     InputError
         When it has no usable reference or no ticks.
     """
-    laid = together(match_finely([looked_at(run, robot, limits)], robot, leg, limits))
-    sigma = sigmas_known(laid.runs, kind, sigma_xy, sigma_yaw)
-    fit = first_fit(laid, robot, kind, sigma)
-    evidence = evidence_of(laid, fit.point, kind, fit.design, fit.scatter)
+    laid = concatenated(
+        match_finely([looked_at(run, robot, options.limits)], robot, options.leg, options.limits)
+    )
+    fit = first_fit(laid, robot, with_stated_noise(options, laid.runs))
+    evidence = evidence_of(laid, fit.point, fit.design, fit.scatter)
     told = evidence.drives(np.zeros(1))
     way = float(np.sum(predict_all(fit.point.model, laid).length[~laid.gap]))
     begin = float(laid.runs[0].counters.time[0])

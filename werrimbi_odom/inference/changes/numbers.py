@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.fitting.directions import CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     MULTIPLIERS,

@@ -10,7 +10,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.consistency import AtLength
 from werrimbi_odom.inference.comparison.groups import ByVariable, Cell, by_variables, cells_of
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs, paths
@@ -21,8 +22,8 @@ from werrimbi_odom.inference.comparison.legs import (
     statistics,
 )
 from werrimbi_odom.inference.comparison.prepared import Prepared, prepare
+from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.comparison.reference_noise import Residual
-from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.comparison.systematic import (
     NoiseFactor,
     Systematic,
@@ -31,7 +32,6 @@ from werrimbi_odom.inference.comparison.systematic import (
 )
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats, wrap
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
@@ -116,18 +116,14 @@ class Comparison:
     @property
     def main(self) -> OfLength:
         """Figures of the length asked for."""
-        return next(item for item in self.lengths if item.leg == self.prepared.leg)
+        return next(item for item in self.lengths if item.leg == self.prepared.options.leg)
 
 
 def compare(
     runs: Sequence[Run],
     robot: Robot | Model,
-    kind: ReferenceKind = "absolute",
+    options: EvaluationOptions = EvaluationOptions(),
     *,
-    leg: float = 1.0,
-    limits: EncoderLimits | None = None,
-    sigma_xy: float | None = None,
-    sigma_yaw: float | None = None,
     show: Show = silent,
 ) -> Comparison:
     """Compare a model with recorded runs.
@@ -137,16 +133,6 @@ def compare(
     robot : Robot or Model
         A `Model` brings values that each run has of its own (phases, start headings); those that a
         robot file does not say are learnt in each run.
-    kind
-        Whether each pose of the reference has noise of its own, or noise adds up along the way.
-    leg : float
-        Length of a leg [m]; a quarter turn on the spot is one too.
-    sigma_xy, sigma_yaw : float, optional
-        The reference's noise [m, rad] where it is known; else as the record states it; else it is
-        estimated from differences of the reference itself, so that no error of the model hides in
-        it.
-    show
-        Told the share done, and what is being done.
 
     Raises
     ------
@@ -154,16 +140,7 @@ def compare(
         When a run has no usable reference or no ticks.
     """
     own = robot.robot if isinstance(robot, Model) else robot
-    prepared = prepare(
-        runs,
-        own,
-        kind,
-        leg=leg,
-        limits=limits,
-        sigma_xy=sigma_xy,
-        sigma_yaw=sigma_yaw,
-        show=lambda share, words: show(0.5 * share, words),
-    )
+    prepared = prepare(runs, own, options, show=lambda share, words: show(0.5 * share, words))
     return judged(prepared, robot, show=lambda share, words: show(0.5 + 0.5 * share, words))
 
 
@@ -184,12 +161,12 @@ def judged(
         spread[~legs.outlier] = left
         groups = [np.ones(legs.run.size, dtype=np.bool_)]
         groups += [legs.errors.kind == kind for kind in KINDS]
-        if leg == prepared.leg:
+        if leg == prepared.options.leg:
             groups += [legs.run == index for index in range(len(prepared.runs))]
         whole, *others = _figures(legs, spread, np.array(groups))
         by_motion = dict(zip(KINDS, others, strict=False))
         lengths.append(OfLength(leg, whole, by_motion, systematic))
-        if leg == prepared.leg:
+        if leg == prepared.options.leg:
             main = legs, spread, others[len(KINDS) :]
     assert main is not None
     legs, spread, of_runs = main
@@ -212,7 +189,7 @@ def judged(
             spread[kept],
             0.5 * (legs.x + legs.end_x)[kept],
             0.5 * (legs.y + legs.end_y)[kept],
-            prepared.leg,
+            prepared.options.leg,
         ),
         legs=legs,
         left=spread,

@@ -28,10 +28,10 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     Residual,
     residuals_of,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.knobs import YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.own_values import known_at_home
 from werrimbi_odom.inference.fitting.prediction import legs_shown
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import (
     DRIFT_LEGS,
     FAR_ABOVE_NOISE,
@@ -87,13 +87,13 @@ def in_runs(prepared: Prepared, robot: Robot | Model) -> Model:
     bare = Model(robot, tuple({} for _ in prepared.runs))
     if all(applied.ready for applied in robot.effects):
         return bare
-    return known_at_home(bare, finely(prepared), prepared.kind)
+    return known_at_home(bare, finely(prepared), prepared.options.reference_kind)
 
 
 def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
     """Errors of all legs of one length, in the order of the runs; gaps are no legs."""
     parts = []
-    asked = prepared.cuts[prepared.leg]
+    asked = prepared.cuts[prepared.options.leg]
     for group, usual, runs in zip(prepared.groups, asked, prepared.cuts[leg], strict=True):
         own = _of_group(group, model)
         by_position = group.measure == "position"
@@ -106,11 +106,11 @@ def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
             runs,
             group.own.sigma_xy[runs.run_of_leg],
             group.own.sigma_yaw[runs.run_of_leg],
-            prepared.kind,
+            prepared.options.reference_kind,
             by_position=by_position,
             sigma_stamp=group.own.noise.sigma_stamp,
             wandering=group.own.wandering,
-            jumped=jumped_in(group, runs, prepared.kind),
+            jumped=jumped_in(group, runs, prepared.options.reference_kind),
         )
         parts.append(_table(prepared, group, runs, errors, leg))
     return _in_order(parts)
@@ -121,7 +121,7 @@ def figures_of(prepared: Prepared, robot: Robot | Model) -> LegStatistics:
 
     Over the legs on which the reference did not jump; the median is over all.
     """
-    legs = judged_legs(prepared, in_runs(prepared, robot), prepared.leg)
+    legs = judged_legs(prepared, in_runs(prepared, robot), prepared.options.leg)
     return statistics_of(legs)
 
 
@@ -147,7 +147,7 @@ def _of_group(group: Group, model: Model) -> Model:
     return Model(model.robot, tuple(model.own[index] for index in group.index))
 
 
-def _with_drifts(model: Model, runs: Together) -> Model:
+def _with_drifts(model: Model, runs: Concatenated) -> Model:
     """The model with the drift of each run's gyro, which is no error of the robot.
 
     That is the slope of the heading errors over time that most legs have (least absolute values: a
@@ -169,14 +169,16 @@ def _with_drifts(model: Model, runs: Together) -> Model:
     return Model(model.robot, tuple(own))
 
 
-def _table(prepared: Prepared, group: Group, runs: Together, errors: LegErrors, leg: float) -> Legs:
+def _table(
+    prepared: Prepared, group: Group, runs: Concatenated, errors: LegErrors, leg: float
+) -> Legs:
     times = [run.measured.time for run in runs.runs]
     begin = np.concatenate([time[:-1] for time in times])
     end = np.concatenate([time[1:] for time in times])
     legs = Legs(
         leg,
         errors,
-        jumped_in(group, runs, prepared.kind) | runs.stepped,
+        jumped_in(group, runs, prepared.options.reference_kind) | runs.stepped,
         np.array(group.index)[runs.run_of_leg],
         begin,
         end,
@@ -189,7 +191,9 @@ def _table(prepared: Prepared, group: Group, runs: Together, errors: LegErrors, 
     return legs.chosen(~runs.gap) if runs.gap.any() else legs
 
 
-def _variables(runs: Together, errors: LegErrors, begin: Floats, end: Floats) -> dict[str, Floats]:
+def _variables(
+    runs: Concatenated, errors: LegErrors, begin: Floats, end: Floats
+) -> dict[str, Floats]:
     first = runs.legs[runs.run_of_leg]
     driven = np.concatenate([[0.0], np.cumsum(errors.length)])
     middle = 0.5 * (begin + end)
@@ -245,7 +249,7 @@ def far_above_noise(prepared: Prepared, model: Model) -> bool:
     of the softest wheels there are, and of the reference by its own small differences. By what a
     usual leg is promised: a first one, whose heading nobody measured, is promised anything.
     """
-    legs = judged_legs(prepared, model, prepared.leg)
+    legs = judged_legs(prepared, model, prepared.options.leg)
     kept = legs.errors.chosen(~legs.outlier)
     places = slice(2, 3) if judged_by(prepared) == "heading" else slice(0, 2)
     error = np.sum(kept.error[:, places] ** 2, axis=1)

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.local_map import errors_on_map
 from werrimbi_odom.inference.comparison.position_filter import position_errors
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.joined_legs import predict_joined
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.likelihood import (
@@ -22,7 +23,6 @@ from werrimbi_odom.inference.fitting.likelihood import (
     wheel_part,
 )
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
-from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
@@ -112,12 +112,12 @@ def leg_errors(
     kind: ReferenceKind = "absolute",
 ) -> LegErrors:
     """Errors of all legs of one run; see `errors_of`."""
-    return errors_of(Model(robot, ({},)), together([run]), sigma_xy, sigma_yaw, kind)
+    return errors_of(Model(robot, ({},)), concatenated([run]), sigma_xy, sigma_yaw, kind)
 
 
 def errors_of(
     model: Model,
-    runs: Together,
+    runs: Concatenated,
     sigma_xy: float | Floats,
     sigma_yaw: float | Floats,
     kind: ReferenceKind = "absolute",
@@ -182,7 +182,7 @@ def errors_of(
     )
 
 
-def _headings(model: Model, runs: Together, start: Floats) -> Floats:
+def _headings(model: Model, runs: Concatenated, start: Floats) -> Floats:
     """Heading at the first pose of each run: measured, or else the model's, shape (runs,)."""
     measured = start[runs.legs[:-1], 2]
     given = [0.0 if yaw is None else yaw for yaw in model.start_yaws]
@@ -198,7 +198,7 @@ def kinds_of(along: Floats, turn: Floats, track: float) -> NDArray[np.str_]:
 
 def _reference_part(
     robot: Robot,
-    runs: Together,
+    runs: Concatenated,
     prediction: Prediction,
     sigmas: tuple[float | Floats, float | Floats, float],
     kind: ReferenceKind,
@@ -225,7 +225,7 @@ def _reference_part(
     return np.asarray(last + lever @ first @ lever.transpose(0, 2, 1))
 
 
-def _paces(robot: Robot, runs: Together) -> tuple[Floats, Floats]:
+def _paces(robot: Robot, runs: Concatenated) -> tuple[Floats, Floats]:
     """What a stamp's error is multiplied with where legs begin and end (`paces`), (m, 3) each."""
     drive = runs.drive(robot)
     return (

@@ -16,12 +16,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.likelihood import Variances, errors_between, innovations
 from werrimbi_odom.inference.fitting.own_values import with_own_values
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
-from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import Record, cut_finely
 from werrimbi_odom.inference.rules import HONEST_WITHIN, NOISE_NUMBERS, UNKNOWN_HEADING
 from werrimbi_odom.model.effect import view_of
@@ -42,30 +43,24 @@ class Wandering:
     """Else there were too few poses, and it is what such references usually have."""
 
 
-def wandering_of(
-    records: Sequence[Record],
-    robot: Robot,
-    leg: float,
-    sigma_xy: float | None,
-    sigma_yaw: float | None,
-) -> Wandering:
+def wandering_of(records: Sequence[Record], robot: Robot, options: EvaluationOptions) -> Wandering:
     """How a reference errs: likeliest beside a robot whose calibration is free.
 
     So a wrong base or radius does not pass for a walk of the reference.
     """
-    laid = together([cut_finely(record, robot, leg) for record in records])
-    point = start_point(laid, robot, sigma_xy, sigma_yaw)
+    laid = concatenated([cut_finely(record, robot, options.leg) for record in records])
+    point = start_point(laid, robot, options)
     if laid.data < NOISE_NUMBERS:
         return Wandering(point.variances, False)
-    point, knobs = with_own_values(laid, point, "local_map")
+    point, knobs = with_own_values(laid, point)
     knobs = (*CALIBRATION, *knobs, *point.model.nuisance_knobs)
-    fit = fit_model(laid, point, "local_map", knobs, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
+    fit = fit_model(laid, point, knobs)
     return Wandering(fit.point.variances, True)
 
 
 def errors_on_map(
     model: Model,
-    runs: Together,
+    runs: Concatenated,
     prediction: Prediction,
     variances: Variances,
     jumped: NDArray[np.bool_],

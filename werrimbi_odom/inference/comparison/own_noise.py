@@ -9,7 +9,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.comparison.local_map import wandering_of
 from werrimbi_odom.inference.comparison.reference_noise import (
     Measure,
@@ -17,8 +17,8 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     reference_noise,
     stamp_noise,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import TAPE_XY, TAPE_YAW, TYPICAL_MATCH
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -66,12 +66,10 @@ class OwnNoise:
 
 def noise_of(
     robot: Robot,
-    every: Together,
+    every: Concatenated,
     residuals: Sequence[Residual],
     measure: Measure,
-    kind: ReferenceKind,
-    leg: float,
-    given: tuple[float | None, float | None],
+    options: EvaluationOptions,
 ) -> OwnNoise:
     """Noise of references that measure alike.
 
@@ -79,17 +77,13 @@ def noise_of(
     ----------
     every, residuals
         The runs with a leg from each reference pose to the next, and what the robot makes of them.
-    leg : float
-        Length of a leg [m].
-    given
-        What is known of the noise, if it is [m, rad].
     """
     estimated: tuple[float | None, float | None]
     stated = [[getattr(run, name) for run in every.runs] for name in ("sigma_xy", "sigma_yaw")]
     usual = TAPE_XY, TAPE_YAW
     wandering, walk = None, (0.0, 0.0, 0.0)
-    if kind == "local_map":
-        found = wandering_of([run.record for run in every.runs], robot, leg, *given)
+    if options.reference_kind == "local_map":
+        found = wandering_of([run.record for run in every.runs], robot, options)
         wandering, usual = found.variances, TYPICAL_MATCH
         sigma = {name: float(np.sqrt(part[0])) for name, part in asdict(wandering).items()}
         estimated = (sigma["xy"], sigma["yaw"]) if found.estimated else (None, None)
@@ -97,9 +91,9 @@ def noise_of(
         # What a localiser states is how far it may be off in all: most of that is its walk.
         stated = [[None] * len(every.runs)] * 2
     else:
-        estimated = reference_noise(robot, residuals, kind)
-    position, of_position, told = _known(given[0], stated[0], estimated[0], usual[0])
-    heading, of_heading, yaw_told = _known(given[1], stated[1], estimated[1], usual[1])
+        estimated = reference_noise(robot, residuals, options.reference_kind)
+    position, of_position, told = _known(options.sigma_xy, stated[0], estimated[0], usual[0])
+    heading, of_heading, yaw_told = _known(options.sigma_yaw, stated[1], estimated[1], usual[1])
     stamp = stamp_noise(every, residuals)
     noise = ReferenceNoise(position, heading, told, yaw_told, stamp, *walk)
     return OwnNoise(noise, of_position, of_heading, wandering)

@@ -15,6 +15,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.comparison.jumps import jumped_legs, jumps_of
 from werrimbi_odom.inference.comparison.own_noise import OwnNoise, ReferenceNoise, noise_of
@@ -24,8 +25,8 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     measured_alike,
     residuals_of,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import (
     Record,
     cut_finely,
@@ -46,7 +47,6 @@ from werrimbi_odom.inference.rules import (
     LEGS_OF_A_RUN,
     QUARTER_TURN,
 )
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
@@ -58,7 +58,7 @@ class Group:
 
     index: tuple[int, ...]
     measure: Measure
-    every: Together
+    every: Concatenated
     whole: tuple[bool, ...]
     """Whether all rows of a run's reference are in `every`."""
     jumps: tuple[Floats, ...]
@@ -74,12 +74,10 @@ class Prepared:
 
     robot: Robot
     """By whose travel the legs are cut."""
-    kind: ReferenceKind
-    leg: float
-    limits: EncoderLimits | None
+    options: EvaluationOptions
     runs: tuple[Run, ...]
     groups: tuple[Group, ...]
-    cuts: Mapping[float, tuple[Together, ...]]
+    cuts: Mapping[float, tuple[Concatenated, ...]]
     """By length, for each group."""
 
     @property
@@ -103,8 +101,8 @@ class Prepared:
         (`legs.cutting.Record.left_out`), and it is cut out and told like these.
         """
         found: list[list[LeftOut]] = [[] for _ in self.runs]
-        for group, legs in zip(self.groups, self.cuts[self.leg], strict=True):
-            spoilt = jumped_in(group, legs, self.kind)
+        for group, legs in zip(self.groups, self.cuts[self.options.leg], strict=True):
+            spoilt = jumped_in(group, legs, self.options.reference_kind)
             for place, (index, run) in enumerate(zip(group.index, legs.runs, strict=True)):
                 found[index] += run.record.left_out
                 own = spoilt[legs.legs[place] : legs.legs[place + 1]] & ~run.gap
@@ -127,12 +125,8 @@ class Prepared:
 def prepare(
     runs: Sequence[Run],
     robot: Robot,
-    kind: ReferenceKind = "absolute",
+    options: EvaluationOptions = EvaluationOptions(),
     *,
-    leg: float = 1.0,
-    limits: EncoderLimits | None = None,
-    sigma_xy: float | None = None,
-    sigma_yaw: float | None = None,
     show: Show = silent,
 ) -> Prepared:
     """Match, find the reference's noise and jumps, and cut legs of several lengths.
@@ -142,26 +136,23 @@ def prepare(
     InputError
         When a run has no usable reference or no ticks.
     """
-    runs = [looked_at(run, robot, limits) for run in runs]
+    runs = [looked_at(run, robot, options.limits) for run in runs]
     members: dict[Measure, list[tuple[int, Record, bool]]] = {}
     for index, run in enumerate(runs):
         show(0.5 * index / len(runs), f"matching {run.name}")
         alike, measure = measured_alike(run)
-        record = record_of(alike, robot, limits, leg)
+        record = record_of(alike, robot, options.limits, options.leg)
         members.setdefault(measure, []).append((index, record, alike is run))
-    groups = tuple(
-        _group(robot, measure, found, kind, leg, sigma_xy, sigma_yaw)
-        for measure, found in members.items()
-    )
+    groups = tuple(_group(robot, measure, found, options) for measure, found in members.items())
     show(0.5, "cutting legs")
     return Prepared(
-        robot, kind, leg, limits, tuple(runs), groups, _cut_to_lengths(groups, robot, leg)
+        robot, options, tuple(runs), groups, _cut_to_lengths(groups, robot, options.leg)
     )
 
 
 def _cut_to_lengths(
     groups: Sequence[Group], robot: Robot, leg: float
-) -> dict[float, tuple[Together, ...]]:
+) -> dict[float, tuple[Concatenated, ...]]:
     """Legs of all lengths of which there are enough, joined of the shortest.
 
     A length is as good as another where both have the same legs, for the reference is too rare.
@@ -192,10 +183,10 @@ def _cut_to_lengths(
             np.unique(np.concatenate(ends))
             for ends in zip(*(r[number] for r in rows.values()), strict=True)
         ]
-        parts.append(together([divided(*one) for one in zip(own, every, strict=True)]))
+        parts.append(concatenated([divided(*one) for one in zip(own, every, strict=True)]))
     return {
         length: tuple(
-            together([joined_legs(*one) for one in zip(part.runs, own, strict=True)], part)
+            concatenated([joined_legs(*one) for one in zip(part.runs, own, strict=True)], part)
             for part, own in zip(parts, found, strict=True)
         )
         for length, found in rows.items()
@@ -209,32 +200,31 @@ def _way(record: Record, robot: Robot, leg: float) -> Floats:
     return np.interp(record.measured.time, counters.time, way)
 
 
-def finely(prepared: Prepared) -> Together:
+def finely(prepared: Prepared) -> Concatenated:
     """Cut the runs into the short legs of a fit: what `match_finely` does, from what is there."""
     found = {}
     for group in prepared.groups:
         for index, every, whole in zip(group.index, group.every.runs, group.whole, strict=True):
             if whole:
-                found[index] = cut_finely(every.record, prepared.robot, prepared.leg)
+                found[index] = cut_finely(every.record, prepared.robot, prepared.options.leg)
             else:
                 run = prepared.runs[index]
-                [found[index]] = match_finely([run], prepared.robot, prepared.leg, prepared.limits)
-    return together([found[index] for index in range(len(prepared.runs))])
+                [found[index]] = match_finely(
+                    [run], prepared.robot, prepared.options.leg, prepared.options.limits
+                )
+    return concatenated([found[index] for index in range(len(prepared.runs))])
 
 
 def _group(
     robot: Robot,
     measure: Measure,
     members: list[tuple[int, Record, bool]],
-    kind: ReferenceKind,
-    leg: float,
-    sigma_xy: float | None,
-    sigma_yaw: float | None,
+    options: EvaluationOptions,
 ) -> Group:
-    every = together([every_pose(record) for _, record, _ in members])
+    every = concatenated([every_pose(record) for _, record, _ in members])
     plain = Model(robot, tuple({} for _ in members))
     residuals, _ = residuals_of(plain, every, measure)
-    own = noise_of(robot, every, residuals, measure, kind, leg, (sigma_xy, sigma_yaw))
+    own = noise_of(robot, every, residuals, measure, options)
     jumps = tuple(
         jumps_of(residual, run.gap) for residual, run in zip(residuals, every.runs, strict=True)
     )
@@ -249,7 +239,7 @@ def _group(
     )
 
 
-def jumped_in(group: Group, runs: Together, kind: ReferenceKind) -> NDArray[np.bool_]:
+def jumped_in(group: Group, runs: Concatenated, kind: ReferenceKind) -> NDArray[np.bool_]:
     """Legs that a jump of the reference spoils, shape (m,)."""
     both = zip(group.jumps, runs.runs, strict=True)
     return np.concatenate([jumped_legs(jumps, run.rows, kind) for jumps, run in both])

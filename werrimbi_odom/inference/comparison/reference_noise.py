@@ -21,10 +21,10 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.knobs import START_YAW, Model
 from werrimbi_odom.inference.fitting.likelihood import reading_noise
 from werrimbi_odom.inference.fitting.prediction import legs_shown, right_handed
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import (
     DIFFERENCE_REACH,
     DIFFERENCES,
@@ -85,7 +85,7 @@ def measured_alike(run: Run) -> tuple[Run, Measure]:
 
 
 def residuals_of(
-    model: Model, every: Together, measure: Measure
+    model: Model, every: Concatenated, measure: Measure
 ) -> tuple[tuple[Residual, ...], Model]:
     """Dead reckoning along every reference pose, against what was measured, run by run.
 
@@ -116,7 +116,7 @@ def residuals_of(
     return tuple(found), model
 
 
-def _with_headings(model: Model, every: Together, relative: Floats) -> Model:
+def _with_headings(model: Model, every: Concatenated, relative: Floats) -> Model:
     mirror = -1.0 if view_of(model.robot.effects).mirrored else 1.0
     own: list[dict[str, float]] = []
     for index, run in enumerate(every.runs):
@@ -208,7 +208,7 @@ def reference_noise(
     )
 
 
-def stamp_noise(every: Together, residuals: Sequence[Residual]) -> float:
+def stamp_noise(every: Concatenated, residuals: Sequence[Residual]) -> float:
     """Standard deviation of the stamps of gyros, and of scans [s]; zero for others.
 
     While the robot turns, its headings scatter more than on a straight line, by its turn rate times

@@ -17,13 +17,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.rules import FOLD_PARTS, FOLDS, USELESS_NUMBER
 
 _RANK = 1e-6
 
 
-def cross_validated_cost(runs: Together, fit: Fitted) -> float:
+def cross_validated_cost(runs: Concatenated, fit: Fitted) -> float:
     """Minus two log-likelihood of a fitted model on legs left out of its fit, one fold at a time.
 
     What the other folds cannot determine at all (the phase of a run that lies in one fold) is
@@ -52,7 +52,7 @@ def cross_validated_cost(runs: Together, fit: Fitted) -> float:
     return fit.cost + change
 
 
-def fold_of_leg(runs: Together) -> NDArray[np.intp]:
+def fold_of_leg(runs: Concatenated) -> NDArray[np.intp]:
     """The fold of each leg, (m,): parts of every run, dealt in turn."""
     first = runs.legs[runs.run_of_leg]
     count = np.diff(runs.legs)[runs.run_of_leg]
@@ -60,6 +60,6 @@ def fold_of_leg(runs: Together) -> NDArray[np.intp]:
     return np.asarray((part + runs.run_of_leg) % FOLDS, dtype=np.intp)
 
 
-def holds_when_cross_validated(runs: Together, before: Fitted, after: Fitted) -> bool:
+def holds_when_cross_validated(runs: Concatenated, before: Fitted, after: Fitted) -> bool:
     """Whether legs left out of the fits are likelier with the one model than with the other."""
     return cross_validated_cost(runs, after) < cross_validated_cost(runs, before)

@@ -18,13 +18,14 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
+from werrimbi_odom.inference.diagnosis.homogeneity import lasting, lasting_effect
 from werrimbi_odom.inference.diagnosis.in_place_of_held import rivals_of_held
-from werrimbi_odom.inference.diagnosis.lasting import lasting, lasting_effect
 from werrimbi_odom.inference.diagnosis.search import (
     Instead,
     Round,
@@ -39,9 +40,9 @@ from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict
 from werrimbi_odom.inference.events.events import Events, Side, events_among, without
 from werrimbi_odom.inference.events.noise import noise_of_most
 from werrimbi_odom.inference.fitting.candidates import Score
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
-from werrimbi_odom.inference.fitting.together import Together, together
-from werrimbi_odom.inference.legs.cutting import match_finely, sigmas_known
+from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
 from werrimbi_odom.inference.rules import (
     CELLS_ASKED,
     EVENT_ROUNDS,
@@ -53,7 +54,6 @@ from werrimbi_odom.inference.rules import (
     VERY_SURE,
 )
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 
@@ -64,13 +64,9 @@ def diagnose(
     runs: Sequence[Run],
     robot: Robot,
     effects: Sequence[Effect],
-    kind: ReferenceKind = "absolute",
+    options: EvaluationOptions = EvaluationOptions(),
     *,
     holdout: Sequence[Run] = (),
-    leg: float = 1.0,
-    limits: EncoderLimits | None = None,
-    sigma_xy: float | None = None,
-    sigma_yaw: float | None = None,
     show: Show = silent,
 ) -> Diagnosis:
     """Find out what a model is missing.
@@ -81,21 +77,16 @@ def diagnose(
         The library, and whatever the user brings.
     holdout
         Runs to judge on alone. None given: some of `runs` are put aside for it.
-    leg : float
-        Length of the legs that are judged [m].
-    show
-        Told the share done, and what is being done.
 
     Raises
     ------
     InputError
         When a run has no usable reference or no ticks, or is in degrees or millimetres.
     """
-    known = (sigma_xy, sigma_yaw)
 
     def search(show: Show) -> tuple[Diagnosis, Events]:
-        found, judge = _searched(runs, holdout, robot, effects, kind, leg, limits, known, show)
-        return found, _happened(found, judge, kind, known)
+        found, judge = _searched(runs, holdout, robot, effects, options, show)
+        return found, _happened(found, judge)
 
     found, happened = search(show)
     for _ in range(EVENT_ROUNDS):
@@ -111,17 +102,11 @@ def diagnose(
     return replace(found, happened=happened)
 
 
-def _happened(
-    found: Diagnosis,
-    judge: Judge,
-    kind: ReferenceKind,
-    known: tuple[float | None, float | None],
-) -> Events:
+def _happened(found: Diagnosis, judge: Judge) -> Events:
     """What happened at an instant beside the model with everything found."""
     if found.of_another_drive:
         return Events()
-    sigma = sigmas_known(found.runs.runs, kind, *known)
-    noise = noise_of_most(found.runs, found.final.point, kind, sigma)
+    noise = noise_of_most(found.runs, found.final.point)
     point = replace(found.final.point, variances=noise)
     home = replace(judge.at_home(point.model), variances=noise)
     fitted, kept = ([run.path for run in some] for some in (judge.fitted_on, judge.kept_back))
@@ -130,7 +115,7 @@ def _happened(
             Side(found.runs.runs, fitted, point, held_out=False),
             Side(judge.fine.runs, kept, home, held_out=True),
         ],
-        kind,
+        point.options.reference_kind,
     )
 
 
@@ -139,57 +124,53 @@ def _searched(
     holdout: Sequence[Run],
     robot: Robot,
     effects: Sequence[Effect],
-    kind: ReferenceKind,
-    leg: float,
-    limits: EncoderLimits | None,
-    known: tuple[float | None, float | None],
+    options: EvaluationOptions,
     show: Show,
 ) -> tuple[Diagnosis, Judge]:
-    """Everything that effects explain, and who judges it; `known`: the reference's noise."""
+    """Everything that effects explain, and who judges it."""
     show(0.0, "set-up")
-    begun = begin(runs, holdout, robot, kind, leg, limits, *known)
+    begun = begin(runs, holdout, robot, options)
     judge, set_up = begun.judge, begun.set_up
-    laid = together(match_finely(judge.fitted_on, set_up.robot, leg, limits))
+    laid = concatenated(match_finely(judge.fitted_on, set_up.robot, options.leg, options.limits))
     effects = askable(effects, laid, set_up.robot)
-    sigma = sigmas_known(laid.runs, kind, *known)
     show(0.1, "calibration")
-    fit = first_fit(laid, set_up.robot, kind, sigma)
+    fit = first_fit(laid, set_up.robot, with_stated_noise(options, laid.runs))
     rounds: list[Round] = []
     beyond = misfit = None
     for number in range(ROUNDS):
         show(0.2 + 0.7 * number / ROUNDS, f"effects, round {number + 1}")
-        this = search_round(laid, fit, kind, effects, set_up.robot, sigma)
+        this = search_round(laid, fit, effects, set_up.robot)
         rounds.append(this)
-        best = _best(this, laid, kind)
-        beyond = _beyond_the_library(this, best, laid, kind)
-        misfit = misfit_of_held_law(this, best, beyond, laid, kind)
+        best = _best(this, laid)
+        beyond = _beyond_the_library(this, best, laid)
+        misfit = misfit_of_held_law(this, best, beyond, laid)
         if misfit is not None:
             beyond = None
         if best is None or beyond is not None or misfit is not None:
             break
         if not holds_when_cross_validated(laid, fit, best):
             break
-        fit = jumps_anew(laid, best, kind, set_up.robot, sigma)
+        fit = jumps_anew(laid, best, set_up.robot)
     remaining = (
         rounds[-1].dependences
         if rounds[-1].before is fit
-        else dependences(laid, fit.point, kind, (*CALIBRATION, *fit.knobs))
+        else dependences(laid, fit.point, (*CALIBRATION, *fit.knobs))
     )
     show(0.95, "held-out runs")
     instead: tuple[Instead, ...] = ()
     if not fit.names and fit.calibrated and beyond is None:
-        instead = instead_of_calibration(laid, fit, kind, effects, set_up.robot, sigma)
+        instead = instead_of_calibration(laid, fit, effects, set_up.robot)
     if misfit is None and beyond is None:
         certain = [cell for cell in remaining if cell.p_value < VERY_SURE]
-        misfit = misfit_of_found(fit, certain, laid, kind)
-    found = told(begun, robot, tuple(rounds), fit, beyond, remaining, laid, kind, instead)
+        misfit = misfit_of_found(fit, certain, laid)
+    found = told(begun, robot, tuple(rounds), fit, beyond, remaining, laid, instead)
     held: Mapping[str, tuple[str, ...]] = {}
     if found.verdict == "none" and misfit is None:
-        held = rivals_of_held(laid, fit, kind, effects, set_up.robot, sigma)
+        held = rivals_of_held(laid, fit, effects, set_up.robot)
     return replace(found, misfit=misfit, rivals_of_held=held), judge
 
 
-def _best(this: Round, runs: Together, kind: ReferenceKind) -> Fitted | None:
+def _best(this: Round, runs: Concatenated) -> Fitted | None:
     """The cheapest model of a round, if chance does not explain it."""
     fit = next((fit for fit in this.tried if not fit.at_bound), None)
     if fit is None:
@@ -199,13 +180,11 @@ def _best(this: Round, runs: Together, kind: ReferenceKind) -> Fitted | None:
         return None
     score = next(score for score in this.scores if score.candidate.name == fit.names[-1])
     knobs = (*CALIBRATION, *this.before.knobs)
-    lasts = lasting_effect(runs, this.before.point, kind, knobs, score) < SURE
+    lasts = lasting_effect(runs, this.before.point, knobs, score) < SURE
     return fit if lasts else None
 
 
-def _beyond_the_library(
-    this: Round, best: Fitted | None, runs: Together, kind: ReferenceKind
-) -> Dependence | None:
+def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) -> Dependence | None:
     """A dependence that explains more than a right law could leave to it: no effect is what it is.
 
     It competes with the best effect as a model of its own, by the same fall of the cost and the
@@ -235,7 +214,7 @@ def _beyond_the_library(
 
         certain = [cell for cell in certain if more_than_a_law_leaves(cell)]
     knobs = (*CALIBRATION, *this.before.knobs)
-    found = lasting(runs, this.before.point, kind, knobs, certain[:CELLS_ASKED])
+    found = lasting(runs, this.before.point, knobs, certain[:CELLS_ASKED])
     return next((each.cell for each in found if each.p_value < SURE and not each.only_in), None)
 
 
@@ -244,5 +223,5 @@ def _fall(gain: float, data: int) -> float:
     return -data * math.log1p(-min(max(gain / data, 0.0), 0.999))
 
 
-def _support(score: Score, runs: Together, model: Model) -> Support:
+def _support(score: Score, runs: Concatenated, model: Model) -> Support:
     return support_of(score.candidate, runs.drive(model.robot))

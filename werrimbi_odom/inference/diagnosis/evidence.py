@@ -19,7 +19,6 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above, in_any_of
 from werrimbi_odom.inference.diagnosis.variables import (
     CONSTANT,
@@ -30,10 +29,10 @@ from werrimbi_odom.inference.diagnosis.variables import (
     variables_of,
 )
 from werrimbi_odom.inference.fitting.candidates import unexplained
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import DrivenPath, path_of, predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import ScoreTest, score_test_of_products
 from werrimbi_odom.inference.rules import FLOOR_CELL, NEIGHBOUR
 from werrimbi_odom.model.effect import view_of
@@ -127,15 +126,13 @@ def place_of(cell: Dependence) -> tuple[float, float]:
     return float(px), float(py)
 
 
-def dependences(
-    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob]
-) -> tuple[Dependence, ...]:
+def dependences(runs: Concatenated, point: Point, knobs: Sequence[Knob]) -> tuple[Dependence, ...]:
     """All cells of the map for a model, the most certain first.
 
     `knobs` are what the model can turn: what they can explain is no evidence.
     """
-    frame, rest = unexplained(runs, point, kind, knobs, predict_all(point.model, runs))
-    told = unexpected(runs, point, kind)
+    frame, rest = unexplained(runs, point, knobs, predict_all(point.model, runs))
+    told = unexpected(runs, point)
     found: list[tuple[Amount, Variable, Form, ScoreTest]] = []
     known = np.concatenate([frame.basis, rest[:, None]], axis=-1)
     for cell, change in _changes(runs, point):
@@ -196,7 +193,7 @@ class _Cells(NamedTuple):
     amounts: Sequence[Amount]
 
 
-def _changes(runs: Together, point: Point) -> Iterator[tuple[_Cells, Floats]]:
+def _changes(runs: Concatenated, point: Point) -> Iterator[tuple[_Cells, Floats]]:
     """Cells with their changes of the legs (m, 3, amounts * k), as many as memory bears at once."""
     path = path_of(point.model, runs)
     of_wheels = [amount for amount in AMOUNTS if amount.channel in _OF_WHEELS]
@@ -228,7 +225,7 @@ Pushes = Callable[[NDArray[np.intp]], Floats]
 asked for, since of all steps it is much."""
 
 
-def legs_pushed(runs: Together, functions: Floats, pushes: Pushes) -> Floats:
+def legs_pushed(runs: Concatenated, functions: Floats, pushes: Pushes) -> Floats:
     """Sums over each leg's steps of functions (n, k) times pushes, as (m, p, k)."""
     size = runs.end - runs.begin
     width = pushes(np.zeros(0, dtype=np.intp)).shape[-1]
@@ -248,7 +245,7 @@ _BLOCK = 4096
 
 
 def pushes_of(
-    runs: Together, path: DrivenPath, amounts: Sequence[Amount], point: Point
+    runs: Concatenated, path: DrivenPath, amounts: Sequence[Amount], point: Point
 ) -> tuple[Pushes, Pushes]:
     """What unit errors of steps do to their legs' relative poses: of left wheel, of right wheel.
 
@@ -329,7 +326,7 @@ class _Levers(NamedTuple):
         return found
 
 
-def _levers(runs: Together, path: DrivenPath, view: View) -> _Levers:
+def _levers(runs: Concatenated, path: DrivenPath, view: View) -> _Levers:
     leg = np.searchsorted(runs.begin, np.arange(path.motion.turn.size), side="right") - 1
     leg = np.clip(leg, 0, None)
     facing = np.exp(-1j * (path.yaw[runs.begin] + view.yaw))[leg]

@@ -14,9 +14,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.lasting import lasting, pattern_of
+from werrimbi_odom.inference.diagnosis.homogeneity import lasting, pattern_of
 from werrimbi_odom.inference.diagnosis.search import Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted, rise_without
 from werrimbi_odom.inference.diagnosis.support import Support, support_of
@@ -27,10 +26,10 @@ from werrimbi_odom.inference.fitting.candidates import (
     signatures,
     unexplained,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import LEFT_ASKED, LITTLE_OF_A_LAW, REST_EXPLAINED, SURE
 from werrimbi_odom.model.effect import AppliedEffect
@@ -51,7 +50,7 @@ class Misfit:
 
 
 def misfit_of_held_law(
-    this: Round, best: Fitted | None, beyond: Dependence | None, runs: Together, kind: ReferenceKind
+    this: Round, best: Fitted | None, beyond: Dependence | None, runs: Concatenated
 ) -> Misfit | None:
     """The misfit that a round found in the place of an effect; None where it found one.
 
@@ -78,14 +77,14 @@ def misfit_of_held_law(
         if cell is None or share >= LITTLE_OF_A_LAW:
             continue
         knobs = (*CALIBRATION, *before.knobs)
-        left = _gain_beside(runs, before.point, kind, knobs, score, cell)
+        left = _gain_beside(runs, before.point, knobs, score, cell)
         if left < (1.0 - REST_EXPLAINED) * score.gain:
             return Misfit(law.name, cell, share)
     return None
 
 
 def misfit_of_found(
-    fit: Fitted, certain: Sequence[Dependence], runs: Together, kind: ReferenceKind
+    fit: Fitted, certain: Sequence[Dependence], runs: Concatenated
 ) -> Misfit | None:
     """What is left beside everything found, if anything lasts: what explains most for its numbers.
 
@@ -96,7 +95,7 @@ def misfit_of_found(
     """
     worth = sorted(certain, key=lambda cell: cell.degrees * fit.price_of_one - cell.gain)
     knobs = (*CALIBRATION, *fit.knobs)
-    for cell, p_value, only_in in lasting(runs, fit.point, kind, knobs, worth[:LEFT_ASKED]):
+    for cell, p_value, only_in in lasting(runs, fit.point, knobs, worth[:LEFT_ASKED]):
         dear = cell.gain <= cell.degrees * fit.price_of_one  # as a law of the robot
         if only_in or (p_value < SURE and not dear):
             for law, support, explained in _laws(fit, runs):
@@ -106,7 +105,7 @@ def misfit_of_found(
     return None
 
 
-def _laws(fit: Fitted, runs: Together) -> Iterator[tuple[AppliedEffect, Support, float]]:
+def _laws(fit: Fitted, runs: Concatenated) -> Iterator[tuple[AppliedEffect, Support, float]]:
     """Laws of a model with their reach, and by how much each lowers the cost."""
     robot = fit.point.model.robot
     drive = runs.drive(fit.point.model.laid_out(runs.steps))
@@ -127,19 +126,14 @@ def _shares(support: Support, cell: Dependence) -> bool:
 
 
 def _gain_beside(
-    runs: Together,
-    point: Point,
-    kind: ReferenceKind,
-    knobs: Sequence[Knob],
-    score: Score,
-    cell: Dependence,
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], score: Score, cell: Dependence
 ) -> float:
     """What a candidate would still explain if the model could turn a cell's pattern as well."""
     prediction = predict_all(point.model, runs)
-    turned, rest = unexplained(runs, point, kind, knobs, prediction)
-    pattern = pattern_of(runs, point, kind, cell)
+    turned, rest = unexplained(runs, point, knobs, prediction)
+    pattern = pattern_of(runs, point, cell)
     freer = nuisance(turned.residual(pattern))
-    signature = next(signatures(runs, point, kind, knobs, [score.candidate])[1])
+    signature = next(signatures(runs, point, knobs, [score.candidate])[1])
     free, left = freer.residual(signature.free), freer.residual(rest)
     found = score_test(signature.flat, free, left)
     return 0.0 if found is None else found.gain

@@ -10,20 +10,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
 from werrimbi_odom.inference.comparison.prepared import Prepared, finely, judged_by, prepare
-from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise, recorded_otherwise
-from werrimbi_odom.inference.diagnosis.pairs import Sides, Unit, error_of, median_of, sides_of
+from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise, recorded_otherwise
+from werrimbi_odom.inference.diagnosis.paired_comparison import (
+    Sides,
+    Unit,
+    error_of,
+    median_of,
+    sides_of,
+)
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.own_values import at_home, known_at_home
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
 
@@ -33,7 +39,6 @@ class Errors:
 
     train: float
     holdout: float
-    train_median: float
     holdout_median: float
     holdout_yaw: float
     """Root mean square heading error [rad]."""
@@ -51,12 +56,12 @@ class Judge:
     """Legs to judge models on: those of the runs they were fitted on, and of others."""
 
     given: Robot
-    kind: ReferenceKind
+    options: EvaluationOptions
     fitted_on: tuple[Run, ...]
     kept_back: tuple[Run, ...]
     train: Prepared
     holdout: Prepared
-    fine: Together
+    fine: Concatenated
     """Held-out runs in the short legs of a fit, for what each run has of its own."""
 
     @property
@@ -72,12 +77,11 @@ class Judge:
     def of(self, model: Model) -> Errors:
         """Errors of a model; what each held-out run has of its own is fitted to that run alone."""
         train = _legs(self.train, in_runs(self.train, model))
-        holdout = _legs(self.holdout, known_at_home(model, self.fine, self.kind))
+        holdout = _legs(self.holdout, known_at_home(model, self.fine, self.options.reference_kind))
         unit: Unit = "rad" if judged_by(self.train) == "heading" else "m"
         return Errors(
             error_of(train, unit),
             error_of(holdout, unit),
-            median_of(train, unit),
             median_of(holdout, unit),
             error_of(holdout, "rad"),
             unit,
@@ -86,7 +90,7 @@ class Judge:
 
     def at_home(self, model: Model) -> Point:
         """The model in the held-out runs: shared values as they are, the runs' own learnt."""
-        return at_home(model, self.fine, self.kind)
+        return at_home(model, self.fine, self.options.reference_kind)
 
 
 @dataclass(frozen=True)
@@ -104,11 +108,7 @@ def begin(
     runs: Sequence[Run],
     holdout: Sequence[Run],
     robot: Robot,
-    kind: ReferenceKind,
-    leg: float,
-    limits: EncoderLimits | None,
-    sigma_xy: float | None,
-    sigma_yaw: float | None,
+    options: EvaluationOptions,
     *,
     given: Robot | None = None,
 ) -> Begun:
@@ -127,18 +127,24 @@ def begin(
     """
 
     def split(kept: Sequence[Run], held: Sequence[Run]) -> tuple[SetUp, Judge]:
-        set_up = look_for_mistakes(kept, robot, kind, limits)
+        set_up = look_for_mistakes(kept, robot, options)
         if set_up.to_convert is not None:
             raise InputError(f"{kept[0].path}: {set_up.to_convert}")
-        return set_up, judge_of(kept, held, given or robot, kind, leg, limits, sigma_xy, sigma_yaw)
+        return set_up, judge_of(
+            kept,
+            held,
+            given or robot,
+            options,
+        )
 
     runs, holdout = (
-        tuple(looked_at(run, given or robot, limits) for run in some) for some in (runs, holdout)
+        tuple(looked_at(run, given or robot, options.limits) for run in some)
+        for some in (runs, holdout)
     )
     _refuse_standing((*runs, *holdout))
     fitted, held = (runs, holdout) if holdout else set_aside(runs)
     set_up, judge = split(fitted, held)
-    otherwise = recorded_otherwise(judge.train, judge.holdout, set_up.robot, kind, limits)
+    otherwise = recorded_otherwise(judge.train, judge.holdout, set_up.robot, options)
     sides = []
     for side, held_out in ((fitted, False), (held, True)):
         odd = {each.run for each in otherwise if each.held_out == held_out}
@@ -162,23 +168,20 @@ def _refuse_standing(runs: Sequence[Run]) -> None:
 
 
 def judge_of(
-    runs: Sequence[Run],
-    holdout: Sequence[Run],
-    robot: Robot,
-    kind: ReferenceKind,
-    leg: float,
-    limits: EncoderLimits | None,
-    sigma_xy: float | None,
-    sigma_yaw: float | None,
+    runs: Sequence[Run], holdout: Sequence[Run], robot: Robot, options: EvaluationOptions
 ) -> Judge:
     """Cut the legs of the runs that are fitted, and of those that judge."""
     fitted_on, kept_back = tuple(runs), tuple(holdout)
     train, held = (
-        prepare(some, robot, kind, leg=leg, limits=limits, sigma_xy=sigma_xy, sigma_yaw=sigma_yaw)
+        prepare(
+            some,
+            robot,
+            options,
+        )
         for some in (fitted_on, kept_back)
     )
-    return Judge(robot, kind, fitted_on, kept_back, train, held, finely(held))
+    return Judge(robot, options, fitted_on, kept_back, train, held, finely(held))
 
 
 def _legs(prepared: Prepared, model: Model) -> Legs:
-    return judged_legs(prepared, model, prepared.leg)
+    return judged_legs(prepared, model, prepared.options.leg)

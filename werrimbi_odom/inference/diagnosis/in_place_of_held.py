@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import base_name
 from werrimbi_odom.inference.diagnosis.search import best_of_each
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
@@ -22,42 +21,29 @@ from werrimbi_odom.inference.fitting.candidates import (
     put_in,
     scores,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import INSTEAD_FITTED, RIVAL, WORTH_A_FIT
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
-Sigma = tuple[float | None, float | None]
-
 
 def rivals_of_held(
-    runs: Together,
-    fit: Fitted,
-    kind: ReferenceKind,
-    effects: Sequence[Effect],
-    given: Robot,
-    sigma: Sigma,
+    runs: Concatenated, fit: Fitted, effects: Sequence[Effect], given: Robot
 ) -> dict[str, tuple[str, ...]]:
     """Effects that would explain the drives as well as one that the file holds, by its name."""
     found = {}
     for applied in fit.point.model.robot.effects:
         if applied.effect.is_mistake or applied.name in CALIBRATED or base_name(applied.effect):
             continue  # sizes are in every fit
-        rivals = _rivals(runs, fit, kind, effects, given, sigma, applied.effect)
+        rivals = _rivals(runs, fit, effects, given, applied.effect)
         if rivals:
             found[applied.name] = rivals
     return found
 
 
 def _rivals(
-    runs: Together,
-    fit: Fitted,
-    kind: ReferenceKind,
-    effects: Sequence[Effect],
-    given: Robot,
-    sigma: Sigma,
-    held: Effect,
+    runs: Concatenated, fit: Fitted, effects: Sequence[Effect], given: Robot, held: Effect
 ) -> tuple[str, ...]:
     """Scored beside the held one where that is taken out; the best few are fitted in its place."""
     model, mine = fit.point.model, f"{held.name}."
@@ -71,7 +57,7 @@ def _rivals(
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     library = [held, *(effect for effect in effects if effect.name != held.name)]
     tried = candidates(library, {item.name for item in others}, channels, len(runs.runs))
-    ordered = best_of_each(scores(runs, point, kind, (*CALIBRATION, *knobs), tried))
+    ordered = best_of_each(scores(runs, point, (*CALIBRATION, *knobs), tried))
     gains = {score.candidate.name: score.gain for score in ordered}
     least = WORTH_A_FIT * gains.get(held.name, max(gains.values(), default=0.0))
     near = [each for each in ordered if each.candidate.name != held.name and each.gain > least]
@@ -79,7 +65,7 @@ def _rivals(
     for score in near[:INSTEAD_FITTED]:
         start = replace(point, model=put_in(point.model, score))
         free = (*knobs, *knobs_of_candidate(score.candidate))
-        other = fitted(runs, start, kind, (score.candidate.name,), free, given, sigma=sigma)
+        other = fitted(runs, start, (score.candidate.name,), free, given)
         if other.told and not other.at_bound and other.total < fit.total + RIVAL * fit.scatter:
             found[score.candidate.name] = other.total
     return tuple(sorted(found, key=lambda name: found[name]))

@@ -15,16 +15,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence, legs_pushed, pushes_of
 from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, unexplained
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, Model
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import SILENT
 from werrimbi_odom.model.pose import Floats
 
@@ -55,9 +54,8 @@ def parts_of(left: Floats, right: Floats, *, turns: bool) -> Floats:
 
 
 def response(
-    runs: Together,
+    runs: Concatenated,
     point: Point,
-    kind: ReferenceKind,
     knobs: Sequence[Knob],
     amount: Amount,
     values: tuple[Floats, Floats],
@@ -74,14 +72,14 @@ def response(
     edges : ndarray, shape (parts + 1,)
     """
     prediction = predict_all(point.model, runs)
-    frame, rest = unexplained(runs, point, kind, knobs, prediction)
+    frame, rest = unexplained(runs, point, knobs, prediction)
     path = path_of(point.model, runs)
     of_left, of_right = pushes_of(runs, path, [amount], point)
     left, right = (_marks(side, edges) for side in values)
     change = legs_pushed(runs, left, of_left)
     if values[0] is not values[1] or amount.channel in ("left", "right", "along"):
         change = change + legs_pushed(runs, right, of_right)
-    marks = unexpected(runs, point, kind, prediction).marks(change)
+    marks = unexpected(runs, point, prediction).marks(change)
     flat = marks[..., : change.shape[-1]].reshape(rest.size, -1)
     length = np.sqrt(np.sum(flat**2, axis=0))
     heard = length > SILENT
@@ -155,7 +153,7 @@ def before_after(diagnosis: Diagnosis) -> BeforeAfter | None:
     edges = parts_of(*values, turns=turns)
 
     def at(where: Point, free: tuple[Knob, ...]) -> Response:
-        return response(diagnosis.runs, where, diagnosis.kind, free, cell.amount, values, edges)
+        return response(diagnosis.runs, where, free, cell.amount, values, edges)
 
     return BeforeAfter(
         effect=effect,

@@ -7,13 +7,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from werrimbi_odom.effects.collection import find
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import sizes_of
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.stability import rivals_in_halves
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.rules import RIVAL
 from werrimbi_odom.inference.set_up.search import SetUpFinding
 from werrimbi_odom.model.robot import Robot
@@ -66,7 +65,9 @@ def _near(name: str, this: Round) -> tuple[str, ...]:
     return tuple(other for other in dict.fromkeys(near) if other != name)
 
 
-def own_scale_instead(name: str, final: Fitted, given: Robot, laid: Together) -> tuple[str, ...]:
+def own_scale_instead(
+    name: str, final: Fitted, given: Robot, laid: Concatenated
+) -> tuple[str, ...]:
     """What of the reference itself does the same as a size of the robot, to headings alone.
 
     Positions are measured by tape or by satellites, whose metre is one; nobody knows a gyro's
@@ -89,7 +90,7 @@ def own_scale_instead(name: str, final: Fitted, given: Robot, laid: Together) ->
 
 
 def torn_by_halves(
-    first: str, rounds: tuple[Round, ...], final: Fitted, laid: Together, kind: ReferenceKind
+    first: str, rounds: tuple[Round, ...], final: Fitted, laid: Concatenated
 ) -> tuple[str, ...]:
     """Effects that halves of the data prefer to the one that was found.
 
@@ -99,4 +100,4 @@ def torn_by_halves(
         return ()
     fits = [fit for fit in rounds[0].tried if not fit.at_bound]
     best = next((fit for fit in fits if fit.names[-1] == first), None)
-    return () if best is None else rivals_in_halves(laid, rounds[0], best, kind)
+    return () if best is None else rivals_in_halves(laid, rounds[0], best)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidates import (
@@ -20,6 +20,7 @@ from werrimbi_odom.inference.fitting.candidates import (
     put_in,
     scores,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
@@ -28,7 +29,6 @@ from werrimbi_odom.inference.fitting.knobs import (
     changed,
 )
 from werrimbi_odom.inference.fitting.own_values import with_own_values
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import (
     EDGE,
     EDGE_LEGS,
@@ -60,41 +60,32 @@ class Round:
 
 
 def first_fit(
-    runs: Together,
-    robot: Robot,
-    kind: ReferenceKind,
-    sigma: tuple[float | None, float | None] = (None, None),
+    runs: Concatenated, robot: Robot, options: EvaluationOptions = EvaluationOptions()
 ) -> Fitted:
     """The robot as given, calibrated."""
-    point = start_point(runs, robot, *sigma)
+    point = start_point(runs, robot, options)
     point = replace(point, excluded=_edges(runs))
-    point, knobs = with_own_values(runs, point, kind)
-    if kind != "absolute":
-        point = fit_model(runs, point, kind, (*CALIBRATION, *knobs), rounds=0).point
-    return fitted(runs, point, kind, (), knobs, robot, rounds=3, sigma=sigma)
+    point, knobs = with_own_values(runs, point)
+    if options.reference_kind != "absolute":
+        point = fit_model(runs, point, (*CALIBRATION, *knobs), rounds=0).point
+    return fitted(runs, point, (), knobs, robot, rounds=3)
 
 
-def jumps_anew(
-    runs: Together,
-    fit: Fitted,
-    kind: ReferenceKind,
-    robot: Robot,
-    sigma: tuple[float | None, float | None] = (None, None),
-) -> Fitted:
+def jumps_anew(runs: Concatenated, fit: Fitted, robot: Robot) -> Fitted:
     """The fit with the reference's jumps found by its own, better model.
 
     Only a reference whose errors last has jumps that stay: of one whose poses are each their own, a
     bad pose costs two legs and no more.
     """
-    if kind == "absolute":
+    if fit.point.options.reference_kind == "absolute":
         return fit
-    point = without_jumps(runs, fit.point, kind)
+    point = without_jumps(runs, fit.point)
     both = (jumped | edge for jumped, edge in zip(point.excluded, _edges(runs), strict=True))
     point = replace(point, excluded=tuple(both))
-    return fitted(runs, point, kind, fit.names, fit.knobs, robot, sigma=sigma)
+    return fitted(runs, point, fit.names, fit.knobs, robot)
 
 
-def _edges(runs: Together) -> tuple[NDArray[np.bool_], ...]:
+def _edges(runs: Concatenated) -> tuple[NDArray[np.bool_], ...]:
     """Legs that a shifted clock would move out of the ticks' time; of few legs none.
 
     A record that begins or ends in motion knows nothing of the motion beyond, so such legs would
@@ -119,12 +110,7 @@ class Instead:
 
 
 def instead_of_calibration(
-    runs: Together,
-    calibrated: Fitted,
-    kind: ReferenceKind,
-    effects: Sequence[Effect],
-    given: Robot,
-    sigma: tuple[float | None, float | None] = (None, None),
+    runs: Concatenated, calibrated: Fitted, effects: Sequence[Effect], given: Robot
 ) -> tuple[Instead, ...]:
     """Effects that would do in place of the calibration that a model needs, cheapest first.
 
@@ -136,23 +122,16 @@ def instead_of_calibration(
     nuisances = model.nuisance_knobs
     held = {applied.name for applied in model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
-    wanders = kind == "local_map"  # on a map that somebody made, by a laser's metre
+    wanders = (
+        point.options.reference_kind == "local_map"
+    )  # on a map that somebody made, by a laser's metre
     looked_at = candidates(effects, held, channels, len(runs.runs), own_scale=wanders)
-    found = scores(runs, point, kind, (*calibrated.knobs, *nuisances), looked_at)
+    found = scores(runs, point, (*calibrated.knobs, *nuisances), looked_at)
     results = []
     for score in worth_fitting(best_of_each(found))[:INSTEAD_FITTED]:
         start = replace(point, model=put_in(point.model, score))
         knobs = (*calibrated.knobs, *knobs_of_candidate(score.candidate), *nuisances)
-        fit = fit_model(
-            runs,
-            start,
-            kind,
-            knobs,
-            find_jumps=False,
-            rounds=2,
-            sigma_xy=sigma[0],
-            sigma_yaw=sigma[1],
-        )
+        fit = fit_model(runs, start, knobs, find_jumps=False, rounds=2)
         if not fit.at_bound:
             price = calibrated.price_of_one * len(fit.free) * calibrated.scatter
             results.append(Instead(score.candidate.name, fit.minus_two_log_likelihood + price))
@@ -160,12 +139,7 @@ def instead_of_calibration(
 
 
 def search_round(
-    runs: Together,
-    before: Fitted,
-    kind: ReferenceKind,
-    effects: Sequence[Effect],
-    given: Robot,
-    sigma: tuple[float | None, float | None] = (None, None),
+    runs: Concatenated, before: Fitted, effects: Sequence[Effect], given: Robot
 ) -> Round:
     """Look for one more effect."""
     point = before.point
@@ -173,7 +147,7 @@ def search_round(
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     looked_at = candidates(effects, held, channels, len(runs.runs))
     turned = (*CALIBRATION, *before.knobs)
-    found = scores(runs, point, kind, turned, looked_at)
+    found = scores(runs, point, turned, looked_at)
     ordered = best_of_each(found)
     tried = []
     for score in worth_fitting(ordered):
@@ -190,7 +164,7 @@ def search_round(
             start = replace(point, model=put_in(point.model, option))
             knobs = (*before.knobs, *knobs_of_candidate(option.candidate))
             names = (*before.names, option.candidate.name)
-            fits.append(fitted(runs, start, kind, names, knobs, given, sigma=sigma))
+            fits.append(fitted(runs, start, names, knobs, given))
         fits = [fit for fit in fits if fit.told]
         tried += [min(fits, key=lambda fit: fit.total)] if fits else []
     tried.sort(key=lambda fit: fit.total)
@@ -198,7 +172,7 @@ def search_round(
         before,
         tuple(ordered),
         tuple(sensor_first(tried) if runs.own_axes else tried),
-        dependences(runs, point, kind, turned),
+        dependences(runs, point, turned),
         len(looked_at),
     )
 

@@ -18,12 +18,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import calibration_deviation
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
-from werrimbi_odom.inference.fitting.directions import SIZE, Directions, determined, every_direction
 from werrimbi_odom.inference.fitting.fit import fit_model
+from werrimbi_odom.inference.fitting.identifiable import (
+    SIZE,
+    Directions,
+    determined,
+    every_direction,
+)
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     MULTIPLIERS,
@@ -32,7 +37,6 @@ from werrimbi_odom.inference.fitting.knobs import (
     own_of,
     shared_of,
 )
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import (
     CALIBRATION_KNOWN,
@@ -96,12 +100,12 @@ class Fitted:
         return self.cost + self.needless + self.price * self.scatter
 
 
-def price_of_one(runs: Together) -> float:
+def price_of_one(runs: Concatenated) -> float:
     """What one free number must be worth: the logarithm of the number of data (BIC), or more."""
     return max(PENALTY_FLOOR, math.log(max(runs.data, 2)))
 
 
-def scatter_of(runs: Together, design: Design) -> float:
+def scatter_of(runs: Concatenated, design: Design) -> float:
     """By how much costs are too large where few data could not tell the noise; else 1."""
     if runs.data >= NOISE_NUMBERS:
         return 1.0
@@ -110,29 +114,18 @@ def scatter_of(runs: Together, design: Design) -> float:
 
 
 def fitted(
-    runs: Together,
+    runs: Concatenated,
     point: Point,
-    kind: ReferenceKind,
     names: Sequence[str],
     knobs: Sequence[Knob],
     given: Robot,
     *,
     rounds: int = 2,
-    sigma: tuple[float | None, float | None] = (None, None),
 ) -> Fitted:
     """Fit a model, calibration and all, and say which multipliers it needs."""
     every = (*CALIBRATION, *knobs, *point.model.nuisance_knobs)
-    result = fit_model(
-        runs,
-        point,
-        kind,
-        every,
-        find_jumps=False,
-        rounds=rounds,
-        sigma_xy=sigma[0],
-        sigma_yaw=sigma[1],
-    )
-    design = stacked(runs, result.point, kind, [*CALIBRATION, *own_of(every), *shared_of(knobs)])
+    result = fit_model(runs, point, every, find_jumps=False, rounds=rounds)
+    design = stacked(runs, result.point, [*CALIBRATION, *own_of(every), *shared_of(knobs)])
     ways = determined(design, result.robot)
     price, scatter = price_of_one(runs), scatter_of(runs, design)
     rises = calibration_rises(design, result.robot, given, ways.held)

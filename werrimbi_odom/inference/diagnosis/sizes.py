@@ -14,10 +14,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.fitting.costs import Costs
-from werrimbi_odom.inference.fitting.design import Design, stacked
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.design import Costs, Design, stacked
 from werrimbi_odom.inference.fitting.fit import moved
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
@@ -27,7 +26,6 @@ from werrimbi_odom.inference.fitting.knobs import (
     own_of,
     shared_of,
 )
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance
 from werrimbi_odom.inference.rules import RIVAL, STILL
 from werrimbi_odom.model.pose import Floats
@@ -85,9 +83,7 @@ def sizes_needed(fit: Fitted, given: Robot, wanted: Collection[str]) -> Sizes:
     return min(weighed, key=lambda item: item[0])[1]
 
 
-def with_sizes(
-    runs: Together, kind: ReferenceKind, fit: Fitted, given: Robot, sizes: Sizes
-) -> Fitted:
+def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: Sizes) -> Fitted:
     """The fit again, with those sizes alone free to differ from the given file's.
 
     The fit itself where all are free, or where putting back does not do what it promised.
@@ -108,7 +104,7 @@ def with_sizes(
             return fit  # a model that is far off: what is worth its price there means nothing
         robot = changed(point.model.robot, there)
         point = replace(point, model=Model(robot, point.model.own))
-        design = stacked(runs, point, kind, every)
+        design = stacked(runs, point, every)
         free = _free(design, robot, sizes)
         white, flat = design.flat()
         columns = flat @ free
@@ -122,7 +118,7 @@ def with_sizes(
             break
     robot = changed(point.model.robot, _sized(given, sizes, away))
     point = replace(point, model=Model(robot, point.model.own))
-    cost = float(Costs(runs, point, kind)(point.variances)[0])
+    cost = float(Costs(runs, point)(point.variances)[0])
     if not cost < fit.cost + fit.price_of_one * fit.scatter * len(MULTIPLIERS) + RIVAL:
         return fit
     inverse = np.linalg.pinv((columns / size).T @ (columns / size), rcond=1e-12, hermitian=True)

@@ -14,25 +14,22 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.diagnosis.search import Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import unexpected
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import HALF_PARTS, RIVAL
 from werrimbi_odom.model.pose import Floats
 
 
-def rivals_in_halves(
-    runs: Together, this: Round, best: Fitted, kind: ReferenceKind
-) -> tuple[str, ...]:
+def rivals_in_halves(runs: Concatenated, this: Round, best: Fitted) -> tuple[str, ...]:
     """Effects of a round that explain some half of the legs better than the best of all does."""
     others = [fit for fit in this.tried if fit is not best and not fit.at_bound]
     if not others:
         return ()
-    chosen = _cost_of_legs(runs, best, kind)
+    chosen = _cost_of_legs(runs, best)
     found: dict[str, None] = {}
-    costs = [_cost_of_legs(runs, fit, kind) for fit in others]
+    costs = [_cost_of_legs(runs, fit) for fit in others]
     for half in halves(runs):
         for fit, cost in zip(others, costs, strict=True):
             ahead = float(np.sum((chosen - cost)[half])) + 0.5 * _price(best, fit)
@@ -46,11 +43,11 @@ def _price(best: Fitted, other: Fitted) -> float:
     return (best.price - other.price) * best.scatter
 
 
-def _cost_of_legs(runs: Together, fit: Fitted, kind: ReferenceKind) -> Floats:
-    return np.asarray(unexpected(runs, fit.point, kind).cost_of_legs()[0])
+def _cost_of_legs(runs: Concatenated, fit: Fitted) -> Floats:
+    return np.asarray(unexpected(runs, fit.point).cost_of_legs()[0])
 
 
-def halves(runs: Together) -> Iterator[NDArray[np.bool_]]:
+def halves(runs: Concatenated) -> Iterator[NDArray[np.bool_]]:
     """Odd and even parts of every drive, and each drive's first and second half; masks (m,)."""
     first = runs.legs[runs.run_of_leg]
     count = np.diff(runs.legs)[runs.run_of_leg]

@@ -11,7 +11,7 @@ import numpy as np
 
 from werrimbi_odom.inference.diagnosis.variables import ON_THE_FLOOR
 from werrimbi_odom.inference.fitting.candidates import Candidate
-from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.effects_over_run import watched
@@ -49,7 +49,7 @@ def support_of(candidate: Candidate, drive: Drive[Floats]) -> Support:
     return Support(frozenset(seen.asked), frozenset(outputs))
 
 
-def askable(effects: Sequence[Effect], runs: Together, robot: Robot) -> tuple[Effect, ...]:
+def askable(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[Effect, ...]:
     """Those that such a reference can show: a slope of the floor wants axes that stay where it is.
 
     Of effects that look at a channel nothing is known here.

@@ -12,8 +12,8 @@ import numpy as np
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import base_told, sizes_of, std_as_effect
-from werrimbi_odom.inference.diagnosis.choices import spread_over_choices
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, Ranked, chance
+from werrimbi_odom.inference.diagnosis.post_selection import spread_over_choices
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED

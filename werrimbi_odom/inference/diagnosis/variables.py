@@ -10,9 +10,9 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.prediction import anchors, headings_of, path_of, right_handed
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import (
     CURVE_KNOTS,
     FLOOR_CELL,
@@ -58,7 +58,7 @@ class Variable:
         return self.left is self.right
 
 
-def variables_of(runs: Together, model: Model) -> tuple[Variable, ...]:
+def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
     """All that was measured, the extra channels of the records among it."""
     robot = model.laid_out(runs.steps)
     drive = runs.drive(robot)
@@ -154,7 +154,7 @@ def _mean(span: Span[Floats]) -> Floats:
 
 
 def _places(
-    runs: Together,
+    runs: Concatenated,
     position: NDArray[np.complex128],
     heading: Floats,
     yaw: Floats,

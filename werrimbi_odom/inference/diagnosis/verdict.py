@@ -11,17 +11,17 @@ from typing import Literal
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
 from werrimbi_odom.inference.chances import chi2_above, in_any_of
 from werrimbi_odom.inference.comparison.another_drive import of_another_drive
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
-from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
+from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge
-from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
-from werrimbi_odom.inference.diagnosis.pairs import Sides
+from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import (
     own_scale_instead,
     possible_twins,
@@ -33,11 +33,13 @@ from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.rules import CALIBRATION_WORTH, SIGNIFICANT, SURE
+from werrimbi_odom.inference.set_up.findings import IN_DEGREES
 from werrimbi_odom.inference.set_up.search import SetUp
+from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 
 Verdict = Literal["none", "named", "ambiguous", "unknown"]
@@ -80,8 +82,7 @@ class Diagnosis:
     rounds: tuple[Round, ...]
     final: Fitted
     """The model with everything found."""
-    runs: Together
-    kind: ReferenceKind
+    runs: Concatenated
     train: Sides
     """Position error with the robot as given, and with everything found [m]."""
     holdout: Sides
@@ -113,6 +114,14 @@ class Diagnosis:
         """With everything that was found put in."""
         return self.final.point.model.robot
 
+    def effect_named(self, name: str) -> Effect | None:
+        """The effect of a name, a user's own among them; None for a finding that is no effect."""
+        if name == IN_DEGREES:
+            return None
+        known = [score.candidate.effect for this in self.rounds for score in this.scores]
+        known += [applied.effect for applied in self.robot.effects]
+        return next((effect for effect in known if effect.name == name), None) or find(name)
+
 
 def chance(fit: Fitted, before: Fitted, tried: int) -> float:
     """How often chance would lower the cost as much, all that was tried counted."""
@@ -128,8 +137,7 @@ def told(
     final: Fitted,
     beyond: Dependence | None,
     remaining: tuple[Dependence, ...],
-    laid: Together,
-    kind: ReferenceKind,
+    laid: Concatenated,
     instead: tuple[Instead, ...],
 ) -> Diagnosis:
     """Everything put together."""
@@ -150,7 +158,7 @@ def told(
         rivals = (mistakes[0], *twins) if twins else ()
     elif found:
         rivals = rivals_of(found[0], rounds, final, instead)
-        torn = torn_by_halves(found[0], rounds, final, laid, kind)
+        torn = torn_by_halves(found[0], rounds, final, laid)
         others = (*torn, *own_scale_instead(found[0], final, given, laid))
         rivals = tuple(dict.fromkeys((*(rivals or (found[0],)), *others))) if others else rivals
     verdict: Verdict
@@ -185,7 +193,6 @@ def told(
         rounds,
         final,
         laid,
-        kind,
         Sides(start.train, last.train, start.unit),
         start.to(last),
         Sides(start.holdout_median, last.holdout_median, start.unit),

@@ -12,11 +12,11 @@ from typing import Literal, NamedTuple
 import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind, Run
-from werrimbi_odom.inference.events.alike import Alike, alike
+from werrimbi_odom.inference.events.common_cause import Alike, alike
 from werrimbi_odom.inference.events.steps import Steps, steps_of
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun, divided
 from werrimbi_odom.inference.rules import (
     EDGE,
@@ -128,7 +128,7 @@ def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Events:
     spans: dict[Path, float] = {}
     for side in sides:
         runs = looked_at(side.runs)
-        steps = steps_of(runs, side.point, kind)
+        steps = steps_of(runs, side.point)
         found = [(own, event) for own in _groups(steps) if (event := _event(steps, own, side))]
         events += [event for _, event in found]
         legs.append(np.array([steps.found[own[0]].leg for own, _ in found], dtype=np.intp))
@@ -168,7 +168,7 @@ def without(run: Run, happened: Events) -> Run:
     return replace(run, happened=tuple(sorted([*run.happened, *new]))) if new else run
 
 
-def looked_at(runs: Sequence[MatchedRun]) -> Together:
+def looked_at(runs: Sequence[MatchedRun]) -> Concatenated:
     """The same runs with a leg from each pose to the next, as finely as events are looked for."""
     found = []
     for run in runs:
@@ -179,7 +179,7 @@ def looked_at(runs: Sequence[MatchedRun]) -> Together:
                 rows.append(row)
         plain = replace(run.record, happened=())
         found.append(divided(plain, np.array(rows, dtype=np.intp)))
-    return together(found)
+    return concatenated(found)
 
 
 def _groups(steps: Steps) -> list[list[int]]:

@@ -8,35 +8,22 @@ from dataclasses import replace
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_median
-from werrimbi_odom.inference.fitting.costs import Costs
-from werrimbi_odom.inference.fitting.design import Point, unexpected
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.design import Costs, Point, unexpected
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import likeliest
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import NOISE_NUMBERS, NOISE_TRIMMED
 
 _ROUNDS = 4
 
 
-def noise_of_most(
-    runs: Together,
-    point: Point,
-    kind: ReferenceKind,
-    known: tuple[float | None, float | None] = (None, None),
-) -> Variances:
-    """Variances fitted anew without the legs that deviate far more than most; the model stays.
-
-    Parameters
-    ----------
-    known
-        The reference's noise where it is known [m, rad].
-    """
-    held = (known[0] is not None, known[1] is not None)
+def noise_of_most(runs: Concatenated, point: Point) -> Variances:
+    """Variances fitted anew without the legs that deviate far more than most; the model stays."""
+    held = point.options.sigmas_known
     bounds = list(zip(runs.legs[:-1].tolist(), runs.legs[1:].tolist(), strict=True))
     for _ in range(_ROUNDS):
-        found = unexpected(runs, point, kind)
+        found = unexpected(runs, point)
         deviation = np.sum(found.whitened() ** 2, axis=-1)
         numbers = found.known.sum(axis=-1).astype(np.float64)
         counted = (numbers > 0) & (deviation > 0.0)
@@ -48,5 +35,5 @@ def noise_of_most(
             break
         out = far | point.skip
         point = replace(point, excluded=tuple(out[first:last] for first, last in bounds))
-        point = replace(point, variances=likeliest(Costs(runs, point, kind), point.variances, held))
+        point = replace(point, variances=likeliest(Costs(runs, point), point.variances, held))
     return point.variances

@@ -18,13 +18,12 @@ from typing import Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above, chi2_median
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.filtering import Shocks
 from werrimbi_odom.inference.fitting.likelihood import Innovations, innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import EVENT_SLOW, MOST_EVENTS, SURE_OF_EVENT
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
@@ -53,7 +52,7 @@ class Step(NamedTuple):
 class Steps:
     """All steps that innovations hold, fitted together."""
 
-    runs: Together
+    runs: Concatenated
     """With a leg from each pose that was looked at to the next."""
     found: tuple[Step, ...]
     columns: Floats
@@ -105,7 +104,7 @@ class Steps:
         return np.asarray(self.told.shown(change).reshape(self.white.size, 3))
 
 
-def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
+def steps_of(runs: Concatenated, point: Point) -> Steps:
     """Find the steps that a model, with its noise, does not explain.
 
     Parameters
@@ -120,7 +119,7 @@ def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
         runs,
         prediction,
         point.variances,
-        kind,
+        point.options.reference_kind,
         start_yaws=model.start_yaws,
         stretch=STRETCH,
     )
@@ -133,7 +132,7 @@ def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
     of_shape: dict[Shape, Floats] = {"robot": axes, "spike": measured, "reference": measured}
     shapes: tuple[Shape, ...] = ("robot",)
     if told.ways is not None and not runs.headings_alone:
-        shapes += ("reference",) if kind == "local_map" else ("spike",)
+        shapes += ("reference",) if point.options.reference_kind == "local_map" else ("spike",)
     tests = len(shapes) * int(told.known.any(axis=-1).sum())
     steps: list[Step] = []
     chances: list[float] = []
@@ -181,7 +180,7 @@ def steps_of(runs: Together, point: Point, kind: ReferenceKind) -> Steps:
 
 
 def _kept(
-    runs: Together,
+    runs: Concatenated,
     steps: Sequence[Step],
     columns: Floats,
     white: Floats,
@@ -229,7 +228,7 @@ def _gain(score: Floats, known: Floats) -> tuple[Floats, Floats]:
     return gain, kept.sum(axis=-1).astype(np.float64)
 
 
-def _scatter(runs: Together, gain: tuple[Floats, Floats], told: Innovations) -> Floats:
+def _scatter(runs: Concatenated, gain: tuple[Floats, Floats], told: Innovations) -> Floats:
     """By how much squares are too large in each run: by the median, which no few steps move."""
     found = np.ones(len(runs.runs))
     looked = told.known.any(axis=-1) & (gain[1] > 0)
@@ -242,7 +241,7 @@ def _scatter(runs: Together, gain: tuple[Floats, Floats], told: Innovations) -> 
 
 
 def _peaks(
-    runs: Together, gains: dict[Shape, tuple[Floats, Floats]], scatter: Floats, tests: int
+    runs: Concatenated, gains: dict[Shape, tuple[Floats, Floats]], scatter: Floats, tests: int
 ) -> list[tuple[Step, float]]:
     """Steps better than all about them, each with how often chance makes one as good."""
     own = scatter[runs.run_of_leg]

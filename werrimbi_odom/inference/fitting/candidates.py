@@ -18,12 +18,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
-from werrimbi_odom.inference.fitting.directions import CALIBRATED as CALIBRATED
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED as CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import STEP, Knob, Model, knobs_of
 from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import Floats
@@ -159,11 +158,7 @@ class Signature(NamedTuple):
 
 
 def signatures(
-    runs: Together,
-    point: Point,
-    kind: ReferenceKind,
-    knobs: Sequence[Knob],
-    tried: Sequence[Candidate],
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], tried: Sequence[Candidate]
 ) -> tuple[Floats, Iterator[Signature]]:
     """Innovations (n,) that `knobs` cannot explain, and what each candidate does to them."""
     if runs.headings_alone:
@@ -183,8 +178,8 @@ def signatures(
     if not columns:
         return np.zeros(0), iter(())
     change = np.stack(columns, axis=-1)
-    marks = unexpected(runs, point, kind, prediction).marks(change)[..., :-1]
-    frame, rest = unexplained(runs, point, kind, knobs, prediction)
+    marks = unexpected(runs, point, prediction).marks(change)[..., :-1]
+    frame, rest = unexplained(runs, point, knobs, prediction)
     owned = np.array(owners)
 
     def each() -> Iterator[Signature]:
@@ -199,29 +194,25 @@ def signatures(
 
 
 def unexplained(
-    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob], prediction: Prediction
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], prediction: Prediction
 ) -> tuple[Nuisance, Floats]:
     """What `knobs` can turn, and the innovations (n,) clear of it."""
-    white, basis = stacked(runs, point, kind, knobs, prediction).flat()
+    white, basis = stacked(runs, point, knobs, prediction).flat()
     frame = nuisance(basis)
     return frame, frame.residual(white)
 
 
-def of_each_run(runs: Together, marks: Floats) -> Floats:
+def of_each_run(runs: Concatenated, marks: Floats) -> Floats:
     """Columns (m, 3, k) once for each run, and zero in the others: (m, 3, runs * k)."""
     here = (runs.run_of_leg == run for run in range(len(runs.runs)))
     return np.concatenate([marks * legs[:, None, None] for legs in here], axis=-1)
 
 
 def scores(
-    runs: Together,
-    point: Point,
-    kind: ReferenceKind,
-    knobs: Sequence[Knob],
-    tried: Sequence[Candidate],
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], tried: Sequence[Candidate]
 ) -> tuple[Score, ...]:
     """Score of each candidate beside what `knobs` can turn; those without any effect left out."""
-    rest, found = signatures(runs, point, kind, knobs, tried)
+    rest, found = signatures(runs, point, knobs, tried)
     results = []
     for candidate, flat, free in found:
         test = score_test(flat, free, rest)
@@ -235,7 +226,7 @@ def scores(
 
 
 def _slope(
-    runs: Together,
+    runs: Concatenated,
     model: Model,
     candidate: Candidate,
     coordinate: Mapping[str, float],

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whitened innovations of all legs, and how they change with every knob: what a fit solves."""
+"""Whitened innovations of all legs, what they cost, and how they change with every knob."""
 
 from __future__ import annotations
 
@@ -11,7 +11,8 @@ from functools import partial
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
 from werrimbi_odom.inference.fitting.knobs import (
     HEADING_AT_START,
     MULTIPLIERS,
@@ -22,7 +23,7 @@ from werrimbi_odom.inference.fitting.knobs import (
 )
 from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
 from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
-from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.pose import Floats
 
 
@@ -33,6 +34,8 @@ class Point:
     model: Model
     variances: Variances
     excluded: tuple[NDArray[np.bool_], ...]
+    options: EvaluationOptions
+    """What is known of the reference."""
 
     @property
     def skip(self) -> NDArray[np.bool_]:
@@ -57,28 +60,55 @@ class Design:
 
 
 def unexpected(
-    runs: Together,
-    point: Point,
-    kind: ReferenceKind,
-    prediction: Prediction | None = None,
+    runs: Concatenated, point: Point, prediction: Prediction | None = None
 ) -> Innovations:
     """Innovations of all runs; the latest are remembered with them."""
     seen = prediction or predict_all(point.model, runs)
     return runs.latest(
-        (point, kind, seen),
+        (point, seen),
         lambda: innovations(
             point.model.robot,
             runs,
             seen,
             point.variances,
-            kind,
+            point.options.reference_kind,
             excluded=point.skip,
             start_yaws=point.model.start_yaws,
         ),
     )
 
 
-def slopes_of(runs: Together, model: Model, knobs: Sequence[Knob]) -> Floats:
+@dataclass(frozen=True, slots=True)
+class Costs:
+    """Minus two log-likelihood of sets of variances, the model being given."""
+
+    runs: Sequence[MatchedRun] | Concatenated
+    point: Point
+
+    def prediction(self) -> Prediction:
+        """Of all runs."""
+        return predict_all(self.point.model, laid_out(self.runs))
+
+    def innovations(self, sets: Variances, prediction: Prediction) -> Innovations:
+        """For each set."""
+        model = self.point.model
+        return innovations(
+            model.robot,
+            laid_out(self.runs),
+            prediction,
+            sets,
+            self.point.options.reference_kind,
+            excluded=self.point.skip,
+            start_yaws=model.start_yaws,
+        )
+
+    def __call__(self, sets: Variances, prediction: Prediction | None = None) -> Floats:
+        """Cost of each set."""
+        found = self.innovations(sets, prediction or self.prediction())
+        return found.minus_two_log_likelihood()
+
+
+def slopes_of(runs: Concatenated, model: Model, knobs: Sequence[Knob]) -> Floats:
     """Derivatives of the legs' relative poses in knobs, (m, 3, p), by central differences.
 
     A knob of the runs' own is moved in all of them at once: legs feel their own run's alone.
@@ -87,7 +117,7 @@ def slopes_of(runs: Together, model: Model, knobs: Sequence[Knob]) -> Floats:
     return np.stack(columns, axis=-1) if columns else np.zeros((runs.count, 3, 0))
 
 
-def _slope(runs: Together, model: Model, knob: Knob) -> Floats:
+def _slope(runs: Concatenated, model: Model, knob: Knob) -> Floats:
     if knob.name == YAW_DRIFT:
         return np.outer(runs.duration, [0.0, 0.0, 1.0])
     ahead, behind = model.moved_by(knob, knob.scale), model.moved_by(knob, -knob.scale)
@@ -99,21 +129,17 @@ def _slope(runs: Together, model: Model, knob: Knob) -> Floats:
 
 
 def stacked(
-    runs: Together,
-    point: Point,
-    kind: ReferenceKind,
-    knobs: Sequence[Knob],
-    prediction: Prediction | None = None,
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], prediction: Prediction | None = None
 ) -> Design:
     """The design for knobs at a point; start headings that were not measured are among them."""
     local = [knob for knob in knobs if knob.name != START_YAW]
-    found = unexpected(runs, point, kind, prediction)
+    found = unexpected(runs, point, prediction)
     marks = found.marks(slopes_of(runs, point.model, local))
     return spread_out(runs, point.model, found.whitened(), marks, local)
 
 
 def spread_out(
-    runs: Together, model: Model, white: Floats, slopes: Floats, local: Sequence[Knob]
+    runs: Concatenated, model: Model, white: Floats, slopes: Floats, local: Sequence[Knob]
 ) -> Design:
     """Local columns, those of the runs' own given a column for each run.
 

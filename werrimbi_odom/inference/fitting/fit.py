@@ -15,10 +15,10 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.fitting.costs import Costs
-from werrimbi_odom.inference.fitting.design import Design, Point, stacked, unexpected
-from werrimbi_odom.inference.fitting.directions import Directions, determined, put_back
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
+from werrimbi_odom.inference.fitting.design import Costs, Design, Point, stacked, unexpected
+from werrimbi_odom.inference.fitting.identifiable import Directions, determined, put_back
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     START_YAW,
@@ -30,7 +30,6 @@ from werrimbi_odom.inference.fitting.knobs import (
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import held_variances, likeliest, prior_cost
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict, predict_all
-from werrimbi_odom.inference.fitting.together import Together, laid_out
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.linear import solved
 from werrimbi_odom.inference.rules import (
@@ -85,39 +84,36 @@ class ModelFit:
 
 
 def start_point(
-    runs: Sequence[MatchedRun] | Together,
+    runs: Sequence[MatchedRun] | Concatenated,
     robot: Robot,
-    sigma_xy: float | None = None,
-    sigma_yaw: float | None = None,
+    options: EvaluationOptions = EvaluationOptions(),
 ) -> Point:
     """Where a fit begins: the robot as given, no leg excluded, headings from the first legs."""
     laid = laid_out(runs)
     guess = (
         max(robot.left_wheel_noise, LEAST_WHEEL_NOISE),
         max(robot.right_wheel_noise, LEAST_WHEEL_NOISE),
-        sigma_xy or MOTION_CAPTURE_XY,
-        sigma_yaw or MOTION_CAPTURE_YAW,
+        options.sigma_xy or MOTION_CAPTURE_XY,
+        options.sigma_yaw or MOTION_CAPTURE_YAW,
         TYPICAL_STAMP_NOISE,
         *TYPICAL_WALK,
     )
-    if laid.headings_alone and sigma_yaw is None:
+    if laid.headings_alone and options.sigma_yaw is None:
         guess = (*guess[:3], TYPICAL_GYRO_WALK, *guess[4:])
     own = tuple(_nuisances(robot, run) for run in laid.runs)
     return Point(
         Model(robot, own),
         Variances(*(np.array([value**2]) for value in guess)),
         tuple(np.zeros(run.legs, dtype=np.bool_) for run in laid.runs),
+        options,
     )
 
 
 def fit_model(
-    runs: Sequence[MatchedRun] | Together,
+    runs: Sequence[MatchedRun] | Concatenated,
     point: Point,
-    kind: ReferenceKind = "absolute",
     knobs: Sequence[Knob] = CALIBRATION,
     *,
-    sigma_xy: float | None = None,
-    sigma_yaw: float | None = None,
     find_jumps: bool = True,
     rounds: int = 3,
 ) -> ModelFit:
@@ -127,8 +123,6 @@ def fit_model(
     ----------
     knobs
         What may be turned; those of the runs' own among them.
-    sigma_xy, sigma_yaw : float, optional
-        The reference's noise where it is known [m, rad]; else it is estimated.
     find_jumps : bool
         Find the legs on which the reference jumped. Once for a set of runs: what is compared with
         this fit later must leave the same legs out.
@@ -137,31 +131,30 @@ def fit_model(
     given = point.model
     if find_jumps:
         noise = point.variances
-        point = _robustly(laid, point, kind, knobs)
+        point = _robustly(laid, point, knobs)
         if laid.data < NOISE_NUMBERS:
             point = replace(point, variances=noise)
-    point = replace(point, variances=held_variances(point.variances, sigma_xy, sigma_yaw))
+    point = replace(point, variances=held_variances(point.variances, point.options))
     if rounds > 0:
-        point = _turned_to_the_first_legs(laid, point, kind)
-    known = (sigma_xy is not None, sigma_yaw is not None)
+        point = _turned_to_the_first_legs(laid, point)
     for _ in range(rounds):
         if laid.data >= NOISE_NUMBERS:
-            variances = likeliest(Costs(laid, point, kind), point.variances, known)
+            variances = likeliest(Costs(laid, point), point.variances, point.options.sigmas_known)
             point = replace(point, variances=variances)
-        design = stacked(laid, point, kind, knobs)
+        design = stacked(laid, point, knobs)
         ways = determined(design, point.model.robot)
         model = put_back(point.model, given, ways.held, shared_of(knobs))
-        point, moved = _gauss_newton(laid, replace(point, model=model), kind, knobs, ways)
+        point, moved = _gauss_newton(laid, replace(point, model=model), knobs, ways)
         if not moved:
             break
     if rounds < 1:
-        design = stacked(laid, point, kind, knobs)
+        design = stacked(laid, point, knobs)
         ways = determined(design, point.model.robot)
     covariance = ways.covariance(design.flat()[1])
     moves = ways.matrix[:, ways.shared].any(axis=1)
     where = np.flatnonzero(moves)
     free = [design.columns[index][0] for index in where]
-    costs = Costs(laid, point, kind)
+    costs = Costs(laid, point)
     return ModelFit(
         point,
         tuple(free),
@@ -179,10 +172,10 @@ def _at_bound(value: float, knob: Knob) -> bool:
     return value <= low + margin or value >= high - margin
 
 
-def _robustly(runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob]) -> Point:
+def _robustly(runs: Concatenated, point: Point, knobs: Sequence[Knob]) -> Point:
     """Come near the answer whatever the reference's jumps, then find these."""
     for _ in range(12):
-        design = stacked(runs, point, kind, knobs)
+        design = stacked(runs, point, knobs)
         deviation = np.sum(design.white**2, axis=-1)
         counted = deviation > 0.0
         scale = float(np.median(deviation[counted])) / _MEDIAN_CHI2_3 if counted.any() else 1.0
@@ -192,19 +185,19 @@ def _robustly(runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence
         point = replace(point, model=moved(point.model, design, step))
         if _small(design, step):
             break
-    return replace(point, excluded=_jumps(runs, point, kind))
+    return replace(point, excluded=_jumps(runs, point))
 
 
-def without_jumps(runs: Together, point: Point, kind: ReferenceKind) -> Point:
+def without_jumps(runs: Concatenated, point: Point) -> Point:
     """The point with the legs left out on which its model cannot believe the reference."""
-    return replace(point, excluded=_jumps(runs, point, kind))
+    return replace(point, excluded=_jumps(runs, point))
 
 
-def _jumps(runs: Together, point: Point, kind: ReferenceKind) -> tuple[NDArray[np.bool_], ...]:
+def _jumps(runs: Concatenated, point: Point) -> tuple[NDArray[np.bool_], ...]:
     nothing = tuple(np.zeros(size, dtype=np.bool_) for size in np.diff(runs.legs))
     if runs.headings_alone:
         return nothing  # a gyro does not jump; legs that deviate are those that turn
-    white = unexpected(runs, replace(point, excluded=nothing), kind).whitened()
+    white = unexpected(runs, replace(point, excluded=nothing)).whitened()
     deviation = np.sum(white**2, axis=-1)
     found = []
     for first, last in zip(runs.legs[:-1], runs.legs[1:], strict=True):
@@ -215,13 +208,13 @@ def _jumps(runs: Together, point: Point, kind: ReferenceKind) -> tuple[NDArray[n
 
 
 def _gauss_newton(
-    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob], ways: Directions
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], ways: Directions
 ) -> tuple[Point, bool]:
     """The point of least squares near a point, and whether it is another one."""
     prediction = predict_all(point.model, runs)
     best = np.inf
     for number in range(6):
-        design = stacked(runs, point, kind, knobs, prediction)
+        design = stacked(runs, point, knobs, prediction)
         best = min(best, float(np.sum(design.white**2)))
         step = _step(design, ways)
         if _small(design, step):
@@ -229,7 +222,7 @@ def _gauss_newton(
         for _ in range(5):
             tried = replace(point, model=moved(point.model, design, step))
             ahead = replace(prediction, relative=legs_shown(tried.model, runs))
-            cost = float(np.sum(unexpected(runs, tried, kind, ahead).whitened() ** 2))
+            cost = float(np.sum(unexpected(runs, tried, ahead).whitened() ** 2))
             if cost < best:
                 break
             step = 0.3 * step
@@ -279,7 +272,7 @@ def _nuisances(robot: Robot, run: MatchedRun) -> dict[str, float]:
     return own
 
 
-def _turned_to_the_first_legs(runs: Together, point: Point, kind: ReferenceKind) -> Point:
+def _turned_to_the_first_legs(runs: Concatenated, point: Point) -> Point:
     """The point with each start heading that was not measured guessed anew, where that is better.
 
     A heading that suited a model without some effect may be so far off with it that least squares
@@ -293,7 +286,7 @@ def _turned_to_the_first_legs(runs: Together, point: Point, kind: ReferenceKind)
         heading = _first_heading(model.of_run(index), run)
         own.append(dict(mine) if heading is None else {**mine, START_YAW: heading})
     squares = [
-        np.add.reduceat(np.sum(unexpected(runs, tried, kind).whitened() ** 2, -1), runs.legs[:-1])
+        np.add.reduceat(np.sum(unexpected(runs, tried).whitened() ** 2, -1), runs.legs[:-1])
         for tried in (point, replace(point, model=Model(model.robot, tuple(own))))
     ]
     better = squares[1] < squares[0]

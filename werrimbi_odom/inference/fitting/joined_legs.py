@@ -10,15 +10,15 @@ from __future__ import annotations
 
 import numpy as np
 
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.knobs import NUISANCES, Model
 from werrimbi_odom.inference.fitting.prediction import Prediction, predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.driving import acts
 from werrimbi_odom.model.effect import view_of, wiring_of
 from werrimbi_odom.model.pose import Floats
 
 
-def predict_joined(model: Model, runs: Together) -> Prediction:
+def predict_joined(model: Model, runs: Concatenated) -> Prediction:
     """What `predict_all` says, from the finer legs of `runs` where those tell all."""
     if runs.finer is None or not joins(model):
         return predict_all(model, runs)

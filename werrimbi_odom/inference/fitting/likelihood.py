@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.filtering import (
     STRETCH,
     UNMEASURED,
@@ -26,7 +27,6 @@ from werrimbi_odom.inference.fitting.filtering import (
     filtered,
 )
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.fitting.wandering import LaidHeading, Wander, filtered_wandering
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.inference.rules import EVENT_STEP
@@ -144,7 +144,7 @@ class Innovations:
 
 def innovations(
     robot: Robot,
-    runs: Together,
+    runs: Concatenated,
     prediction: Prediction,
     variances: Variances,
     kind: ReferenceKind,
@@ -202,7 +202,7 @@ def innovations(
 
 def _of_increments(
     robot: Robot,
-    runs: Together,
+    runs: Concatenated,
     measured: tuple[Floats, Floats],
     prediction: Prediction,
     variances: Variances,
@@ -266,7 +266,7 @@ def paces(speed: Floats, turn_rate: Floats) -> Floats:
 
 
 def _reading(
-    robot: Robot, variances: Variances, runs: Together, prediction: Prediction, *, adds_up: bool
+    robot: Robot, variances: Variances, runs: Concatenated, prediction: Prediction, *, adds_up: bool
 ) -> Floats:
     """Covariance of a measured pose, and of the counters' reading with it; (g, 1 or m, 3, 3)."""
     stamps = runs.stamps_err
@@ -281,7 +281,7 @@ def _reading(
     return np.asarray(reading + np.diag(reading_noise(robot)))
 
 
-def wheel_part(prediction: Prediction, runs: Together, left: Floats, right: Floats) -> Floats:
+def wheel_part(prediction: Prediction, runs: Concatenated, left: Floats, right: Floats) -> Floats:
     """Covariance of the legs from the wheels' noise, k_L² and k_R² (g,) [m]; (g, m, 3, 3).
 
     A leg in which something happened at once may end anywhere.

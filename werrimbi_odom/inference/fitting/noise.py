@@ -14,11 +14,12 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.chances import NORMAL_95, upper_part
-from werrimbi_odom.inference.fitting.costs import Costs
+from werrimbi_odom.inference.fitting.concatenated_runs import laid_out
+from werrimbi_odom.inference.fitting.design import Costs
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.prediction import Prediction
-from werrimbi_odom.inference.fitting.together import laid_out
 from werrimbi_odom.inference.rules import (
     GYRO_WALK_SPREAD,
     MATCH_SPREAD,
@@ -99,14 +100,12 @@ def with_noises(variances: Variances, sigmas: Mapping[str, float]) -> Variances:
     )
 
 
-def held_variances(
-    variances: Variances, sigma_xy: float | None, sigma_yaw: float | None
-) -> Variances:
+def held_variances(variances: Variances, options: EvaluationOptions) -> Variances:
     """The variances with what is known of the reference put in."""
-    if sigma_xy is not None:
-        variances = replace(variances, xy=np.array([sigma_xy**2]))
-    if sigma_yaw is not None:
-        variances = replace(variances, yaw=np.array([sigma_yaw**2]))
+    if options.sigma_xy is not None:
+        variances = replace(variances, xy=np.array([options.sigma_xy**2]))
+    if options.sigma_yaw is not None:
+        variances = replace(variances, yaw=np.array([options.sigma_yaw**2]))
     return variances
 
 
@@ -188,10 +187,10 @@ def _prior(costs: Costs) -> tuple[Floats, Floats]:
     spread = np.array([WHEEL_NOISE_SPREAD, WHEEL_NOISE_SPREAD, np.inf, np.inf, STAMP_NOISE_SPREAD])
     middle = np.concatenate([middle, TYPICAL_WALK])
     spread = np.concatenate([spread, np.full(3, np.inf)])
-    if costs.kind == "local_map":
+    if costs.point.options.reference_kind == "local_map":
         middle[2:4], spread[2:4] = TYPICAL_MATCH, MATCH_SPREAD
         spread[5:] = WALK_SPREAD
-    if costs.kind == "incremental" and runs.headings_alone:
+    if costs.point.options.reference_kind == "incremental" and runs.headings_alone:
         seconds = float(runs.duration.sum() / runs.intervals.sum())
         middle[3], spread[3] = TYPICAL_GYRO_WALK * np.sqrt(seconds), GYRO_WALK_SPREAD
     return np.log(middle), spread
@@ -268,7 +267,7 @@ def _moving(costs: Costs, held: tuple[bool, bool]) -> NDArray[np.bool_]:
     runs = laid_out(costs.runs)
     measured = np.isfinite(runs.finish)
     places, headings = bool(measured[:, :2].any()), bool(measured[:, 2].any())
-    wanders = costs.kind == "local_map"
+    wanders = costs.point.options.reference_kind == "local_map"
     return np.array(
         [
             True,

@@ -10,8 +10,10 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate, put_in, scores
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import (
@@ -22,11 +24,10 @@ from werrimbi_odom.inference.fitting.knobs import (
     changed,
     knobs_of,
 )
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.model.effect import AppliedEffect
 
 
-def known_at_home(model: Model, runs: Together, kind: ReferenceKind) -> Model:
+def known_at_home(model: Model, runs: Concatenated, kind: ReferenceKind) -> Model:
     """A model in other runs, without what belongs to the references alone."""
     plain = model.without_nuisances()
     if not any(plain.own) and all(applied.ready for applied in plain.robot.effects):
@@ -34,7 +35,7 @@ def known_at_home(model: Model, runs: Together, kind: ReferenceKind) -> Model:
     return at_home(model, runs, kind).model.without_nuisances()
 
 
-def at_home(model: Model, runs: Together, kind: ReferenceKind) -> Point:
+def at_home(model: Model, runs: Concatenated, kind: ReferenceKind) -> Point:
     """A model in other runs: shared values stay, what those runs have of their own is fitted."""
     own = sorted({name for mine in model.own for name in mine if name not in NUISANCES})
     effects = tuple(
@@ -47,8 +48,9 @@ def at_home(model: Model, runs: Together, kind: ReferenceKind) -> Point:
         )
         for applied in model.robot.effects
     )
-    point = start_point(runs, replace(model.robot, effects=effects))
-    point, _ = with_own_values(runs, point, kind)
+    robot = replace(model.robot, effects=effects)
+    point = start_point(runs, robot, EvaluationOptions(reference_kind=kind))
+    point, _ = with_own_values(runs, point)
     knobs = point.model.nuisance_knobs
     for applied in effects:
         knobs += [
@@ -56,12 +58,10 @@ def at_home(model: Model, runs: Together, kind: ReferenceKind) -> Point:
             for knob in knobs_of(applied.effect)
             if knob.per_run and knob.name in point.model.own[0]
         ]
-    return fit_model(runs, point, kind, knobs, find_jumps=False, rounds=1).point
+    return fit_model(runs, point, knobs, find_jumps=False, rounds=1).point
 
 
-def with_own_values(
-    runs: Together, point: Point, kind: ReferenceKind
-) -> tuple[Point, tuple[Knob, ...]]:
+def with_own_values(runs: Concatenated, point: Point) -> tuple[Point, tuple[Knob, ...]]:
     """The point with what each run has of its own in the robot's effects, and all their knobs.
 
     A phase can be anywhere, so it is looked for by its score, which knows no start value.
@@ -77,17 +77,17 @@ def with_own_values(
         )
         knobs += knobs_of(applied.effect, shared)
         if applied.unknown:
-            point = replace(point, model=_learnt(runs, point, kind, applied))
+            point = replace(point, model=_learnt(runs, point, applied))
     return point, tuple(knobs)
 
 
-def _learnt(runs: Together, point: Point, kind: ReferenceKind, applied: AppliedEffect) -> Model:
+def _learnt(runs: Concatenated, point: Point, applied: AppliedEffect) -> Model:
     """The model with the phases of an effect in each run."""
     robot = point.model.robot
     others = tuple(item for item in robot.effects if item is not applied)
     bare = replace(point, model=replace(point.model, robot=replace(robot, effects=others)))
     candidate = Candidate(applied.effect, {})
-    score = scores(runs, bare, kind, CALIBRATION, [candidate])
+    score = scores(runs, bare, CALIBRATION, [candidate])
     if not score:
         return bare.model
     model = put_in(bare.model, score[0])

@@ -10,13 +10,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import NORMAL_95, student_quantile
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point, slopes_of, spread_out, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, with_noises
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import covariance_of
 from werrimbi_odom.inference.rules import LEAST_KNOWN
 from werrimbi_odom.model.pose import Floats
@@ -26,9 +25,8 @@ from werrimbi_odom.model.pose import Floats
 class Precision:
     """What whitened derivatives say of the numbers that were free, at any noise."""
 
-    runs: Together
+    runs: Concatenated
     point: Point
-    kind: ReferenceKind
     local: tuple[Knob, ...]
     """Columns of `slopes`."""
     slopes: Floats
@@ -37,20 +35,15 @@ class Precision:
 
     @classmethod
     def of(
-        cls,
-        runs: Together,
-        point: Point,
-        kind: ReferenceKind,
-        local: Sequence[Knob],
-        moves: Floats,
+        cls, runs: Concatenated, point: Point, local: Sequence[Knob], moves: Floats
     ) -> Precision:
         """Of a fit that ended at a point; start headings are no local knobs."""
         knobs = tuple(local)
-        return cls(runs, point, kind, knobs, slopes_of(runs, point.model, knobs), moves)
+        return cls(runs, point, knobs, slopes_of(runs, point.model, knobs), moves)
 
     def _design(self, variances: Variances) -> Design:
         point = replace(self.point, variances=variances)
-        found = unexpected(self.runs, point, self.kind)
+        found = unexpected(self.runs, point)
         marks = found.marks(self.slopes)
         return spread_out(self.runs, point.model, found.whitened(), marks, self.local)
 

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.knobs import START_YAW, Model
-from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.course import integrated
 from werrimbi_odom.model.covariance import (
@@ -70,10 +70,10 @@ def predict(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Pr
         Heading at the first reference pose where that was not measured [rad].
     """
     own = {} if start_yaw is None else {START_YAW: start_yaw}
-    return predict_all(Model(robot, (own,)), together([run]))
+    return predict_all(Model(robot, (own,)), concatenated([run]))
 
 
-def legs_shown(model: Model, runs: Together, looked_at: Robot | None = None) -> Floats:
+def legs_shown(model: Model, runs: Concatenated, looked_at: Robot | None = None) -> Floats:
     """Relative pose of every leg as the reference shows it, shape (m, 3) [m, m, rad].
 
     Parameters
@@ -88,12 +88,12 @@ def legs_shown(model: Model, runs: Together, looked_at: Robot | None = None) -> 
     return _shown(path, runs, view, model.drifts)
 
 
-def predict_all(model: Model, runs: Together) -> Prediction:
+def predict_all(model: Model, runs: Concatenated) -> Prediction:
     """The same, with the noise that it has for unit noise of each wheel."""
     return runs.of_model(model, "prediction", lambda: _predicted(model, runs))
 
 
-def _predicted(model: Model, runs: Together) -> Prediction:
+def _predicted(model: Model, runs: Concatenated) -> Prediction:
     view = view_of(model.robot.effects)
     runs = runs.delayed(view.delay)
     path = _path_of(model, runs)
@@ -111,18 +111,18 @@ def right_handed(poses: Floats, view: View) -> Floats:
     return poses * np.array([1.0, -1.0, -1.0]) if view.mirrored else poses
 
 
-def path_of(model: Model, runs: Together) -> DrivenPath:
+def path_of(model: Model, runs: Concatenated) -> DrivenPath:
     """What the model makes of the steps of all runs (the reference's delay being none); kept."""
     return runs.of_steps(model, "path", lambda: _path_of(model, runs))
 
 
-def _path_of(model: Model, runs: Together) -> DrivenPath:
+def _path_of(model: Model, runs: Concatenated) -> DrivenPath:
     robot = model.laid_out(runs.steps)
     return _path(robot, runs, view_of(robot.effects), model.start_yaws)
 
 
 def headings_of(
-    path: DrivenPath, runs: Together, view: View, start_yaws: Sequence[float | None]
+    path: DrivenPath, runs: Concatenated, view: View, start_yaws: Sequence[float | None]
 ) -> Floats:
     """Heading at the start of each step, in the reference's frame, shape (n,) [rad].
 
@@ -139,7 +139,7 @@ def headings_of(
     )
 
 
-def anchors(runs: Together, known: NDArray[np.bool_]) -> NDArray[np.intp]:
+def anchors(runs: Concatenated, known: NDArray[np.bool_]) -> NDArray[np.intp]:
     """The leg that each step's pose is followed from, shape (n,).
 
     That is the latest leg of the run at whose start something is `known` (m,); with none, its
@@ -148,7 +148,7 @@ def anchors(runs: Together, known: NDArray[np.bool_]) -> NDArray[np.intp]:
     return runs.known(("anchors", known.tobytes()), lambda runs: _anchors(runs, known))
 
 
-def _anchors(runs: Together, known: NDArray[np.bool_]) -> NDArray[np.intp]:
+def _anchors(runs: Concatenated, known: NDArray[np.bool_]) -> NDArray[np.intp]:
     first, run = runs.legs[:-1], runs.run_of_step
     leg = np.searchsorted(runs.begin, np.arange(run.size), side="right") - 1
     latest = np.where(known, np.arange(runs.count), first[runs.run_of_leg])
@@ -157,7 +157,7 @@ def _anchors(runs: Together, known: NDArray[np.bool_]) -> NDArray[np.intp]:
 
 def _path(
     robot: Robot,
-    runs: Together,
+    runs: Concatenated,
     view: View,
     start_yaws: Sequence[float | None],
     looked_at: Robot | None = None,
@@ -186,7 +186,7 @@ def _path(
 
 
 def places_of(
-    path: DrivenPath, heading: Floats, runs: Together, view: View
+    path: DrivenPath, heading: Floats, runs: Concatenated, view: View
 ) -> tuple[Floats, Floats]:
     """Where each step begins, in the reference's frame; arrays of shape (n,) [m].
 
@@ -212,7 +212,7 @@ def _from_motion(travel: WheelTravel[Floats], motion: BodyMotion[Floats]) -> Dri
     return DrivenPath(motion, travel, position, yaw)
 
 
-def _shown(path: DrivenPath, runs: Together, view: View, drifts: Floats) -> Floats:
+def _shown(path: DrivenPath, runs: Concatenated, view: View, drifts: Floats) -> Floats:
     """The legs' relative poses, seen at the reference's point, axis and times."""
     begin, end = runs.begin, runs.end
     turn = path.yaw[end] - path.yaw[begin]
@@ -232,7 +232,7 @@ def _shown(path: DrivenPath, runs: Together, view: View, drifts: Floats) -> Floa
     return np.stack([shown.real, shown.imag, turned + drift], axis=-1)
 
 
-def _late(path: DrivenPath, runs: Together, nodes: NDArray[np.intp], delay: float) -> Floats:
+def _late(path: DrivenPath, runs: Concatenated, nodes: NDArray[np.intp], delay: float) -> Floats:
     """How far a heading that is `delay` late [s] is behind, at each leg's node [rad]."""
     behind = np.empty(runs.count)
     for index, run in enumerate(runs.runs):
@@ -245,7 +245,7 @@ def _late(path: DrivenPath, runs: Together, nodes: NDArray[np.intp], delay: floa
 
 
 def _noise_of_legs(
-    path: DrivenPath, runs: Together, track: float, view: View
+    path: DrivenPath, runs: Concatenated, track: float, view: View
 ) -> tuple[Floats, Floats]:
     """Sums of the steps' closed forms, each carried to its leg's end, as the reference sees it.
 

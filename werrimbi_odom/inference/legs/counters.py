@@ -6,13 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from weakref import WeakKeyDictionary, ref
 
 import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import Run, Ticks
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.legs.even_stamps import evened
 from werrimbi_odom.inference.legs.leaps import Leap, bridged
 from werrimbi_odom.model.drive import Span
@@ -76,26 +75,17 @@ class Counters:
         return summed(path + turned)
 
 
-_HELD: WeakKeyDictionary[Ticks, tuple[tuple[Robot, EncoderLimits | None], ref[Counters]]]
-_HELD = WeakKeyDictionary()
-"""Of runs whose counters somebody holds: parts of a run share them, being numbers for each row."""
-
-
 def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counters:
     """The counters of a run, without the rows that an encoder does not accept.
+
+    Parts of a run share them, being numbers for each row.
 
     Raises
     ------
     InputError
         When fewer than two rows can be used, or the clock was set back.
     """
-    by = robot, limits
-    known, held = _HELD.get(run.ticks, (None, None))
-    found = held() if held is not None and known == by else None
-    if found is None:
-        found = _counted(run, robot, limits)
-        _HELD[run.ticks] = by, ref(found)
-    return found
+    return run.ticks.latest((robot, limits), lambda: _counted(run, robot, limits))
 
 
 def _counted(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counters:

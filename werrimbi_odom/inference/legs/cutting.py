@@ -24,7 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import NoDriving, Reference, ReferenceKind, Run
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference.legs.counters import Counters, counters_of, nodes_at
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
 from werrimbi_odom.inference.legs.no_driving import looked_at
@@ -203,21 +204,17 @@ def delayed(run: MatchedRun, delay: float) -> MatchedRun:
     )
 
 
-def sigmas_known(
-    runs: Sequence[MatchedRun],
-    kind: ReferenceKind,
-    sigma_xy: float | None,
-    sigma_yaw: float | None,
-) -> tuple[float | None, float | None]:
+def with_stated_noise(options: EvaluationOptions, runs: Sequence[MatchedRun]) -> EvaluationOptions:
     """The reference's noise as it was given, else as the records state it, if all do.
 
     A localiser states how far it may be off in all, and not what it errs by from pose to pose.
     """
-    if kind == "local_map":
-        return sigma_xy, sigma_yaw
-    return (
-        sigma_xy or _stated([run.sigma_xy for run in runs]),
-        sigma_yaw or _stated([run.sigma_yaw for run in runs]),
+    if options.reference_kind == "local_map":
+        return options
+    return replace(
+        options,
+        sigma_xy=options.sigma_xy or _stated([run.sigma_xy for run in runs]),
+        sigma_yaw=options.sigma_yaw or _stated([run.sigma_yaw for run in runs]),
     )
 
 

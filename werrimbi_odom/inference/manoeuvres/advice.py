@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.files.recordings import Recordings
-from werrimbi_odom.inference.changes.between import Moved, changes_between
+from werrimbi_odom.inference.changes.between_drives import Moved, changes_between
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, Diagnosis, diagnose
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit, detection_limits
@@ -41,12 +41,7 @@ def told_of(given: Recordings, show: Show = silent) -> Told:
     """
     effects = given.collection.effects
     diagnosis = diagnose(
-        given.runs,
-        given.robot,
-        effects,
-        holdout=given.holdout,
-        **given.judging,
-        show=show,
+        given.runs, given.robot, effects, given.evaluation, holdout=given.holdout, show=show
     )
     show(0.97, "the next step")
     manoeuvre = next_manoeuvre(diagnosis)

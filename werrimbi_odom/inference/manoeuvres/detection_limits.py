@@ -21,7 +21,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_sizes import base_name, name_of_base
 from werrimbi_odom.inference.chances import noncentrality
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -32,9 +33,9 @@ from werrimbi_odom.inference.fitting.candidates import (
     OF_THE_MEASUREMENT,
     Candidate,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import STEP
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
@@ -89,7 +90,7 @@ def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[D
     asked = {each.name for each in askable(effects, diagnosis.runs, robot)}
     never = [_never(item.effect) for item in candidates if item.name not in asked]
     candidates = [item for item in candidates if item.name in asked]
-    seen = _seen(Experiment(diagnosis.runs, final.point, diagnosis.kind), candidates, final, tried)
+    seen = _seen(Experiment(diagnosis.runs, final.point), candidates, final, tried)
     hidden = [item for item in candidates if seen[item.name].hidden]
     if not hidden:
         return (*seen.values(), *never)
@@ -115,12 +116,9 @@ def information_limits(
     effects: Sequence[Effect],
     robot: Robot,
     runs: Sequence[Run],
-    kind: ReferenceKind = "absolute",
+    options: EvaluationOptions,
     *,
-    sigma_xy: float,
-    sigma_yaw: float,
     tried: int,
-    leg: float = 1.0,
     power: float = POWER,
 ) -> dict[str, dict[str, float]]:
     """Limits of some effects by parameter, where robot and noise are known but for calibration.
@@ -131,8 +129,8 @@ def information_limits(
         The true one, its wheels' noise included, without the effects.
     runs
         Drives with a reference; where it measured, and how the wheels turned, is all that counts.
-    sigma_xy, sigma_yaw : float
-        The reference's noise [m, rad].
+    options
+        The reference's noise [m, rad] is to be known.
     tried : int
         Candidates among which the diagnosis chooses (`search.Round.number`).
 
@@ -142,9 +140,12 @@ def information_limits(
         By effect and parameter the distance from null, in the parameter's unit; infinite where the
         drives do not show it.
     """
-    laid = together(match_finely(runs, robot, leg))
+    laid = concatenated(match_finely(runs, robot, options.leg))
     look = sensitivities_of(
-        Experiment(laid, start_point(laid, robot, sigma_xy, sigma_yaw), kind),
+        Experiment(
+            laid,
+            start_point(laid, robot, options),
+        ),
         [_typical(effect) for effect in effects] + _calibrated(),
         (),
     )
@@ -214,9 +215,7 @@ def _shown_by(diagnosis: Diagnosis, hidden: Sequence[Candidate], *, better: bool
     pace = pace_of(diagnosis.runs, final.point.model.robot)
     wanted, found = list(hidden), {}
     for ideal in MANOEUVRES:
-        drives, _ = imagined(
-            ideal, diagnosis.runs, final.point, diagnosis.kind, pace, better=better
-        )
+        drives, _ = imagined(ideal, diagnosis.runs, final.point, pace, better=better)
         beside = [item for item in _calibrated() if item.name not in _names(wanted)]
         look = sensitivities_of(drives, [*wanted, *beside], final.knobs)
         for item in list(wanted):

@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.fitting.together import Together
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.manoeuvres.library import MANOEUVRES, Ideal
 from werrimbi_odom.inference.rules import (
     FASTEST_PACE,
@@ -61,7 +61,7 @@ class Pace:
         return 1.2 * self.speed / self.base
 
 
-def pace_of(runs: Together, robot: Robot) -> Pace:
+def pace_of(runs: Concatenated, robot: Robot) -> Pace:
     """What the robot did, so what it can do."""
     travel, drive = runs.raw(robot), runs.drive(robot)
     duration = np.maximum(drive.duration, 1e-6)
@@ -71,7 +71,7 @@ def pace_of(runs: Together, robot: Robot) -> Pace:
     return Pace(speed, HARD_START * speed, robot.track)
 
 
-def rates_of(runs: Together) -> tuple[float, float]:
+def rates_of(runs: Concatenated) -> tuple[float, float]:
     """Usual time between two messages of the ticks, and between two poses of the reference [s].
 
     A reference that has two or three poses in a drive: infinite.

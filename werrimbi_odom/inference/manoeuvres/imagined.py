@@ -8,11 +8,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import NUISANCES
-from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.manoeuvres.drives import Ideal, Pace, ideal_run, rates_of
 from werrimbi_odom.inference.manoeuvres.rivals import Experiment
@@ -25,7 +24,7 @@ from werrimbi_odom.inference.rules import (
 )
 
 
-def measured_in(runs: Together) -> tuple[bool, bool]:
+def measured_in(runs: Concatenated) -> tuple[bool, bool]:
     """Whether the reference measures positions, and headings."""
     return (
         any(bool(run.measured.has_position.any()) for run in runs.runs),
@@ -34,13 +33,7 @@ def measured_in(runs: Together) -> tuple[bool, bool]:
 
 
 def imagined(
-    ideal: Ideal,
-    runs: Together,
-    point: Point,
-    kind: ReferenceKind,
-    pace: Pace,
-    *,
-    better: bool = False,
+    ideal: Ideal, runs: Concatenated, point: Point, pace: Pace, *, better: bool = False
 ) -> tuple[Experiment, float]:
     """What the manoeuvre would record, and its minutes.
 
@@ -61,22 +54,22 @@ def imagined(
         for name in set.intersection(*(set(run.counters.channels) for run in runs.runs))
     }
     measures = measured_in(runs)
-    variances = point.variances
+    variances, options = point.variances, point.options
     if better:
         poses = MOTION_CAPTURE_INTERVAL
         measures = True, True
         variances = replace(
             variances, xy=np.array([MOTION_CAPTURE_XY**2]), yaw=np.array([MOTION_CAPTURE_YAW**2])
         )
-        kind = "absolute"
+        options = replace(options, reference_kind="absolute")
     run = ideal_run(
         ideal, robot, pace, ticks=ticks, poses=poses, measures=measures, channels=ranges
     )
     leg = pace.size / PARTS_OF_A_LEG
-    laid = together([match(run, robot, leg, None, QUARTER_TURN / PARTS_OF_A_LEG)])
-    start = start_point(laid, robot)
+    laid = concatenated([match(run, robot, leg, None, QUARTER_TURN / PARTS_OF_A_LEG)])
+    start = start_point(laid, robot, options)
     first = point.model.own[0]
     own = {name: value for name, value in first.items() if name not in NUISANCES}
     model = replace(start.model, own=({**own, **start.model.own[0]},))
     minutes = float(run.ticks.time[-1]) / 60.0
-    return Experiment(laid, replace(start, model=model, variances=variances), kind), minutes
+    return Experiment(laid, replace(start, model=model, variances=variances)), minutes

@@ -18,7 +18,6 @@ import numpy as np
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import sizes_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.search import Round
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins, twin_where
@@ -68,7 +67,7 @@ class Discrimination:
 def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
     """The next thing to do; None where the diagnosis leaves nothing open that it could answer."""
     if diagnosis.verdict == "ambiguous":
-        named = [effect_named(diagnosis, name) for name in diagnosis.rivals]
+        named = [diagnosis.effect_named(name) for name in diagnosis.rivals]
         by_hand = for_twins([effect for effect in named if effect], measured_in(diagnosis.runs)[0])
         if by_hand is not None:
             return by_hand
@@ -86,14 +85,14 @@ def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
     first = _as_fitted(rivals[0], this, diagnosis)
     looked_at = _once([*rivals, *(Candidate(find(name), {}) for name in CALIBRATED)])
     point, knobs = this.before.point, this.before.knobs
-    before = sensitivities_of(Experiment(diagnosis.runs, point, diagnosis.kind), looked_at, knobs)
+    before = sensitivities_of(Experiment(diagnosis.runs, point), looked_at, knobs)
     target = trace_at(before, first)
     sizes = {item.name: best_alias(before, target, item) for item in rivals[1:]}
     pace = pace_of(diagnosis.runs, point.model.robot)
     positions = measured_in(diagnosis.runs)[0]
     found = []
     for ideal in MANOEUVRES:
-        drives, minutes = imagined(ideal, diagnosis.runs, point, diagnosis.kind, pace)
+        drives, minutes = imagined(ideal, diagnosis.runs, point, pace)
         ahead = sensitivities_of(drives, looked_at, knobs)
         there = trace_at(ahead, first)
         stands = {rivals[0].name: ((before, target), (ahead, there))} | {

@@ -15,12 +15,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob, Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance, solved
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
@@ -30,21 +29,20 @@ from werrimbi_odom.model.pose import Floats
 class Experiment:
     """Some drives, the model to begin from, and how all that may be fitted acts in them."""
 
-    runs: Together
+    runs: Concatenated
     point: Point
-    kind: ReferenceKind
 
     def whitened(self, changes: Floats) -> Floats:
         """Changes of the legs (m, 3, p) as they appear in the innovations, (3 m, p)."""
         prediction = predict_all(self.point.model, self.runs)
-        found = unexpected(self.runs, self.point, self.kind, prediction)
+        found = unexpected(self.runs, self.point, prediction)
         marks = found.marks(changes)[..., : changes.shape[-1]]
         return np.asarray(marks.reshape(-1, changes.shape[-1]))
 
     def nuisances(self, knobs: Sequence[Knob]) -> Floats:
         """Columns of what each run has of its own, and of other knobs; (3 m, q)."""
         every = [*knobs, *self.point.model.nuisance_knobs]
-        return stacked(self.runs, self.point, self.kind, every).flat()[1]
+        return stacked(self.runs, self.point, every).flat()[1]
 
     def marks(self, candidate: Candidate) -> Floats:
         """Derivatives of the legs along a candidate's coordinates, (m, 3, k)."""

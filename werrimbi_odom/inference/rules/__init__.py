@@ -16,7 +16,7 @@ from werrimbi_odom.inference.rules.how_sure import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.no_driving import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.priors import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.records import *  # noqa: F401, F403
+from werrimbi_odom.inference.rules.reference_checks import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.reporting import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.search import *  # noqa: F401, F403
 from werrimbi_odom.inference.rules.set_up import *  # noqa: F401, F403
-from werrimbi_odom.inference.rules.suspect import *  # noqa: F401, F403

@@ -16,7 +16,8 @@ import numpy as np
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_sizes import skidding
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import FEWEST_CUTS, SURE_SIZE
@@ -35,7 +36,6 @@ from werrimbi_odom.inference.set_up.records import (
 from werrimbi_odom.inference.set_up.regression import swept, turning
 from werrimbi_odom.inference.set_up.robot import with_findings
 from werrimbi_odom.inference.set_up.sparse import is_sparse, search_sparse
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import wrap_all
 from werrimbi_odom.model.robot import Robot
 
@@ -77,10 +77,7 @@ class SetUp:
 
 
 def look_for_mistakes(
-    runs: Sequence[Run],
-    robot: Robot,
-    kind: ReferenceKind,
-    limits: EncoderLimits | None = None,
+    runs: Sequence[Run], robot: Robot, options: EvaluationOptions = EvaluationOptions()
 ) -> SetUp:
     """Search the whole range of what can be set up wrongly.
 
@@ -88,11 +85,9 @@ def look_for_mistakes(
     ----------
     robot : Robot
         As the robot file has it; effects that it holds already are kept and undone first.
-    kind : "absolute" or "incremental"
-        Outliers of either are left aside; the search is the same.
     """
-    runs = [looked_at(run, robot, limits) for run in runs]
-    records = [each for run in runs if (each := record_of(run, robot, limits)) is not None]
+    runs = [looked_at(run, robot, options.limits) for run in runs]
+    records = [each for run in runs if (each := record_of(run, robot, options.limits)) is not None]
     measured = measured_by(records)
     if measured is None:
         return SetUp((), robot)

@@ -31,7 +31,7 @@ def json_of(comparison: Comparison) -> dict[str, Any]:
         "runs": [_run(item) for item in comparison.runs],
         "legs": legs_json(main.all),
         "by_motion": {kind: legs_json(main.by_motion[kind]) for kind in KINDS},
-        "leg_m": comparison.prepared.leg,
+        "leg_m": comparison.main.leg,
         "verdict": {
             **picked(verdict, "good enough mean_is_right gross covariance noise"),
             "noise_factor": [verdict.factor.value, verdict.factor.low, verdict.factor.high],

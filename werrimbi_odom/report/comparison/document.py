@@ -38,7 +38,7 @@ def _figures(comparison: Comparison) -> list[Shown]:
         Shown(
             "path",
             "Where the model fails",
-            f"Each dot is a leg of {comparison.prepared.leg:g} m where it was driven, larger and "
+            f"Each dot is a leg of {comparison.main.leg:g} m where it was driven, larger and "
             "stronger in colour the more the model errs on it. Choose one drive to see where the "
             "model alone would have ended, and whether the truth lies inside its ellipses.",
             _paths(comparison),

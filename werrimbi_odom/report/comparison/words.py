@@ -61,7 +61,7 @@ def headline(comparison: Comparison, verdict: Verdict) -> str:
     if not verdict.enough:
         return (
             f"Too little to judge: {counted(count, 'leg')} of "
-            f"{comparison.prepared.leg:g} m, {FEWEST_LEGS} are the least. "
+            f"{comparison.main.leg:g} m, {FEWEST_LEGS} are the least. "
             "Drive more, or try a shorter --leg."
         )
     if verdict.good:
@@ -198,8 +198,8 @@ def _run_told(comparison: Comparison, index: int) -> str:
 
 def _reference(comparison: Comparison) -> list[str]:
     lines = []
-    each = "interval" if comparison.prepared.kind == "incremental" else "pose"
-    wanders = comparison.prepared.kind == "local_map"
+    each = "interval" if comparison.prepared.options.reference_kind == "incremental" else "pose"
+    wanders = comparison.prepared.options.reference_kind == "local_map"
     for measure, noise in comparison.prepared.noises:
         hows = [noise.xy_told] if measure != "heading" else []
         hows += [noise.yaw_told] if measure != "position" else []

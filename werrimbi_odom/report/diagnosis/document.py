@@ -9,7 +9,6 @@ import html
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.named import effect_named
 from werrimbi_odom.inference.diagnosis.response import before_after
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
@@ -64,7 +63,7 @@ def document_of(told: Told, steps: NextSteps | None = None) -> Document:
 def _effects(diagnosis: Diagnosis) -> list[Shown]:
     """What was found, or its rivals, drawn and described."""
     names = list(dict.fromkeys([*diagnosis.rivals, *diagnosis.found]))
-    cards = [effect_card(each) for name in names if (each := effect_named(diagnosis, name))]
+    cards = [effect_card(each) for name in names if (each := diagnosis.effect_named(name))]
     if not cards:
         return []
     many = len(diagnosis.rivals) > 1
@@ -230,7 +229,7 @@ def _sketches(diagnosis: Diagnosis) -> list[Shown]:
     cards = [
         effect_card(effect)
         for item in diagnosis.ranking
-        if item.effect not in said and (effect := effect_named(diagnosis, item.effect))
+        if item.effect not in said and (effect := diagnosis.effect_named(item.effect))
     ]
     if not cards:
         return []

@@ -10,9 +10,8 @@ import numpy as np
 
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.named import effect_named
-from werrimbi_odom.inference.diagnosis.otherwise import RecordedOtherwise
-from werrimbi_odom.inference.diagnosis.pairs import Sides
+from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
 from werrimbi_odom.inference.diagnosis.values import (
     Value,
@@ -34,7 +33,7 @@ from werrimbi_odom.report.phrases import sizes_words
 def about(told: Told, name: str) -> list[str]:
     """What it is, how large, how sure, what it costs, how to check it."""
     diagnosis = told.diagnosis
-    effect = effect_named(diagnosis, name)
+    effect = diagnosis.effect_named(name)
     lines = []
     if effect is not None:
         lines.append(f"What it is: {effect.summary}")
@@ -49,7 +48,7 @@ def about(told: Told, name: str) -> list[str]:
 
 def also(told: Told, name: str) -> list[str]:
     """Another effect that was found, in short."""
-    effect = effect_named(told.diagnosis, name)
+    effect = told.diagnosis.effect_named(name)
     size = sizes(told.diagnosis, name)
     ranked = ranked_of(told.diagnosis, name)
     sure = f"; {chance_words(ranked.p_value)}" if ranked is not None else ""

@@ -9,8 +9,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.named import effect_named
-from werrimbi_odom.inference.diagnosis.pairs import Sides
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.values import mistakes, one_wheel, reference_wanders
 from werrimbi_odom.inference.manoeuvres.advice import Told, significant
 from werrimbi_odom.model.effect import always_twins
@@ -162,7 +161,7 @@ def _named(told: Told, steps: NextSteps) -> list[str]:
 def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     rivals = diagnosis.rivals
-    first = effect_named(diagnosis, rivals[0])
+    first = diagnosis.effect_named(rivals[0])
     lines = _set_up(diagnosis)
     which = listed(rivals, "or")
     lines.append(
@@ -175,14 +174,14 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
             f"All drives together speak for {rivals[0]}; halves of them, taken by themselves, for "
             f"{listed(diagnosis.torn, 'or')}. A verdict that half of the data would change is none."
         )
-    others = [effect_named(diagnosis, name) for name in rivals[1:]]
+    others = [diagnosis.effect_named(name) for name in rivals[1:]]
     twins = [each.name for each in others if each and first and always_twins(first, each)]
     if twins:
         lines.append(
             f"To the reference {listed([rivals[0], *twins])} are one and the same, on any drive."
         )
     for name in rivals:
-        effect = effect_named(diagnosis, name)
+        effect = diagnosis.effect_named(name)
         if effect is not None:
             size = sizes(diagnosis, name, believed=True)
             lines.append(f"- {name}: {effect.summary}{f' Fitted: {size}.' if size else ''}")
@@ -206,7 +205,7 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
     lines.append("Or, if you know which it is, add it, for example:")
     lines.append(f"    {steps.add([rivals[0], *rest])}")
     for name in rivals[:3]:
-        lines += ruler(diagnosis, effect_named(diagnosis, name), f"Check {name}")
+        lines += ruler(diagnosis, diagnosis.effect_named(name), f"Check {name}")
     for other in diagnosis.found[1:]:
         if other not in rivals and other not in mistakes(diagnosis):
             lines += also(told, other)

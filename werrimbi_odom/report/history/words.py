@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 
-from werrimbi_odom.inference.changes.between import Moved
+from werrimbi_odom.inference.changes.between_drives import Moved
 from werrimbi_odom.inference.changes.dated import Dated, History
 from werrimbi_odom.inference.changes.history import Number
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, value_of

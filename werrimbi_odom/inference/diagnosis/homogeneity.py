@@ -5,9 +5,9 @@
 Scores and the evidence map take innovations for independent. Those of a reference that wanders (a
 camera, a map that is matched) are not, and go with something by chance much farther. So runs are
 cut into parts, and what a pattern explains in all of them is held against how much more it would
-explain if each part had coefficients of its own: Fisher's F. Where something is really there the
-parts agree, to within the noise. And what one drive alone shows, where the others could as well, is
-something that happened on that drive.
+explain if each part had coefficients of its own: a test of homogeneity, by Fisher's F. Where
+something is really there the parts agree, to within the noise. And what one drive alone shows,
+where the others could as well, is something that happened on that drive.
 """
 
 from __future__ import annotations
@@ -19,7 +19,6 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.chances import chi2_above, fisher_above
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
 from werrimbi_odom.inference.diagnosis.variables import functions_of
@@ -29,10 +28,10 @@ from werrimbi_odom.inference.fitting.candidates import (
     signatures,
     unexplained,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import (
     DRIVES_TO_LEAVE_ONE,
     LASTING_FEWEST,
@@ -56,26 +55,20 @@ class Lasting(NamedTuple):
     """The one drive that shows it where the others could and do not."""
 
 
-def lasting_effect(
-    runs: Together, point: Point, kind: ReferenceKind, knobs: Sequence[Knob], score: Score
-) -> float:
+def lasting_effect(runs: Concatenated, point: Point, knobs: Sequence[Knob], score: Score) -> float:
     """How often chance would score an effect as high, by the disagreement of the parts.
 
     `knobs` are those that it was scored beside.
     """
     if _too_few(runs):
         return 0.0
-    rest, found = signatures(runs, point, kind, knobs, [score.candidate])
+    rest, found = signatures(runs, point, knobs, [score.candidate])
     signature = next(found)
     return _chance(score.gain, score.degrees, signature.free, rest, _parts(runs))
 
 
 def lasting(
-    runs: Together,
-    point: Point,
-    kind: ReferenceKind,
-    knobs: Sequence[Knob],
-    cells: Iterable[Dependence],
+    runs: Concatenated, point: Point, knobs: Sequence[Knob], cells: Iterable[Dependence]
 ) -> Iterator[Lasting]:
     """Some cells of a model's map, each with whether it lasts.
 
@@ -85,16 +78,16 @@ def lasting(
         yield from (Lasting(cell, 0.0, None) for cell in cells)
         return
     prediction = predict_all(point.model, runs)
-    frame, rest = unexplained(runs, point, kind, knobs, prediction)
+    frame, rest = unexplained(runs, point, knobs, prediction)
     parts = _parts(runs)
     for cell in cells:
-        free = frame.residual(pattern_of(runs, point, kind, cell))
+        free = frame.residual(pattern_of(runs, point, cell))
         p_value = _chance(cell.gain, cell.degrees, free, rest, parts)
         alone = _drive_alone(free, rest, np.repeat(runs.run_of_leg, 3))
         yield Lasting(cell, p_value, None if alone is None else runs.runs[alone].name)
 
 
-def pattern_of(runs: Together, point: Point, kind: ReferenceKind, cell: Dependence) -> Floats:
+def pattern_of(runs: Concatenated, point: Point, cell: Dependence) -> Floats:
     """What a dependence of a cell's form does to the whitened innovations, (3 m, k)."""
     path = path_of(point.model, runs)
     sides = zip(
@@ -103,13 +96,15 @@ def pattern_of(runs: Together, point: Point, kind: ReferenceKind, cell: Dependen
         strict=True,
     )
     change = np.asarray(sum(legs_pushed(runs, *side) for side in sides))
-    own = unexpected(runs, point, kind).marks(change)[..., :-1]
+    own = unexpected(runs, point).marks(change)[..., :-1]
     if cell.variable.per_run:
         own = of_each_run(runs, own)
     return np.asarray(own.reshape(3 * runs.count, -1))
 
 
-def lasting_columns(runs: Together, gain: float, degrees: int, free: Floats, rest: Floats) -> float:
+def lasting_columns(
+    runs: Concatenated, gain: float, degrees: int, free: Floats, rest: Floats
+) -> float:
     """How often chance would explain as much by some columns, by the disagreement of the parts.
 
     Parameters
@@ -122,7 +117,7 @@ def lasting_columns(runs: Together, gain: float, degrees: int, free: Floats, res
     return 0.0 if _too_few(runs) else _chance(gain, degrees, free, rest, _parts(runs))
 
 
-def _too_few(runs: Together) -> bool:
+def _too_few(runs: Concatenated) -> bool:
     """Whether legs are so long, or so few, that each stands for itself."""
     return runs.count < LASTING_LEGS * LASTING_FEWEST * len(runs.runs)
 
@@ -142,7 +137,7 @@ def parts_of(run: NDArray[np.intp]) -> NDArray[np.intp]:
     return np.asarray(each * run + part)
 
 
-def _parts(runs: Together) -> NDArray[np.intp]:
+def _parts(runs: Concatenated) -> NDArray[np.intp]:
     """The part to which each innovation belongs, (3 m,)."""
     return np.repeat(parts_of(runs.run_of_leg), 3)
 

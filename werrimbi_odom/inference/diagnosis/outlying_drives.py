@@ -15,14 +15,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.run import ReferenceKind, Run
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.judged_legs import judged_legs
 from werrimbi_odom.inference.comparison.prepared import Prepared
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.rules import GROSS, OWN_GAIN
 from werrimbi_odom.inference.set_up.findings import SetUpFinding
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
 
@@ -42,11 +42,7 @@ class RecordedOtherwise:
 
 
 def recorded_otherwise(
-    fitted: Prepared,
-    held_out: Prepared,
-    mended: Robot,
-    kind: ReferenceKind,
-    limits: EncoderLimits | None,
+    fitted: Prepared, held_out: Prepared, mended: Robot, options: EvaluationOptions
 ) -> tuple[RecordedOtherwise, ...]:
     """Drives on either side that were not recorded as most of the fitted ones.
 
@@ -62,17 +58,15 @@ def recorded_otherwise(
         for run, error in zip(prepared.runs, errors, strict=True):
             if not error > GROSS * usual:
                 continue
-            findings = _differing(run, mended, kind, limits)
+            findings = _differing(run, mended, options)
             if findings:
                 found.append(RecordedOtherwise(run.name, prepared is held_out, findings))
     return tuple(found)
 
 
-def _differing(
-    run: Run, mended: Robot, kind: ReferenceKind, limits: EncoderLimits | None
-) -> tuple[SetUpFinding, ...]:
+def _differing(run: Run, mended: Robot, options: EvaluationOptions) -> tuple[SetUpFinding, ...]:
     try:
-        findings = look_for_mistakes([run], mended, kind, limits).findings
+        findings = look_for_mistakes([run], mended, options).findings
     except InputError:
         return ()
     clear = max((finding.gain for finding in findings), default=0.0)
@@ -82,7 +76,7 @@ def _differing(
 def typical_errors(prepared: Prepared, robot: Robot) -> Sequence[float]:
     """Median error of each drive's legs, by position [m], or by heading [rad] where that is all."""
     model = Model(robot, tuple({} for _ in prepared.runs))
-    legs = judged_legs(prepared, model, prepared.leg)
+    legs = judged_legs(prepared, model, prepared.options.leg)
     by_position = np.isfinite(legs.errors.distance).any()
     size = legs.errors.distance if by_position else np.abs(legs.errors.error[:, 2])
     medians = []

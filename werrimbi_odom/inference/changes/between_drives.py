@@ -3,8 +3,8 @@
 """Changes between the drives of one diagnosis: beside everything that it found, and no effect.
 
 A change is told if the drives need it (`search`), if the parts of the drives before it agree with
-each other and those after it do (`lasting`), and if neither another effect nor a dependence on a
-measured variable explains as much. Held-out drives have no part in it.
+each other and those after it do (`homogeneity`), and if neither another effect nor a dependence on
+a measured variable explains as much. Held-out drives have no part in it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from werrimbi_odom.inference.changes.search import Segmented, Step, segmented
 from werrimbi_odom.inference.changes.shapes import Kind
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.lasting import lasting_columns
+from werrimbi_odom.inference.diagnosis.homogeneity import lasting_columns
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import (
     Candidate,
@@ -38,9 +38,9 @@ from werrimbi_odom.inference.fitting.candidates import (
     scores,
     signatures,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, STEP, Knob
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import DATED, MOST_ALONE, RIVAL, SURE
 from werrimbi_odom.model.effect import Effect
@@ -131,7 +131,7 @@ def _beside(
         What the errors of the model go with.
     """
     runs = diagnosis.runs
-    evidence = evidence_of(runs, fit.point, diagnosis.kind, fit.design, fit.scatter)
+    evidence = evidence_of(runs, fit.point, fit.design, fit.scatter)
     order = driven_in_order([float(run.counters.time[0]) for run in runs.runs])
     drives = evidence.drives(np.arange(order.size, dtype=np.float64)).chosen(order)
     groups = groups_of([knob.name for knob in evidence.numbers], evidence.values, len(drives.names))
@@ -140,7 +140,7 @@ def _beside(
     steps = [
         step
         for step in found.steps
-        if _of_several(step, len(runs.runs), diagnosis.kind)
+        if _of_several(step, len(runs.runs), fit.point.options.reference_kind)
         and _lasts(runs, evidence, found.steps, step, place)
     ]
     if not steps:
@@ -163,9 +163,7 @@ def driven_in_order(starts: Sequence[float]) -> NDArray[np.intp]:
     return np.arange(len(starts))
 
 
-def evidence_of(
-    runs: Together, point: Point, kind: ReferenceKind, design: Design, scatter: float = 1.0
-) -> Evidence:
+def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float = 1.0) -> Evidence:
     """The innovations at a point and their derivatives in all numbers.
 
     Parameters
@@ -184,7 +182,7 @@ def evidence_of(
     nulls = {}
     seen = []
     if mounts:
-        _, each = signatures(runs, point, kind, (), [Candidate(effect, {}) for effect in mounts])
+        _, each = signatures(runs, point, (), [Candidate(effect, {}) for effect in mounts])
         for signature in each:
             effect = signature.candidate.effect
             if not signature.flat.any():
@@ -224,7 +222,7 @@ def _of_several(step: Step, drives: int, kind: ReferenceKind) -> bool:
 
 
 def _lasts(
-    runs: Together,
+    runs: Concatenated,
     evidence: Evidence,
     steps: Sequence[Step],
     step: Step,
@@ -248,7 +246,7 @@ def _worth_of_effects(diagnosis: Diagnosis, fit: Fitted, effects: Sequence[Effec
     known = {applied.name for applied in fit.point.model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in diagnosis.runs.runs))
     tried = candidates(effects, known, channels, len(diagnosis.runs.runs))
-    return _worth_of(scores(diagnosis.runs, fit.point, diagnosis.kind, knobs, tried), fit)
+    return _worth_of(scores(diagnosis.runs, fit.point, knobs, tried), fit)
 
 
 def _worth_of(found: Sequence[Score] | Sequence[Dependence], fit: Fitted) -> float:

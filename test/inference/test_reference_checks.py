@@ -13,11 +13,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, ReferenceKind, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.prepared import prepare
-from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
+from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.phrases import remark_words, remarks_json
 from werrimbi_odom.simulation import Peculiarity, TrueRobot, free, hide, record, start_stop
@@ -47,7 +48,10 @@ def remarks(
     kind: ReferenceKind = "absolute",
 ) -> dict[str, ReferenceRemark]:
     runs = [replace(run, reference=spoil(run.reference)) for run in drives(*hidden)]  # type: ignore[arg-type]
-    return {each.what: each for each in remarks_on(prepare(runs, ROBOT, kind))}
+    return {
+        each.what: each
+        for each in remarks_on(prepare(runs, ROBOT, EvaluationOptions(reference_kind=kind)))
+    }
 
 
 def test_a_sound_reference_has_no_remark() -> None:
@@ -117,7 +121,13 @@ def recorded(name: str, leg: float) -> list[str]:
     robot = read_robot_file(folder / "robot.yaml")
     runs = [read_run_folder(part) for part in sorted(folder.iterdir()) if part.is_dir()]
     kind = "absolute" if name in ("optitrack_robot", "labyrinth") else "incremental"
-    found = remarks_on(prepare(runs, robot.robot, kind, leg=leg, limits=robot.limits))
+    found = remarks_on(
+        prepare(
+            runs,
+            robot.robot,
+            EvaluationOptions(reference_kind=kind, leg=leg, limits=robot.limits),
+        )
+    )
     return [each.what for each in found]
 
 

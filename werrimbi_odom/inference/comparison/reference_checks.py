@@ -103,12 +103,12 @@ def remarks_on(prepared: Prepared) -> tuple[ReferenceRemark, ...]:
                 paths.append((prepared.runs[index], item, run.gap))
     if not paths:
         return ()
-    cuts = [_cuts(item, gap, prepared.leg) for _, item, gap in paths]
+    cuts = [_cuts(item, gap, prepared.options.leg) for _, item, gap in paths]
     runs = [run for run, _, _ in paths]
     wander = min(SUSPECT_WANDER, max(noise.wander[1] for _, noise in prepared.noises))
     return (
-        *_lengths(runs, cuts, prepared.leg),
-        *_angles(runs, cuts, prepared.leg, wander),
+        *_lengths(runs, cuts, prepared.options.leg),
+        *_angles(runs, cuts, prepared.options.leg, wander),
         *_metre(cuts),
     )
 

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.chances import binomial_above, in_any_of
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.prediction import Prediction
-from werrimbi_odom.inference.fitting.together import Together
 from werrimbi_odom.inference.rules import (
     ALIKE_SHARE,
     AT_REVERSAL,
@@ -64,7 +64,7 @@ class _Tried(NamedTuple):
 
 def alike(
     legs: Sequence[NDArray[np.intp]],
-    sides: Sequence[tuple[Together, Prediction]],
+    sides: Sequence[tuple[Concatenated, Prediction]],
     *,
     places: bool = True,
 ) -> Alike | None:
@@ -119,7 +119,7 @@ def alike(
     return min(common, key=lambda each: (each.what in PLACES, each.p_value), default=None)
 
 
-def _after(runs: Together, told: Prediction, *, stops: bool) -> NDArray[np.bool_]:
+def _after(runs: Concatenated, told: Prediction, *, stops: bool) -> NDArray[np.bool_]:
     """Intervals about a reversal, or about a start or a stop; (m,)."""
     found = np.zeros(runs.count, dtype=np.bool_)
     end = runs.ends_at

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from werrimbi_odom.files.run import ReferenceKind
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.comparison.jumps import jumped_legs
 from werrimbi_odom.inference.comparison.prepared import Prepared
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
@@ -25,16 +25,15 @@ from werrimbi_odom.inference.fitting.candidates import (
     put_in,
     scores,
 )
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, knobs_of
 from werrimbi_odom.inference.fitting.own_values import with_own_values
-from werrimbi_odom.inference.fitting.together import Together, together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.rules import SHAPES_FITTED
 from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUp
 from werrimbi_odom.model.effect import AppliedEffect, Effect
-from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.robot import Robot
 
 
@@ -42,15 +41,15 @@ from werrimbi_odom.model.robot import Robot
 class Drives:
     """The drives of a fit, in short legs, without those on which the reference jumped."""
 
-    laid: Together
+    laid: Concatenated
     jumped: tuple[np.ndarray[tuple[int], np.dtype[np.bool_]], ...]
-    kind: ReferenceKind
-    sigma: tuple[float | None, float | None]
+    options: EvaluationOptions
+    """With what the records state of the reference's noise."""
 
     def begin(self, robot: Robot) -> tuple[Point, tuple[Knob, ...]]:
         """A robot as it is, with what each run has of its own learnt; and what may be turned."""
-        point = replace(start_point(self.laid, robot, *self.sigma), excluded=self.jumped)
-        return with_own_values(self.laid, point, self.kind)
+        point = replace(start_point(self.laid, robot, self.options), excluded=self.jumped)
+        return with_own_values(self.laid, point)
 
     def fit(
         self,
@@ -61,9 +60,8 @@ class Drives:
         rounds: int = 3,
     ) -> Fitted:
         """Fit calibration, noise and `knobs`."""
-        return fitted(
-            self.laid, point, self.kind, names, knobs, given, rounds=rounds, sigma=self.sigma
-        )
+        point = replace(point, options=self.options)
+        return fitted(self.laid, point, names, knobs, given, rounds=rounds)
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,21 +77,15 @@ class Start:
     """What its score promises, of an effect that begins where that points."""
 
 
-def drives_of(
-    prepared: Prepared,
-    robot: Robot,
-    kind: ReferenceKind,
-    limits: EncoderLimits | None,
-    sigma: tuple[float | None, float | None],
-) -> Drives:
+def drives_of(prepared: Prepared, robot: Robot, options: EvaluationOptions) -> Drives:
     """Cut the drives of a fit by the travel of `robot`."""
-    runs = match_finely(prepared.runs, robot, prepared.leg, limits)
+    runs = match_finely(prepared.runs, robot, options.leg, options.limits)
     jumped = [np.zeros(run.legs, dtype=np.bool_) for run in runs]
     for group in prepared.groups:
         for index, every, jumps in zip(group.index, group.every.runs, group.jumps, strict=True):
             nodes = np.searchsorted(every.measured.time, runs[index].measured.time)
-            jumped[index] = jumped_legs(jumps, nodes, kind)
-    return Drives(together(runs), tuple(jumped), kind, sigma)
+            jumped[index] = jumped_legs(jumps, nodes, options.reference_kind)
+    return Drives(concatenated(runs), tuple(jumped), options)
 
 
 def is_of_set_up(effect: Effect, set_up: SetUp) -> bool:
@@ -145,7 +137,7 @@ def scored(
     runs = drives.laid
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     tried = candidates(effects, (), channels, len(runs.runs), asked=True)
-    return scores(runs, before.point, drives.kind, (*CALIBRATION, *knobs), tried)
+    return scores(runs, before.point, (*CALIBRATION, *knobs), tried)
 
 
 def start_at(before: Fitted, score: Score, knobs: Sequence[Knob]) -> Start:

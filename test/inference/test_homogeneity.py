@@ -16,10 +16,10 @@ from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.evidence import dependences
-from werrimbi_odom.inference.diagnosis.lasting import _chance, lasting
+from werrimbi_odom.inference.diagnosis.homogeneity import _chance, lasting
 from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
-from werrimbi_odom.inference.fitting.together import together
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
@@ -70,13 +70,13 @@ def driven(seed: int, spoil: Spoil, name: str, hotter: float = 0.0) -> Run:
 def chances(seeds: range, spoil: Spoil, hotter: float = 0.0) -> list[tuple[str, float, float]]:
     """The most certain cells: what they go with, chance by the map, chance by the quarters."""
     runs = [driven(seed, spoil, f"drive_{seed}", hotter) for seed in seeds]
-    laid = together(match_finely(runs, ROBOT, 1.0, None))
-    fit = first_fit(laid, ROBOT, "absolute")
+    laid = concatenated(match_finely(runs, ROBOT, 1.0, None))
+    fit = first_fit(laid, ROBOT)
     knobs = (*CALIBRATION, *fit.knobs)
-    cells = dependences(laid, fit.point, "absolute", knobs)[:8]
+    cells = dependences(laid, fit.point, knobs)[:8]
     return [
         (each.cell.variable.name, each.cell.p_value, each.p_value)
-        for each in lasting(laid, fit.point, "absolute", knobs, cells)
+        for each in lasting(laid, fit.point, knobs, cells)
     ]
 
 

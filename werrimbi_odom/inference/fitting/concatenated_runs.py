@@ -36,7 +36,7 @@ Found = TypeVar("Found")
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
-class Together:
+class Concatenated:
     """Several matched runs on common arrays: n steps, m legs."""
 
     runs: tuple[MatchedRun, ...]
@@ -61,10 +61,10 @@ class Together:
     """Legs that are none, for they hold something that is left out; shape (m,)."""
     stepped: NDArray[np.bool_]
     """Legs in which something happened at once (an event), which may end anywhere; shape (m,)."""
-    finer: Together | None = None
+    finer: Concatenated | None = None
     """The same nodes in shorter legs, of which these are joined."""
     _features: dict[tuple[float, ...], Drive[Floats]] = field(default_factory=dict)
-    _delayed: dict[float, Together] = field(default_factory=dict)
+    _delayed: dict[float, Concatenated] = field(default_factory=dict)
     _known: dict[Hashable, Any] = field(default_factory=dict)
     _of_models: list[tuple[object, dict[Hashable, Any]]] = field(default_factory=list)
     _of_steps: list[tuple[object, dict[Hashable, Any]]] = field(default_factory=list)
@@ -77,7 +77,7 @@ class Together:
             for item in fields(self)
             if not item.name.startswith("_")
         }
-        return partial(Together, **own), ()
+        return partial(Concatenated, **own), ()
 
     @property
     def count(self) -> int:
@@ -133,7 +133,7 @@ class Together:
         sums = np.concatenate([[0.0], np.cumsum(values)])
         return np.asarray(sums[self.end] - sums[self.begin])
 
-    def delayed(self, delay: float) -> Together:
+    def delayed(self, delay: float) -> Concatenated:
         """The same legs, when the reference saw at t - `delay` [s] what it stamps t."""
         if all(delay == run.delay for run in self.runs):
             return self
@@ -141,13 +141,13 @@ class Together:
         if known is None and self.finer is not None:
             finer = self.finer.delayed(delay)
             runs = zip(finer.runs, self.runs, strict=True)
-            known = together([joined(fine, run.rows) for fine, run in runs], finer)
+            known = concatenated([joined(fine, run.rows) for fine, run in runs], finer)
         elif known is None:
-            known = together([delayed(run, delay) for run in self.runs])
+            known = concatenated([delayed(run, delay) for run in self.runs])
         _remember(self._delayed, delay, known, DELAYS)
         return known
 
-    def known(self, key: Hashable, work: Callable[[Together], Found]) -> Found:
+    def known(self, key: Hashable, work: Callable[[Concatenated], Found]) -> Found:
         """What `work` makes of the runs, worked out once for a key."""
         found: Found | None = self._known.get(key)
         if found is None:
@@ -196,18 +196,18 @@ class Together:
         return known
 
 
-def together(runs: Sequence[MatchedRun], finer: Together | None = None) -> Together:
+def concatenated(runs: Sequence[MatchedRun], finer: Concatenated | None = None) -> Concatenated:
     """Lay runs end to end.
 
     Parameters
     ----------
-    finer : Together, optional
+    finer : Concatenated, optional
         The runs of which these are `joined`.
     """
     steps = _starts([run.time.size - 1 for run in runs])
     legs = _starts([run.legs for run in runs])
     poses = [np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1) for run in runs]
-    return Together(
+    return Concatenated(
         runs=tuple(runs),
         steps=steps,
         legs=legs,
@@ -227,9 +227,9 @@ def together(runs: Sequence[MatchedRun], finer: Together | None = None) -> Toget
     )
 
 
-def laid_out(runs: Sequence[MatchedRun] | Together) -> Together:
+def laid_out(runs: Sequence[MatchedRun] | Concatenated) -> Concatenated:
     """Runs laid end to end, if they are not yet."""
-    return runs if isinstance(runs, Together) else together(runs)
+    return runs if isinstance(runs, Concatenated) else concatenated(runs)
 
 
 def _drive_of(run: MatchedRun, robot: Robot, wiring: Wiring) -> DriveOfRun:
@@ -270,7 +270,7 @@ def _recalled(
     return value
 
 
-def _counts(runs: Together) -> WheelTravel[Floats]:
+def _counts(runs: Concatenated) -> WheelTravel[Floats]:
     """Of both wheels in all steps."""
     counts: WheelTravel[Floats] = _joined([WheelTravel(run.left, run.right) for run in runs.runs])
     return counts

@@ -10,14 +10,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from werrimbi_odom.inference.adding.start import Drives
+from werrimbi_odom.inference.adding.start_values import Drives
 from werrimbi_odom.inference.calibration_sizes import with_sizes_in_multipliers
 from werrimbi_odom.inference.chances import upper_part
-from werrimbi_odom.inference.diagnosis.choices import Law, spread_over_choices
+from werrimbi_odom.inference.diagnosis.post_selection import Law, spread_over_choices
 from werrimbi_odom.inference.diagnosis.selection import Fitted, grain_of
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, choices
-from werrimbi_odom.inference.fitting.costs import Costs
-from werrimbi_odom.inference.fitting.design import stacked
+from werrimbi_odom.inference.fitting.design import Costs, stacked
 from werrimbi_odom.inference.fitting.knobs import (
     CALIBRATION,
     MULTIPLIERS,
@@ -38,9 +37,9 @@ from werrimbi_odom.model.robot import Robot
 
 def noises_of(drives: Drives, fit: Fitted) -> dict[str, NoiseEstimate]:
     """Noise of a model as its file has it (`as_written`)."""
-    costs = Costs(drives.laid, fit.point, drives.kind)
+    costs = Costs(drives.laid, fit.point)
     information = _precision(drives, fit).information
-    return noise_estimates(costs, fit.point.variances, _held(drives), information)
+    return noise_estimates(costs, fit.point.variances, drives.options.sigmas_known, information)
 
 
 def as_written(drives: Drives, fit: Fitted, given: Robot) -> Fitted:
@@ -54,12 +53,8 @@ def as_written(drives: Drives, fit: Fitted, given: Robot) -> Fitted:
     if robot is model.robot:
         return fit
     point = replace(fit.point, model=Model(robot, model.own))
-    variances = likeliest(Costs(drives.laid, point, drives.kind), point.variances, _held(drives))
+    variances = likeliest(Costs(drives.laid, point), point.variances, drives.options.sigmas_known)
     return replace(fit, point=replace(point, variances=variances))
-
-
-def _held(drives: Drives) -> tuple[bool, bool]:
-    return drives.sigma[0] is not None, drives.sigma[1] is not None
 
 
 def with_spread(
@@ -83,7 +78,7 @@ def with_spread(
     design = fit.design
     if lacking:
         more = [knob for effect in effects for knob in knobs_of(effect) if knob.name in lacking]
-        design = stacked(drives.laid, fit.point, drives.kind, [*_local(fit), *more])
+        design = stacked(drives.laid, fit.point, [*_local(fit), *more])
     free = np.linalg.matrix_rank(fit.moves[[knob.name in MULTIPLIERS for knob, _ in columns]])
     if free != sizes.free:  # they could not be put back (`with_sizes`)
         *_, sizes = choices()
@@ -127,4 +122,4 @@ def _local(fit: Fitted) -> list[Knob]:
 
 def _precision(drives: Drives, fit: Fitted) -> Precision:
     local = [knob for knob in _local(fit) if knob.name != START_YAW]
-    return Precision.of(drives.laid, fit.point, drives.kind, local, fit.moves)
+    return Precision.of(drives.laid, fit.point, local, fit.moves)
