@@ -56,6 +56,11 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
             "By their counts, a timer read the wheels' counters evenly, and the stamps say when a "
             f"message came: they are put back to when it was read, by {_ms(held.restamped)} (rms)."
         )
+    if held.scans_restamped:
+        yield (
+            "By its path, the lidar turned evenly, and its scans are not stamped so: they are put "
+            f"back by {_ms(held.scans_restamped)} (rms)."
+        )
     if held.problem:
         yield f"It cannot be used as it is: {held.problem}."
     if held.driven is not None:
@@ -281,6 +286,7 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
         "turned_rad": drive.turned if drive is not None and found.sizes else None,
         "left_out": left_out_json(held.left_out),
         "restamped_s": held.restamped,
+        "scans_restamped_s": held.scans_restamped,
         "can_show": can,
         "cannot_show": cannot,
     }

@@ -21,6 +21,7 @@ from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
 from werrimbi_odom.inference.legs.counters import Counters, counters_of
+from werrimbi_odom.inference.legs.even_stamps import evened_scans
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
 from werrimbi_odom.inference.rules import (
     NO_DRIVING_AT_ONCE,
@@ -84,9 +85,14 @@ class _Seen:
 
 
 def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Run:
-    """The run with what of it is no driving, looked for once: parts of it keep what was found."""
+    """The run with what of it is no driving, looked for once: parts of it keep what was found.
+
+    Before, scans are put where their lidar turned (`even_stamps`).
+    """
     if run.no_driving is not None or run.reference is None:
         return run
+    run = replace(run, reference=evened_scans(run.reference))
+    assert run.reference is not None
     try:
         counters = counters_of(run, robot, limits)
     except InputError:
