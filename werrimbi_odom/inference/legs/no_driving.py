@@ -231,9 +231,9 @@ def _stretches(seen: _Seen) -> list[tuple[float, float]]:
             or float(off[inside].max()) > NO_DRIVING_AT_ONCE * doubted
         )
         short = rows.size < max(NO_DRIVING_FEWEST, windows.steps + NO_DRIVING_MORE)
-        if windows.without_leaps:
-            leaps = leaps and doubted < NO_DRIVING_QUICK * could
-            short = short and (moved_more or doubted < NO_DRIVING_FIRM * could)
+        if windows.without_leaps:  # a moment is enough for who sets it elsewhere, or stops it
+            surely_so = doubted >= (NO_DRIVING_QUICK if moved_more else NO_DRIVING_FIRM) * could
+            leaps, short = leaps and not surely_so, short and not surely_so
         if leaps or short or doubted < seen.enough:
             continue
         found.append((float(seen.time[first]), float(seen.time[last])))
