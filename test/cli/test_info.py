@@ -19,6 +19,7 @@ from test.inference.test_no_driving import held
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.first_robot import of_controller, of_urdf, with_steps
+from werrimbi_odom.simulation.lidar import Lidar
 
 DAY = 1_700_000_000
 JOINTS = ("drive_left_joint", "drive_right_joint")
@@ -150,7 +151,9 @@ def test_without_sizes_it_says_what_to_measure(
     assert "measure the wheels' radius and the distance between them" in printed
     assert " m and turned" not in printed
     assert main(["info", str(bag), "--out", str(tmp_path / "new.yaml")]) == 2
-    assert "/robot_description" in capsys.readouterr().err
+    told = capsys.readouterr()
+    assert "/robot_description" in told.err
+    assert " ".join(told.out.split()) == printed  # what it holds is told all the same
     parameters = tmp_path / "controllers.yaml"
     parameters.write_text(
         "controller_manager:\n  ros__parameters:\n    update_rate: 50\n"
@@ -217,3 +220,29 @@ def test_steps_of_the_angles_tell_the_counts_of_a_turn(ticks: int) -> None:
     assert found.ticks == ticks
     smooth = np.cumsum(np.random.default_rng(1).uniform(0.01, 0.1, 400))
     assert with_steps(first, [smooth, smooth]).ticks is None
+
+
+def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """In the middle of a hall a lidar sees nothing; the command that is printed works."""
+    ros, lidar = Messages(), Lidar()
+    run = run_of(ROBOT, 1, 40)
+    assert run.reference is not None
+    entries = []
+    for time, *counts in zip(run.ticks.time, run.ticks.left, run.ticks.right, strict=True):
+        angles = [2.0 * math.pi * count / ROBOT.left_ticks_per_revolution for count in counts]
+        stamp = round(1e9 * (DAY + time))
+        entries.append(("/joint_states", stamp, ros.joints(stamp, JOINTS, angles)))
+    rates = np.gradient(np.unwrap(run.reference.yaw), run.reference.time)
+    for time, rate in zip(run.reference.time, rates, strict=True):
+        stamp = round(1e9 * (DAY + time))
+        entries.append(("/imu", stamp, ros.imu(stamp, rate)))
+        nothing = np.full(lidar.beams, np.inf)
+        entries.append(("/scan", stamp, ros.scan(stamp, lidar, nothing)))
+    bag = ros.write(tmp_path / "hall", sorted(entries, key=lambda entry: entry[1]))
+    assert main(["info", str(bag), "--reference-topic", "/scan"]) == 0
+    printed = capsys.readouterr().out
+    assert "By /scan nothing can be judged" in " ".join(printed.split())
+    assert main(shlex.split(printed.splitlines()[-1].strip())[1:]) == 0
+    assert "It can show the base" in " ".join(capsys.readouterr().out.split())

@@ -7,11 +7,13 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import Contents, contents_of
 from werrimbi_odom.files.made_from_wheels import why_from_wheels
+from werrimbi_odom.simulation.lidar import Lidar
 
 MS = 10**6
 WHEELS = ["left_wheel_joint", "right_wheel_joint"]
@@ -52,6 +54,28 @@ def test_what_measures_and_what_comes_from_the_wheels(tmp_path: Path, ros: Any) 
     others = [each for each in held.references if not each.independent]
     assert [each.name for each in others] == ["/tf:odom:base_link", "/odom"]
     assert all("odom -> base_link is the robot's own odometry" in each.why for each in others)
+
+
+def test_what_the_odometry_carries_on_comes_after_what_was_seen(tmp_path: Path, ros: Any) -> None:
+    """A marker's pose, and the same carried on by the wheels: a message for each of /odom."""
+    entries = []
+    for n in range(1, 60):
+        entries.append(("/odom", n, ros.odometry(n * MS, 0.1 * n, 0.0, 0.0)))
+        entries.append(("/marker_pose_continuous", n, ros.pose(n * MS, 0.1 * n, 0.0, 0.0)))
+        entries.append(("/marker_pose", n, ros.pose(n * MS + 7, 0.1 * n, 0.0, 0.0)))
+    held = contents(ros.write(tmp_path / "bag", entries))
+    assert [each.name for each in held.independent] == ["/marker_pose", "/marker_pose_continuous"]
+    seen, carried_on = held.independent
+    assert "the wheels carry it on" in carried_on.why
+    assert "the wheels carry it on" not in seen.why
+
+
+def test_a_scan_that_was_moved_comes_after_the_lidars_own(tmp_path: Path, ros: Any) -> None:
+    lidar = Lidar()
+    topics = ("/stable_scan", "/scan", "/scan_filtered")
+    entries = [(topic, 1, ros.scan(MS, lidar, np.ones(lidar.beams))) for topic in topics]
+    held = contents(ros.write(tmp_path / "bag", entries))
+    assert [each.name for each in held.independent] == ["/scan", "/scan_filtered", "/stable_scan"]
 
 
 def test_a_map_that_never_corrects_leaves_the_odometry(tmp_path: Path, ros: Any) -> None:

@@ -7,7 +7,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from werrimbi_odom.inference.legs.even_stamps import evened
+from werrimbi_odom.files.run import Reference
+from werrimbi_odom.inference.legs.even_stamps import evened, evened_scans
 
 PERIOD = 0.2
 
@@ -74,3 +75,49 @@ def test_a_message_told_twice_was_read_once() -> None:
     found = evened(came[twice], *counts)
     assert (np.diff(found) >= 0.0).all()
     assert scatter(found - read[twice]) < 0.3 * scatter(came - read)
+
+
+def by_scans(seen: np.ndarray, stamps: np.ndarray, *, matched: bool = True) -> Reference:
+    """Poses of a robot that drives curves at changing speed, to 2 mm and 2 mrad."""
+    noise = np.random.default_rng(7).normal(0.0, 2e-3, (3, seen.size))
+    fine = np.linspace(0.0, seen[-1], 50 * seen.size)
+    yaw = 0.8 * np.sin(0.3 * fine)
+    speed = (0.2 + 0.1 * np.sin(0.5 * fine)) * np.gradient(fine)
+    x, y = np.cumsum(speed * np.cos(yaw)), np.cumsum(speed * np.sin(yaw))
+    at = [np.interp(seen, fine, each) for each in (x, y, yaw)]
+    return Reference(stamps, *(np.array(at) + noise), own_axes=matched)
+
+
+@pytest.mark.parametrize("lost", [0, 4])
+def test_a_lidar_turns_evenly_however_late_its_scans_come(lost: int) -> None:
+    """Five turns a second over a network; some are matched with nothing."""
+    random = np.random.default_rng(3)
+    seen = np.delete(PERIOD * np.arange(300), random.integers(1, 299, lost))
+    came = np.sort(seen + random.uniform(0.0, 0.2, seen.size))
+    found = evened_scans(by_scans(seen, came)).time
+    assert (np.diff(found) > 0.0).all()
+    assert scatter(found - seen) < 0.5 * scatter(came - seen)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_where_scans_are_missing_by_the_dozen_stamps_get_no_worse(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    seen = np.delete(PERIOD * np.arange(300), random.integers(1, 299, 30))
+    came = np.sort(seen + random.uniform(0.0, 0.2, seen.size))
+    found = evened_scans(by_scans(seen, came)).time
+    assert scatter(found - seen) <= scatter(came - seen)
+
+
+def test_of_what_is_no_lidar_nobody_knows_whether_it_is_even() -> None:
+    random = np.random.default_rng(3)
+    seen = PERIOD * np.arange(300)
+    came = np.sort(seen + random.uniform(0.0, 0.2, 300))
+    reference = by_scans(seen, came, matched=False)
+    assert evened_scans(reference) is reference
+
+
+def test_scans_that_are_stamped_truly_stay() -> None:
+    random = np.random.default_rng(3)
+    seen = np.sort(PERIOD * np.arange(300) + random.uniform(0.0, 0.1, 300))
+    reference = by_scans(seen, seen)
+    assert evened_scans(reference) is reference

@@ -18,12 +18,16 @@ from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.legs.agreement import Agreement
 from werrimbi_odom.inference.legs.cutting import match_finely
-from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.legs.no_driving import _judged, _stretches, looked_at
+from werrimbi_odom.inference.legs.windows import Windows
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.report.phrases import left_out_words
+from werrimbi_odom.simulation import TrueRobot, drives, hide, record, write_run
 
 DATA = Path(os.environ.get("WERRIMBI_DATA", Path(__file__).parents[3] / "shared" / "data"))
 NEAR = 0.5
@@ -197,6 +201,70 @@ def test_a_robot_that_is_lifted_ever_faster_until_it_is_lost() -> None:
     assert begin == pytest.approx(30.0, abs=NEAR)
     assert end > 32.0
     assert why == {"carried"}
+
+
+def test_who_sets_a_robot_elsewhere_takes_half_a_second() -> None:
+    """Its wheels go on meanwhile; a localiser that jumps does so from one pose to the next."""
+    run = at_10_hz(run_of(ROBOT, 2))
+    reference = run.reference
+    assert reference is not None
+    gone = np.clip((reference.time - 40.0) / 0.5, 0.0, 1.0)
+    away = replace(
+        reference, x=reference.x + 0.5 * gone, y=reference.y - 0.3 * gone, yaw=reference.yaw + gone
+    )
+    begin, end, why = span(replace(run, reference=away))
+    assert (begin, end) == pytest.approx((40.0, 40.5), abs=NEAR)
+    assert why == {"carried"}
+
+
+def test_a_robot_that_is_stopped_for_a_moment_is_found_by_a_gyro_though_its_wheels_are_slow() -> (
+    None
+):
+    """Five readings of the wheels a second: six windows of them are a second and a half."""
+    time = np.arange(0.0, 60.0, 0.2)
+    spins = np.where(time % 8.0 < 6.0, 40.0, -40.0)
+    turn = np.cumsum(2.0 * spins) * ROBOT.left_tick / ROBOT.track
+    held_back = (time > 33.0) & (time < 33.9)
+    rate = np.where(held_back, 0.0, np.gradient(turn, time))
+    stamps = np.arange(0.0, 59.7, 0.02)
+    yaw = np.cumsum(0.02 * np.interp(stamps, time, rate))
+    nothing = np.full(stamps.size, np.nan)
+    ticks = Ticks(time, np.cumsum(-spins), np.cumsum(spins))
+    run = Run("stopped", Path("stopped"), ticks, Reference(stamps, nothing, nothing, yaw))
+    begin, end, why = span(run)
+    assert (begin, end) == pytest.approx((33.0, 33.9), abs=NEAR)
+    assert why == {"held"}
+
+
+def test_nothing_is_expected_of_a_robot_whose_wheels_stand() -> None:
+    """A law learnt from straight driving says anything of turns, and drivers' speeds creep."""
+    stands = np.arange(200) < 60
+    wheels = np.where(stands, 0.00026, 0.018)
+    shown = np.where(stands, 0.0042, 0.018)  # by an arm of 0.7 m, which no turn has shown wrong
+    seen = np.where(stands, 0.0, shown) + np.random.default_rng(0).normal(0.0, 1e-4, 200)
+    time = 0.1 * np.arange(200.0)
+    windows = Windows(0.1, 5, time, wheels, wheels, wheels, seen, np.ones(200))
+    agreement = Agreement(windows, shown, shown, 0.0, np.array([1.0, 0.0, 0.5]))
+    assert _stretches(_judged(agreement, 0.0018, 0.03, turns=False)) == []
+
+
+def test_arcs_seen_from_beside_the_axle_are_driving(tmp_path: Path) -> None:
+    """Outwards it goes farther than its wheels, inwards less far: no one scale is both."""
+    mount = hide("reference_lever_arm", seed=3).peculiarity  # 61 mm ahead, 132 mm to the right
+    drive = record(TrueRobot(), drives(7)["train/eights_and_spins"], seed=42, hidden=[mount])
+    run = read_run_folder(write_run(drive, tmp_path / "eights"))
+    assert looked_at(run, ROBOT).no_driving == ()
+
+
+def at_10_hz(run: Run) -> Run:
+    """With a reference as often as most are."""
+    reference = run.reference
+    assert reference is not None
+    time = np.arange(reference.time[0], reference.time[-1], 0.1)
+    columns = (reference.x, reference.y, np.unwrap(reference.yaw))
+    return replace(
+        run, reference=Reference(time, *(np.interp(time, reference.time, one) for one in columns))
+    )
 
 
 def test_of_positions_alone_the_longest_drive_is_kept() -> None:

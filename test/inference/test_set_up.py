@@ -26,8 +26,9 @@ from test.inference.set_up_mistakes import (
     two_poses,
     without_yaw,
 )
+from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
-from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.adding.draft_laws import Seen, spot_form
 from werrimbi_odom.inference.adding.draft_source import source_of
@@ -172,6 +173,29 @@ def test_an_ordinary_effect_is_no_mistake(tmp_path: Path, effect: str) -> None:
 
 def test_a_set_up_that_is_right_comes_back_as_it_is(session: list[Run]) -> None:
     assert look_for_mistakes(session, NOMINAL) == SetUp((), NOMINAL)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_stamps_of_one_slow_loop_are_no_other_clock(seed: int) -> None:
+    """One loop reads wheels and lidar, and both come late together: the file's delay stays right.
+
+    From one reading to the next the two have their lateness in common, at no lag at all.
+    """
+    runs = [of_one_loop(run, 0.35, number) for number, run in enumerate(runs_of(ROBOT, (seed, 9)))]
+    robot = replace(ROBOT, effects=(find("reference_delay").using(delay=0.35),))
+    assert look_for_mistakes(runs, robot, "absolute").findings == ()
+
+
+def of_one_loop(run: Run, late: float, seed: int) -> Run:
+    """Counts and poses read every 0.15 s, stamped up to 0.25 s later, and the poses `late` [s]."""
+    reference, random = run.reference, np.random.default_rng(seed)
+    assert reference is not None
+    read = np.arange(reference.time[0] + late, reference.time[-1], 0.15)
+    stamps = np.sort(read + random.uniform(0.0, 0.25, read.size))
+    poses = (reference.x, reference.y, np.unwrap(reference.yaw))
+    seen = (np.interp(read - late, reference.time, each) for each in poses)
+    counts = (np.interp(read, run.ticks.time, each) for each in (run.ticks.left, run.ticks.right))
+    return replace(run, ticks=Ticks(stamps, *counts), reference=Reference(stamps, *seen))
 
 
 def test_a_reference_of_something_else_claims_nothing(session: list[Run]) -> None:

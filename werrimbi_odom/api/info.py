@@ -223,6 +223,8 @@ def robot_file_of(first: FirstRobot) -> RobotFile:
 
 def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
     """When it stood, drove, was held and carried, and what will be left out."""
+    import numpy as np
+
     from werrimbi_odom.inference.legs.counters import counters_of
     from werrimbi_odom.inference.legs.cutting import record_of
     from werrimbi_odom.inference.legs.no_driving import looked_at
@@ -238,8 +240,17 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
         left_out = record_of(run, robot, limits).left_out if run.reference is not None else ()
     except InputError as error:
         return replace(held, problem=str(error))
-    put_right = counters.restamped
-    return replace(held, run=run, driven=found, left_out=left_out, restamped=put_right)
+    scans = 0.0
+    if held.run.reference is not None and run.reference is not None:
+        scans = float(np.std(run.reference.time - held.run.reference.time))
+    return replace(
+        held,
+        run=run,
+        driven=found,
+        left_out=left_out,
+        restamped=counters.restamped,
+        scans_restamped=scans,
+    )
 
 
 def _write(found: Info, out: Path, force: bool) -> Path:

@@ -5,8 +5,10 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 
 from werrimbi_odom.cli.options import declare
+from werrimbi_odom.errors import InputError
 
 HELP = "what a recording holds and allows, and the command that comes next"
 
@@ -35,14 +37,20 @@ def run(arguments: argparse.Namespace) -> int:
     from werrimbi_odom.files.recordings import refuse_twice
 
     refuse_twice(arguments.runs)
-    result = info(
+    look = partial(
+        info,
         arguments.runs,
         robot=arguments.robot,
-        out=arguments.out,
         ticks_topic=arguments.ticks_topic,
         reference_topic=arguments.reference_topic,
         force=arguments.force,
     )
+    try:
+        result = look(out=arguments.out)
+    except InputError:
+        if arguments.out is not None:  # what it holds is told, though no file can be written
+            print(look().summary())
+        raise
     written = [each for each in (arguments.out, arguments.json) if each is not None]
     if arguments.json is not None:
         write_json(arguments.json, result.to_dict())

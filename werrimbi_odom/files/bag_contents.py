@@ -11,7 +11,7 @@ they are compared.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -20,6 +20,7 @@ from werrimbi_odom.files.drivers import DRIVERS
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Chain, Edge, EdgeCollector, chains_to_base, frame
 from werrimbi_odom.files.made_from_wheels import ODOMETRY, is_asked_for, why_from_wheels
+from werrimbi_odom.files.second_hand import second_hand
 
 Measures = Literal["poses", "positions", "yaw"]
 Gives = Literal["counts", "positions", "velocities", "odometry"]
@@ -120,8 +121,15 @@ def contents_of(bag: Bag, base: str = "") -> Contents:
         *(_measured(each, firsts.get(each.name)) for each in bag.topics if each.kind in POSES),
     ]
     references = [each for each in references if not is_asked_for(each.name)]
+    made_of = second_hand(bag, references)
+    references = [
+        replace(each, why=f"{each.why}; {made_of[each.name]}") if each.name in made_of else each
+        for each in references
+    ]
     # Scans last, for a localiser has made poses of them; stable: else in the bag's order.
-    references.sort(key=lambda each: (not each.independent, each.kind == SCAN))
+    references.sort(
+        key=lambda each: (not each.independent, each.kind == SCAN, each.name in made_of)
+    )
     return Contents(bag.path, bag.topics, tuple(_wheels(bag, firsts)), tuple(references), found)
 
 

@@ -43,6 +43,8 @@ class Held:
     left_out: tuple[LeftOut, ...] = ()
     restamped: float = 0.0
     """By how much the ticks' stamps are put right (`legs.even_stamps`), rms [s]."""
+    scans_restamped: float = 0.0
+    """The same of scans."""
 
 
 @dataclass(frozen=True)

@@ -56,6 +56,11 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
             "By their counts, a timer read the wheels' counters evenly, and the stamps say when a "
             f"message came: they are put back to when it was read, by {_ms(held.restamped)} (rms)."
         )
+    if held.scans_restamped:
+        yield (
+            "By its path, the lidar turned evenly, and its scans are not stamped so: they are put "
+            f"back by {_ms(held.scans_restamped)} (rms)."
+        )
     if held.problem:
         yield f"It cannot be used as it is: {held.problem}."
     if held.driven is not None:
@@ -188,7 +193,7 @@ def _next(found: Info) -> tuple[str, str]:
     """The next step, and its command; "" where it has none."""
     usable = [each for each in found.held if not each.problem and each.run is not None]
     if not usable:
-        return "Nothing of it can be judged.", ""
+        return _otherwise(found)
     if any(measures_of(each) == "nothing" for each in usable):
         again = "Record again with something that measures the robot beside its wheels"
         how = "an IMU's gyro shows its turning, a localiser or a scan matcher its poses"
@@ -202,6 +207,20 @@ def _next(found: Info) -> tuple[str, str]:
             ), ""
         return "Next: a first robot file.", command_of(found)
     return "Next:", command_of(found)
+
+
+def _otherwise(found: Info) -> tuple[str, str]:
+    """Where nothing can be judged by what was taken: what else measures the robot, the first."""
+    for held in found.held:
+        if held.contents is None or held.reference is None:
+            continue
+        others = [each.name for each in held.contents.independent if each != held.reference]
+        if others:
+            words = ["werrimbi", "info", *(str(each.path) for each in found.held)]
+            robot = [] if found.given is None else ["--robot", str(found.given)]
+            command = shlex.join([*words, *robot, "--reference-topic", others[0]])
+            return f"By {held.reference.name} nothing can be judged. Next:", command
+    return "Nothing of it can be judged.", ""
 
 
 def command_of(found: Info) -> str:
@@ -267,6 +286,7 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
         "turned_rad": drive.turned if drive is not None and found.sizes else None,
         "left_out": left_out_json(held.left_out),
         "restamped_s": held.restamped,
+        "scans_restamped_s": held.scans_restamped,
         "can_show": can,
         "cannot_show": cannot,
     }

@@ -242,13 +242,13 @@ def record_of(
     InputError
         As `match`.
     """
+    run = looked_at(run, robot, limits)
     reference = run.reference
     if reference is None:
         raise InputError(
             f"{run.path}: there is no reference to compare with "
             "(reference.csv: t_s,x_m,y_m,yaw_rad)"
         )
-    run = looked_at(run, robot, limits)
     counters = counters_of(run, robot, limits)
     first, last = float(counters.time[0]), float(counters.time[-1])
     known = (np.isfinite(reference.x) & np.isfinite(reference.y)) | np.isfinite(reference.yaw)

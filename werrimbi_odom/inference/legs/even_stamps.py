@@ -5,20 +5,34 @@
 A driver reads its counters by a timer; over a serial line or radio the messages then come two at a
 time, or late. Wheels turn evenly from one reading to the next, so the counts tell which it was: if
 they lie on a line by the number of their message, and not by its stamp, the stamps are put right.
+A lidar turns as evenly as a timer: of its scans the path that they give tells the same.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter, uniform_filter1d
 
-from werrimbi_odom.inference.rules import EVEN_LEAST, EVEN_MESSAGES, EVEN_SHARE, EVEN_WINDOW
+from werrimbi_odom.files.run import Reference
+from werrimbi_odom.inference.rules import (
+    EVEN_HALF_BASE,
+    EVEN_HOLE,
+    EVEN_LEAST,
+    EVEN_MESSAGES,
+    EVEN_MOST,
+    EVEN_SHARE,
+    EVEN_WINDOW,
+)
 from werrimbi_odom.model.encoder import Counts
 from werrimbi_odom.model.pose import Floats
 
 
-def evened(time: Floats, left: Counts, right: Counts) -> Floats:
+def evened(
+    time: Floats, left: Counts, right: Counts, lost: NDArray[np.intp] | None = None
+) -> Floats:
     """When the counters were read, if a timer read them; else the stamps as they are.
 
     Parameters
@@ -27,6 +41,8 @@ def evened(time: Floats, left: Counts, right: Counts) -> Floats:
         Stamps [s].
     left, right : ndarray, shape (n,)
         Cumulative counts.
+    lost : ndarray, shape (n - 1,), optional
+        How many messages are missing between two; none where not given.
 
     Returns
     -------
@@ -37,18 +53,59 @@ def evened(time: Floats, left: Counts, right: Counts) -> Floats:
     if time.size < EVEN_MESSAGES or not (np.diff(time) >= 0.0).all():
         return time
     first = ~_told_again(time, left, right)
-    stamps, number = time[first], np.cumsum(first) - 1
-    by_stamp, by_number = _unevenness(stamps, left[first], right[first])
+    row = np.cumsum(first) - 1
+    stamps, number = time[first], np.arange(float(row[-1] + 1))
+    if lost is not None:
+        number[1:] += np.cumsum(lost)[first[1:]]
+    by_stamp, by_number = _unevenness(stamps, number, left[first], right[first])
     if not by_number < EVEN_SHARE * by_stamp:
         return time
-    period = float(np.median(stamps[EVEN_WINDOW:] - stamps[:-EVEN_WINDOW])) / EVEN_WINDOW
-    even = period * np.arange(stamps.size)
+    apart = number[EVEN_WINDOW:] - number[:-EVEN_WINDOW]
+    period = float(np.median((stamps[EVEN_WINDOW:] - stamps[:-EVEN_WINDOW]) / apart))
+    even = period * number
     late = median_filter(stamps - even, EVEN_WINDOW, mode="reflect")  # a pause is a step of it
     off = np.clip(stamps - even - late, -period, period)
     late += uniform_filter1d(off, EVEN_WINDOW, mode="reflect")
     least = 0.1 * even  # none is read before the one before it
-    read = (np.maximum.accumulate(even + late - least) + least)[number]
+    read = (np.maximum.accumulate(even + late - least) + least)[row]
     return np.asarray(read) if np.std(read - time) > EVEN_LEAST * period else time
+
+
+def evened_scans(reference: Reference) -> Reference:
+    """The same, with scans where their lidar turned, if their path is even by number alone.
+
+    Of any other reference nothing is known of a timer, and its stamps stay; so they do where a
+    gyro's headings were laid upon the scans, at the stamps that these had.
+    """
+    seen = reference.has_position & reference.has_yaw
+    if not reference.own_axes or reference.gyro is not None or not seen.all():
+        return reference
+    turn = np.diff(np.unwrap(reference.yaw))
+    axis = np.exp(-1j * (reference.yaw[:-1] + 0.5 * turn))
+    forth = ((np.diff(reference.x) + 1j * np.diff(reference.y)) * axis).real
+    left, right = (
+        np.concatenate([[0.0], np.cumsum(forth + side * EVEN_HALF_BASE * turn)])
+        for side in (-1.0, 1.0)
+    )
+    time = np.asarray(reference.time, dtype=np.float64)
+    if time.size < EVEN_MESSAGES:
+        return reference
+    even = evened(time, left, right, _lost(time, left, right))
+    # Beyond that they are not numbered rightly: too many are missing.
+    late = float(np.std(even - time)) > EVEN_MOST * float(np.median(np.diff(time)))
+    return reference if even is time or late else replace(reference, time=even)
+
+
+def _lost(time: Floats, left: Floats, right: Floats) -> NDArray[np.intp]:
+    """Scans that are missing: across the hole it goes as far as in several steps beside it."""
+    interval = np.diff(time)
+    step = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
+    wide = np.pad(step, 2, mode="edge")
+    beside = 0.5 * np.maximum(wide[:-4] + wide[1:-3], wide[3:-1] + wide[4:])
+    drives = beside > 0.5 * float(np.median(step))
+    times = np.divide(step, beside, out=np.ones_like(step), where=drives)
+    holes = (times > EVEN_HOLE) & (interval > np.median(interval))
+    return np.where(holes, np.rint(times).astype(np.intp) - 1, 0)
 
 
 def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:
@@ -64,20 +121,27 @@ def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:
     return np.asarray(again & bool(mostly))
 
 
-def _unevenness(time: Floats, left: Counts, right: Counts) -> tuple[float, float]:
+def _unevenness(time: Floats, number: Floats, left: Counts, right: Counts) -> tuple[float, float]:
     """How far counts are off the line of their neighbours, by stamps and by numbers (rms)."""
-    step = np.diff(time)
-    both = step[:-1] + step[1:]
-    share = np.divide(step[:-1], both, out=np.full(both.size, 0.5), where=both > 0.0)
+    shares = [_before(time), _before(number)]
     off: list[list[Floats]] = [[], []]
     for counts in (left, right):
         whole, half = counts[2:] - counts[:-2], counts[1:-1] - counts[:-2]
         size = np.abs(whole)
         usual = np.median(size[size > 0.0]) if (size > 0.0).any() else 0.0
         turns = (size > 0.0) & (size < 20.0 * usual)  # and no counter that wraps or leaps
-        for kept, part in zip(off, (share, 0.5), strict=True):
+        for kept, part in zip(off, shares, strict=True):
             kept.append((half - part * whole)[turns])
     stamped, numbered = (np.concatenate(kept) for kept in off)
     if stamped.size < EVEN_MESSAGES:
         return 0.0, 0.0
     return float(np.sqrt(np.mean(stamped**2))), float(np.sqrt(np.mean(numbered**2)))
+
+
+def _before(place: Floats) -> Floats:
+    """Of the way from each one's neighbour before it to that after it, the share up to it."""
+    step = np.diff(place)
+    both = step[:-1] + step[1:]
+    share = np.full(both.size, 0.5)
+    np.divide(step[:-1], both, out=share, where=both > 0.0)
+    return share

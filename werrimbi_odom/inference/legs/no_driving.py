@@ -21,11 +21,14 @@ from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
 from werrimbi_odom.inference.legs.counters import Counters, counters_of
+from werrimbi_odom.inference.legs.even_stamps import evened_scans
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
 from werrimbi_odom.inference.rules import (
     NO_DRIVING_AT_ONCE,
     NO_DRIVING_EDGE,
     NO_DRIVING_FEWEST,
+    NO_DRIVING_FEWEST_FIRM,
+    NO_DRIVING_FIRM,
     NO_DRIVING_GOES,
     NO_DRIVING_JOINED,
     NO_DRIVING_LATE,
@@ -33,6 +36,7 @@ from werrimbi_odom.inference.rules import (
     NO_DRIVING_MOST,
     NO_DRIVING_NOISE,
     NO_DRIVING_OFF,
+    NO_DRIVING_QUICK,
     NO_DRIVING_ROUGH,
     NO_DRIVING_SILENT,
     NO_DRIVING_SPLIT,
@@ -81,9 +85,14 @@ class _Seen:
 
 
 def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Run:
-    """The run with what of it is no driving, looked for once: parts of it keep what was found."""
+    """The run with what of it is no driving, looked for once: parts of it keep what was found.
+
+    Before, scans are put where their lidar turned (`even_stamps`).
+    """
     if run.no_driving is not None or run.reference is None:
         return run
+    run = replace(run, reference=evened_scans(run.reference))
+    assert run.reference is not None
     try:
         counters = counters_of(run, robot, limits)
     except InputError:
@@ -122,6 +131,7 @@ def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> 
     slowest : float
         Turn or way in a window, below which nothing is said to move.
     """
+    found = _standing(found)
     windows, expected, gross = found.windows, found.expected, found.gross
     reach = 2 * max(1, round(NO_DRIVING_LATE / windows.step)) + 1
     low, high = minimum_filter1d(expected, reach), maximum_filter1d(expected, reach)
@@ -142,6 +152,17 @@ def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> 
     edge = found.off > np.maximum(NO_DRIVING_EDGE * gross, unsure)
     moves = np.abs(expected) > np.maximum(NO_DRIVING_EDGE * gross, least)
     return _Seen(found, beyond, edge, moves & keeps, enough)
+
+
+def _standing(found: Agreement) -> Agreement:
+    """The same, nothing being expected of a robot whose wheels stand.
+
+    A law that is learnt from straight driving says anything of a turn; and a driver that reads
+    speeds has its wheels creep while they stand.
+    """
+    rolls = found.windows.rolled > found.windows.still
+    expected, gross = (np.where(rolls, each, 0.0) for each in (found.expected, found.gross))
+    return replace(found, expected=expected, gross=gross)
 
 
 def _stopped(found: Agreement, low: Floats, high: Floats, least: float) -> NDArray[np.bool_]:
@@ -197,17 +218,23 @@ def _stretches(seen: _Seen) -> list[tuple[float, float]]:
     # A hand that slows a robot down does not do so evenly: what is off in between belongs to it.
     for begin, end in _runs_of(surely | seen.edge):
         rows = begin + np.flatnonzero(surely[begin : end + 1])
-        if rows.size < max(NO_DRIVING_FEWEST, windows.steps + NO_DRIVING_MORE):
+        if rows.size < max(NO_DRIVING_FEWEST_FIRM, windows.steps + 1):
             continue
         first, last = int(rows[0]), int(rows[-1])
         inside = slice(first, last + 1)
         doubted = float(off[inside].sum()) / windows.steps
+        could = float(seen.agreement.gross[inside].sum()) / windows.steps
+        moved_more = more[inside].mean() > 0.5
         # A lost track or a failed match leaps from one pose to the next: for a window, no longer.
-        leaps = more[inside].mean() > 0.5 and (
+        leaps = moved_more and (
             last + 1 - first < 2 * windows.steps
             or float(off[inside].max()) > NO_DRIVING_AT_ONCE * doubted
         )
-        if leaps or doubted < seen.enough:
+        short = rows.size < max(NO_DRIVING_FEWEST, windows.steps + NO_DRIVING_MORE)
+        if windows.without_leaps:  # a moment is enough for who sets it elsewhere, or stops it
+            surely_so = doubted >= (NO_DRIVING_QUICK if moved_more else NO_DRIVING_FIRM) * could
+            leaps, short = leaps and not surely_so, short and not surely_so
+        if leaps or short or doubted < seen.enough:
             continue
         found.append((float(seen.time[first]), float(seen.time[last])))
     return found
@@ -272,6 +299,9 @@ def _by_kind(begin: float, end: float, seen: Sequence[_Seen]) -> list[NoDriving]
     moved = (measured > expected).astype(np.float64)
     window = 2 * round(0.5 * NO_DRIVING_SPLIT / _GRID) + 1
     moved = median_filter(moved, window, mode="nearest")
+    if end - begin < NO_DRIVING_SPLIT:  # of one kind, by what is furthest off
+        weight = shares.max(axis=0)
+        moved[:] = float(np.average(measured > expected, weights=weight) > 0.5)
     # Parts that are shorter belong to the longest: a hand is there a moment sooner or later.
     runs = [*_runs_of(moved > 0.5), *_runs_of(moved < 0.5)]
     longest = max(runs, key=lambda run: run[1] - run[0])

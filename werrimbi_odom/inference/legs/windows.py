@@ -51,6 +51,9 @@ class Windows:
     """Turn [rad], or displacement [m]; NaN where nobody looked; (k,)."""
     chord: Floats
     """Of the arc that is driven in each, over its length; (k,)."""
+    without_leaps: bool = False
+    """Whether steps of the reference from one pose to the next are taken out of what is measured:
+    what is left takes several."""
 
     @property
     def still(self) -> float:
@@ -111,7 +114,8 @@ def windows_of(
         steps_seen = np.diff(reference.x[known][new]) + 1j * np.diff(reference.y[known][new])
     else:
         steps_seen = wrap_all(np.diff(reference.yaw[known][new])) + 0j
-    if usual[0] < NO_DRIVING_LEAP_WITHIN:
+    often = usual[0] < NO_DRIVING_LEAP_WITHIN
+    if often:
         steps_seen = _without_leaps(steps_seen, np.abs(np.diff(np.interp(time, grid, by_wheels))))
     gone = np.concatenate([[0j], np.cumsum(steps_seen)])
     over = _over(np.interp(grid, time, gone.real), steps)
@@ -131,6 +135,7 @@ def windows_of(
         _over(rolled, steps),
         measured,
         np.ones_like(measured),
+        often,
     )
 
 

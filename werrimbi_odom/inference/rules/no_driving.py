@@ -106,6 +106,12 @@ NO_DRIVING_FEWEST, NO_DRIVING_MORE = 6, 3
 """Windows in a row of the shortest stretch, and by how many it is longer than a window: at 10 Hz
 and more 0.8 s. A leap of the reference touches as many windows as one has steps, and one more."""
 
+NO_DRIVING_FIRM, NO_DRIVING_FEWEST_FIRM = 0.6, 4
+"""Share of what both wheels could do, that must be missing from all of a stretch which is shorter
+than that, and windows that it must have still: of five readings a second six windows are 1.5 s, and
+who stops a robot for a moment is gone by then. Nearly twice the share of `NO_DRIVING_OFF`: where a
+clock that wanders has been allowed for, no robot rolls as badly."""
+
 NO_DRIVING_LEAP, NO_DRIVING_LEAP_WITHIN = 2.0, 0.15
 """Times what wheels did, or the reference a moment before and after, beyond which a step of it from
 one pose to the next is a leap; and longest usual step [s] for that to be asked. Chosen: stamps that
@@ -115,6 +121,11 @@ NO_DRIVING_AT_ONCE = 0.75
 """Share of what is in doubt, that must not be in one window: a lost track or a failed match is over
 within one (a share of 1), and is found as a jump. A hand that moves a robot ever faster, until the
 reference lost it, did three fifths of it in the last window."""
+
+NO_DRIVING_QUICK = 2.0
+"""Times what both wheels could do meanwhile, beyond which a hand moved the robot, however quickly:
+who picks it up and puts it down elsewhere may take half a second. Chosen: no slip does as much, and
+a reference that leaps does so from one pose to the next (`NO_DRIVING_LEAP`)."""
 
 NO_DRIVING_MOST = 4.0
 """Times what both wheels could turn the robot by its file, beyond which no wheels did, where a

@@ -90,6 +90,11 @@ times off, so the right one gains far more on any drive with turns."""
 
 # ------------------------------------------------------------------ a clock that is off by seconds
 
+DELAY_WINDOW = 0.5
+"""Seconds over which turns and ways are compared. A robot turns and drives off in about as long;
+and stamps of a slow driver, which wander by a tenth or two and together, have their lateness in
+common at lag zero from one reading to the next, over half a second a fifth as much."""
+
 DELAY_LONGEST = 5.0
 """Lags looked at, both ways [s]: the bounds of `reference_delay`."""
 

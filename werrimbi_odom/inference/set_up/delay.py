@@ -4,14 +4,18 @@
 
 No derivative finds it: a turn that is over before the reference begins it has nothing in common
 with it. The turn rate is compared as a linear function of both wheels' speeds, the squared speed as
-a quadratic one, so neither wiring nor scale of the robot file matter.
+a quadratic one, so neither wiring nor scale of the robot file matter. Both over half a second:
+where one driver reads wheels and sensor in one loop, the stamps of both wander together, and what
+they have in common from one reading to the next is their lateness and not the robot's motion.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import TypeVar
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.inference.legs.gaps import touched
 from werrimbi_odom.inference.rules import (
@@ -23,12 +27,16 @@ from werrimbi_odom.inference.rules import (
     DELAY_SPANS,
     DELAY_TAMED,
     DELAY_UNEXPLAINED,
+    DELAY_WINDOW,
     FEWEST_CUTS,
 )
 from werrimbi_odom.inference.set_up.records import Record
 from werrimbi_odom.model.pose import Floats, wrap_all
 
+_Numbers = TypeVar("_Numbers", np.float64, np.complex128)
+
 _PERIOD = 0.1
+_STEPS = round(DELAY_WINDOW / _PERIOD)
 
 
 def lag_of(records: Sequence[Record]) -> tuple[float, float]:
@@ -45,15 +53,15 @@ def lag_of(records: Sequence[Record]) -> tuple[float, float]:
         grid = np.arange(record.time[0], record.time[-1], _PERIOD)
         if grid.size < DELAY_SPANS * most or record.seen.size < FEWEST_CUTS:
             continue
-        left = np.diff(np.interp(grid, record.time, record.left))
-        right = np.diff(np.interp(grid, record.time, record.right))
+        left = _over(np.interp(grid, record.time, record.left))
+        right = _over(np.interp(grid, record.time, record.right))
         products = np.stack([left**2, left * right, right**2])
         for total, wheels, measured in (
             (sums[0], np.stack([left, right]), _turns(record, grid)),
             (sums[1], products, _squared_steps(record, grid)),
         ):
             if measured is not None:
-                measured[touched(grid, record.not_driven)] = np.nan
+                measured[_in_any(touched(grid, record.not_driven))] = np.nan
                 total.add(wheels, measured)
     used = [total for total in sums if total.rows > DELAY_ROWS]
     if not used:
@@ -115,8 +123,7 @@ def _turns(record: Record, grid: Floats) -> Floats | None:
     if known.sum() < FEWEST_CUTS:
         return None
     yaw = np.concatenate([[0.0], np.cumsum(wrap_all(np.diff(record.yaw[known])))])
-    steps = np.diff(np.interp(grid, record.seen[known], yaw, left=np.nan, right=np.nan))
-    return _tamed(steps)
+    return _tamed(_over(np.interp(grid, record.seen[known], yaw, left=np.nan, right=np.nan)))
 
 
 def _squared_steps(record: Record, grid: Floats) -> Floats | None:
@@ -126,7 +133,18 @@ def _squared_steps(record: Record, grid: Floats) -> Floats | None:
     place = np.interp(grid, record.seen[known], record.place[known].real, np.nan, np.nan) + (
         1j * np.interp(grid, record.seen[known], record.place[known].imag)
     )
-    return _tamed(np.abs(np.diff(place)) ** 2)
+    return _tamed(np.abs(_over(place)) ** 2)
+
+
+def _over(values: NDArray[_Numbers]) -> NDArray[_Numbers]:
+    """What comes to pass in each window, begun a step of the grid after the one before."""
+    return np.asarray(values[_STEPS:] - values[:-_STEPS])
+
+
+def _in_any(steps: NDArray[np.bool_]) -> NDArray[np.bool_]:
+    """Windows that hold any of some steps of the grid."""
+    held = np.convolve(steps, np.ones(_STEPS), "valid")
+    return np.asarray(held > 0.5)
 
 
 def _tamed(values: Floats) -> Floats:

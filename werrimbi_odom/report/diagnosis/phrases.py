@@ -257,7 +257,9 @@ def _or_a_held_law(told: Told) -> str:
 
 def not_shown(told: Told) -> list[str]:
     """Effects that would have stayed hidden, and what would show them."""
-    hidden = [sight for sight in told.sights if sight.hidden]
+    # What is named was seen, larger than usual.
+    found = told.diagnosis.found
+    hidden = [sight for sight in told.sights if sight.hidden and sight.effect not in found]
     if not hidden:
         return []
     by_drive = [
