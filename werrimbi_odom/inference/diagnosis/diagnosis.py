@@ -160,7 +160,7 @@ def _searched(
         show(0.2 + 0.7 * number / ROUNDS, f"effects, round {number + 1}")
         this = search_round(laid, fit, kind, effects, set_up.robot, sigma)
         rounds.append(this)
-        best = _best(this, laid, kind)
+        best = _best(this, laid)
         beyond = _beyond_the_library(this, best, laid, kind)
         misfit = misfit_of_held_law(this, best, beyond, laid, kind)
         if misfit is not None:
@@ -189,7 +189,7 @@ def _searched(
     return replace(found, misfit=misfit, rivals_of_held=held), judge
 
 
-def _best(this: Round, runs: Together, kind: ReferenceKind) -> Fitted | None:
+def _best(this: Round, runs: Together) -> Fitted | None:
     """The cheapest model of a round, if chance does not explain it."""
     fit = next((fit for fit in this.tried if not fit.at_bound), None)
     if fit is None:
@@ -197,10 +197,7 @@ def _best(this: Round, runs: Together, kind: ReferenceKind) -> Fitted | None:
     before = this.before.cost + this.before.needless + this.before.price * fit.scatter
     if fit.total >= before or chance(fit, this.before, this.number) >= SURE:
         return None
-    score = next(score for score in this.scores if score.candidate.name == fit.names[-1])
-    knobs = (*CALIBRATION, *this.before.knobs)
-    lasts = lasting_effect(runs, this.before.point, kind, knobs, score) < SURE
-    return fit if lasts else None
+    return fit if lasting_effect(runs, fit) < SURE else None
 
 
 def _beyond_the_library(
