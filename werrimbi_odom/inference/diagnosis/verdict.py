@@ -89,6 +89,8 @@ class Diagnosis:
     """Median position error on the held-out runs, outliers and all [m]."""
     headings: Sides
     """Heading error on the held-out runs [rad]: a reference of headings alone is judged by it."""
+    quiet: tuple[Sides, Sides]
+    """`train` and `holdout` without the legs in which something happened at once."""
     rivals_of_others: Mapping[str, tuple[str, ...]]
     """Of the further effects that were found those that the runs cannot tell from another one."""
     left_out: tuple[LeftOut, ...] = ()
@@ -190,6 +192,10 @@ def told(
         start.to(last),
         Sides(start.holdout_median, last.holdout_median, start.unit),
         Sides(start.holdout_yaw, last.holdout_yaw, "rad"),
+        (
+            Sides(start.quiet[0], last.quiet[0], start.unit),
+            Sides(start.quiet[1], last.quiet[1], start.unit),
+        ),
         rivals_of_others(found, rivals, rounds, final),
         judge.left_out,
         (ReferenceRemark("another_drive", 0.0),) if another else remarks_on(judge.train),
