@@ -13,7 +13,7 @@ import numpy as np
 
 from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
-from werrimbi_odom.inference.chances import chi2_above, in_any_of
+from werrimbi_odom.inference.chances import chi2_above, fisher_above, in_any_of
 from werrimbi_odom.inference.comparison.another_drive import of_another_drive
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.comparison.suspect import ReferenceRemark, remarks_on
@@ -117,10 +117,13 @@ class Diagnosis:
 
 
 def chance(fit: Fitted, before: Fitted, tried: int) -> float:
-    """How often chance would lower the cost as much, all that was tried counted."""
+    """How often chance would lower the cost as much, all that was tried counted.
+
+    By a likelihood ratio; where the noise is what few data scatter by themselves, by Fisher's F.
+    """
     gain = (before.cost + before.needless - fit.cost - fit.needless) / fit.scatter
-    numbers = round((fit.price - before.price) / fit.price_of_one)
-    return in_any_of(max(tried, 1), chi2_above(max(gain, 0.0), max(numbers, 1)))
+    numbers = max(round((fit.price - before.price) / fit.price_of_one), 1)
+    return in_any_of(max(tried, 1), fisher_above(gain / numbers, numbers, fit.spare))
 
 
 def told(
