@@ -73,7 +73,9 @@ def lasting_effect(runs: Together, fit: Fitted) -> float:
             null = applied.effect.parameters[parameter].null
             own.append(column)
             away.append(0.0 if run >= 0 else model.value(knob) - null)
-    others = nuisance(flat[:, [effect != name for effect, *_ in whose]])
+    mine = [effect == name for effect, *_ in whose]
+    # What these drives do not determine was not turned, and explains nothing of the effect.
+    others = nuisance(flat @ fit.moves[:, ~fit.moves[mine].any(axis=0)])
     free = others.residual(flat[:, own])
     rest = others.residual(white) - free @ np.array(away)
     test = score_test(flat[:, own], free, rest)
