@@ -11,10 +11,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from werrimbi_odom.effects.collection import all_effects
+from werrimbi_odom.effects.collection import all_effects, find
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.adding.adding import add_effects
+from werrimbi_odom.inference.comparison.compare import compare
+from werrimbi_odom.inference.comparison.judged_legs import figures_of
+from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, diagnose
 from werrimbi_odom.inference.events.common_cause import alike
 from werrimbi_odom.inference.events.events import looked_at
@@ -22,6 +26,7 @@ from werrimbi_odom.inference.fitting.likelihood import innovations
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.diagnosis.as_json import json_of
 from werrimbi_odom.report.events import events_json, events_words
 from werrimbi_odom.simulation import TrueRobot, free, out_and_back, record, write_run
 from werrimbi_odom.simulation.hidden.knocks import Knock
@@ -112,6 +117,31 @@ def test_a_push_of_five_times_the_noise_is_told_and_left_out(sound: Drives) -> N
     [told] = events_json(found.happened, robot.track)
     assert (told["run"], told["unit"], told["left_out"]) == (str(runs[0].path), "m", True)
     assert "to the left" in told["words"]
+
+
+def test_every_verb_tells_the_same_of_drives_in_which_something_happened(sound: Drives) -> None:
+    """Fits leave an event out, and errors count it: who drove there by odometry was off by it."""
+    runs, robot = sound
+    wrong = replace(robot, wheel_separation_multiplier=1.02 * robot.wheel_separation_multiplier)
+    fitted = [_stepped(runs[0], 17.0, 0.01), runs[2]]
+    held = [_stepped(runs[1], 12.0, 0.01)]
+    found = diagnose(fitted, wrong, all_effects().effects, holdout=held)
+    assert found.happened.left_out
+    assert len(found.happened.events) == 2
+    assert found.found == ("track_width",)
+    compared = [_error(some, wrong) for some in (fitted, held)]
+    assert [found.train.before, found.holdout.before] == compared
+    added = add_effects([find("track_width")], fitted, wrong, holdout=held)
+    assert [side.sides.before for side in (added.train, added.holdout)] == compared
+    after = figures_of(prepare(held, wrong), found.robot).rmse_position_m
+    assert found.holdout.after == pytest.approx(after, rel=1e-12)
+    quiet = found.quiet[1]
+    assert quiet.after < quiet.before < found.holdout.before
+    assert json_of(found, None)["without_events"]["holdout"]["after"] == quiet.after
+
+
+def _error(runs: list[Run], robot: Robot) -> float:
+    return compare(runs, robot).main.all.figures.rmse_position_m
 
 
 def test_a_kick_of_the_heading_is_told_by_a_gyro_alone(sound: Drives) -> None:

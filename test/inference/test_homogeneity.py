@@ -13,11 +13,12 @@ import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects import LIBRARY
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.evidence import dependences
-from werrimbi_odom.inference.diagnosis.homogeneity import _chance, lasting
-from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.diagnosis.homogeneity import _chance, lasting, lasting_effect
+from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION
 from werrimbi_odom.inference.legs.cutting import match_finely
@@ -140,6 +141,41 @@ def test_what_all_drives_agree_on_lasts_however_many_they_are(drives: int) -> No
     rest = noise + 120.0 * np.where(parts % 20 == 0, few, -few)
     gain = float((free[:, 0] @ rest) ** 2)
     assert _chance(gain, 1, free, rest, parts) > 1e-3
+
+
+def late(seed: int, delay: float) -> Run:
+    """Twelve slow seconds, seen to 6 mm and 12 mrad ten times a second by a clock that is off."""
+    random = np.random.default_rng(seed)
+    speed, rate = wandering(random, 12.0)
+    commands = (0.5 * speed, 0.5 * rate)
+    seen = drive(TRUE, commands, random, sigma_xy=0.006, sigma_yaw=0.012, every=5)
+    poses = seen.reference
+    late = Reference(poses.time + delay, poses.x, poses.y, poses.yaw)
+    return replace(seen, name=f"drive_{seed}", reference=late)
+
+
+@pytest.mark.parametrize("seed", range(0, 80, 10))
+def test_parts_of_a_short_drive_agree_on_a_delay_by_the_law_at_the_fit(seed: int) -> None:
+    """At every start and stop a tenth of a second is more than its derivative at none says."""
+    laid = concatenated(match_finely([late(seed, 0.1)], ROBOT, 0.25, None))
+    before = first_fit(laid, ROBOT)
+    delay = [effect for effect in LIBRARY if effect.name == "reference_delay"]
+    (fit,) = search_round(laid, before, delay, ROBOT).tried
+    assert fit.point.model.robot.effects[-1].values["delay"] == pytest.approx(0.1, abs=0.03)
+    # By the derivative at no delay, 1.3e-3 and 1.1e-3 of seeds 0 and 20: left to chance.
+    assert lasting_effect(laid, fit) < 1e-4
+
+
+@pytest.mark.parametrize("seed", [0, 20])
+def test_a_delay_is_named_of_one_short_drive(seed: int) -> None:
+    found = diagnose(
+        [late(seed, 0.1)],
+        ROBOT,
+        LIBRARY,
+        EvaluationOptions(leg=0.25),
+        holdout=[late(seed + 1, 0.1)],
+    )
+    assert "reference_delay" in found.found
 
 
 def test_axes_that_begin_anew_have_no_common_direction() -> None:

@@ -183,7 +183,7 @@ def test_stamps_of_one_slow_loop_are_no_other_clock(seed: int) -> None:
     """
     runs = [of_one_loop(run, 0.35, number) for number, run in enumerate(runs_of(ROBOT, (seed, 9)))]
     robot = replace(ROBOT, effects=(find("reference_delay").using(delay=0.35),))
-    assert look_for_mistakes(runs, robot, "absolute").findings == ()
+    assert look_for_mistakes(runs, robot).findings == ()
 
 
 def of_one_loop(run: Run, late: float, seed: int) -> Run:

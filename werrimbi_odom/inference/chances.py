@@ -69,10 +69,13 @@ def fisher_above(value: float, above: float, below: float) -> float:
     Parameters
     ----------
     above, below
-        Degrees of freedom of its numerator and denominator.
+        Degrees of freedom of its numerator and denominator; of one that is known they are
+        infinite, and the variable is chi-squared.
     """
     from scipy.special import fdtrc
 
+    if math.isinf(below):
+        return chi2_above(above * value, above)
     return float(fdtrc(above, below, max(value, 0.0)))
 
 

@@ -49,6 +49,8 @@ class Legs:
     """[m]"""
     errors: LegErrors
     outlier: NDArray[np.bool_]
+    event: NDArray[np.bool_]
+    """In which something happened at once (`Run.happened`)."""
     run: NDArray[np.intp]
     """Index of the run, shape (m,)."""
     start_time: Floats
@@ -71,6 +73,11 @@ class Legs:
         }
         variables = {name: values[which] for name, values in self.variables.items()}
         return Legs(leg=self.leg, errors=self.errors.chosen(which), variables=variables, **columns)
+
+    @property
+    def quiet(self) -> Legs:
+        """Those in which nothing happened at once."""
+        return self.chosen(~self.event) if self.event.any() else self
 
 
 def in_runs(prepared: Prepared, robot: Robot | Model) -> Model:
@@ -178,7 +185,8 @@ def _table(
     legs = Legs(
         leg,
         errors,
-        jumped_in(group, runs, prepared.options.reference_kind) | runs.stepped,
+        jumped_in(group, runs, prepared.options.reference_kind),
+        runs.stepped,
         np.array(group.index)[runs.run_of_leg],
         begin,
         end,
@@ -249,7 +257,7 @@ def far_above_noise(prepared: Prepared, model: Model) -> bool:
     of the softest wheels there are, and of the reference by its own small differences. By what a
     usual leg is promised: a first one, whose heading nobody measured, is promised anything.
     """
-    legs = judged_legs(prepared, model, prepared.options.leg)
+    legs = judged_legs(prepared, model, prepared.options.leg).quiet
     kept = legs.errors.chosen(~legs.outlier)
     places = slice(2, 3) if judged_by(prepared) == "heading" else slice(0, 2)
     error = np.sum(kept.error[:, places] ** 2, axis=1)

@@ -178,10 +178,7 @@ def _best(this: Round, runs: Concatenated) -> Fitted | None:
     before = this.before.cost + this.before.needless + this.before.price * fit.scatter
     if fit.total >= before or chance(fit, this.before, this.number) >= SURE:
         return None
-    score = next(score for score in this.scores if score.candidate.name == fit.names[-1])
-    knobs = (*CALIBRATION, *this.before.knobs)
-    lasts = lasting_effect(runs, this.before.point, knobs, score) < SURE
-    return fit if lasts else None
+    return fit if lasting_effect(runs, fit) < SURE else None
 
 
 def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) -> Dependence | None:

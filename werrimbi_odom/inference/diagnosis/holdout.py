@@ -42,6 +42,8 @@ class Errors:
     holdout_median: float
     holdout_yaw: float
     """Root mean square heading error [rad]."""
+    quiet: tuple[float, float]
+    """The first two over legs in which nothing happened at once."""
     unit: Unit
     legs: Legs
     """Of the held-out drives."""
@@ -84,6 +86,7 @@ class Judge:
             error_of(holdout, unit),
             median_of(holdout, unit),
             error_of(holdout, "rad"),
+            (error_of(train.quiet, unit), error_of(holdout.quiet, unit)),
             unit,
             holdout,
         )

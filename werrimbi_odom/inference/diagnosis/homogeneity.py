@@ -21,17 +21,14 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.chances import chi2_above, fisher_above
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, legs_pushed, pushes_of
+from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.variables import functions_of
-from werrimbi_odom.inference.fitting.candidates import (
-    Score,
-    of_each_run,
-    signatures,
-    unexplained,
-)
+from werrimbi_odom.inference.fitting.candidates import of_each_run, unexplained
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
+from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import (
     DRIVES_TO_LEAVE_ONE,
     LASTING_FEWEST,
@@ -55,16 +52,33 @@ class Lasting(NamedTuple):
     """The one drive that shows it where the others could and do not."""
 
 
-def lasting_effect(runs: Concatenated, point: Point, knobs: Sequence[Knob], score: Score) -> float:
-    """How often chance would score an effect as high, by the disagreement of the parts.
+def lasting_effect(runs: Concatenated, fit: Fitted) -> float:
+    """How often chance would make a model's newest effect, by the disagreement of the parts.
 
-    `knobs` are those that it was scored beside.
+    Each part's own sizes are those that the law would have there by its derivatives *at the fit*:
+    half of a late reference (a tenth of a second, at every start and stop) lies beyond what its
+    derivative at no delay says, and would pass for a disagreement of the parts.
     """
     if _too_few(runs):
         return 0.0
-    rest, found = signatures(runs, point, knobs, [score.candidate])
-    signature = next(found)
-    return _chance(score.gain, score.degrees, signature.free, rest, _parts(runs))
+    model, name = fit.point.model, fit.names[-1]
+    applied = next(item for item in model.robot.effects if item.name == name)
+    white, flat = fit.design.flat()
+    whose = [knob.name.rpartition(".") for knob, _ in fit.design.columns]
+    own, away = [], []
+    for column, (knob, run) in enumerate(fit.design.columns):
+        effect, _, parameter = whose[column]
+        if effect == name and not applied.effect.parameters[parameter].tries:
+            null = applied.effect.parameters[parameter].null
+            own.append(column)
+            away.append(0.0 if run >= 0 else model.value(knob) - null)
+    mine = [effect == name for effect, *_ in whose]
+    # What these drives do not determine was not turned, and explains nothing of the effect.
+    others = nuisance(flat @ fit.moves[:, ~fit.moves[mine].any(axis=0)])
+    free = others.residual(flat[:, own])
+    rest = others.residual(white) - free @ np.array(away)
+    test = score_test(flat[:, own], free, rest)
+    return 1.0 if test is None else _chance(test.gain, test.degrees, free, rest, _parts(runs))
 
 
 def lasting(

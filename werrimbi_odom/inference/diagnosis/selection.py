@@ -70,6 +70,8 @@ class Fitted:
     """Of one free number."""
     scatter: float
     """Factor by which its costs are too large, where few data could not tell the noise."""
+    spare: float
+    """Degrees of freedom by which `scatter` is known; infinite where noise was fitted."""
     needless: float
     """What it costs to put them back."""
     at_bound: tuple[str, ...]
@@ -107,10 +109,14 @@ def price_of_one(runs: Concatenated) -> float:
 
 def scatter_of(runs: Concatenated, design: Design) -> float:
     """By how much costs are too large where few data could not tell the noise; else 1."""
+    return max(1.0, float(np.sum(design.white**2)) / spare_of(runs, design))
+
+
+def spare_of(runs: Concatenated, design: Design) -> float:
+    """Degrees of freedom that are left to tell the noise by; infinite where data tell it."""
     if runs.data >= NOISE_NUMBERS:
-        return 1.0
-    free = max(runs.data - len(design.columns), 1)
-    return max(1.0, float(np.sum(design.white**2)) / free)
+        return math.inf
+    return float(max(runs.data - len(design.columns), 1))
 
 
 def fitted(
@@ -161,6 +167,7 @@ def fitted(
         price * (len(kept) + counted),
         price,
         scatter,
+        spare_of(runs, design),
         rise,
         tuple(knob.name for knob in result.at_bound if knob.name not in MULTIPLIERS),
         importance,

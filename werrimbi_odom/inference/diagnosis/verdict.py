@@ -13,7 +13,7 @@ import numpy as np
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
-from werrimbi_odom.inference.chances import chi2_above, in_any_of
+from werrimbi_odom.inference.chances import chi2_above, fisher_above, in_any_of
 from werrimbi_odom.inference.comparison.another_drive import of_another_drive
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
@@ -90,6 +90,8 @@ class Diagnosis:
     """Median position error on the held-out runs, outliers and all [m]."""
     headings: Sides
     """Heading error on the held-out runs [rad]: a reference of headings alone is judged by it."""
+    quiet: tuple[Sides, Sides]
+    """`train` and `holdout` without the legs in which something happened at once."""
     rivals_of_others: Mapping[str, tuple[str, ...]]
     """Of the further effects that were found those that the runs cannot tell from another one."""
     left_out: tuple[LeftOut, ...] = ()
@@ -124,10 +126,13 @@ class Diagnosis:
 
 
 def chance(fit: Fitted, before: Fitted, tried: int) -> float:
-    """How often chance would lower the cost as much, all that was tried counted."""
+    """How often chance would lower the cost as much, all that was tried counted.
+
+    By a likelihood ratio; where the noise is what few data scatter by themselves, by Fisher's F.
+    """
     gain = (before.cost + before.needless - fit.cost - fit.needless) / fit.scatter
-    numbers = round((fit.price - before.price) / fit.price_of_one)
-    return in_any_of(max(tried, 1), chi2_above(max(gain, 0.0), max(numbers, 1)))
+    numbers = max(round((fit.price - before.price) / fit.price_of_one), 1)
+    return in_any_of(max(tried, 1), fisher_above(gain / numbers, numbers, fit.spare))
 
 
 def told(
@@ -197,6 +202,10 @@ def told(
         start.to(last),
         Sides(start.holdout_median, last.holdout_median, start.unit),
         Sides(start.holdout_yaw, last.holdout_yaw, "rad"),
+        (
+            Sides(start.quiet[0], last.quiet[0], start.unit),
+            Sides(start.quiet[1], last.quiet[1], start.unit),
+        ),
         rivals_of_others(found, rivals, rounds, final),
         judge.left_out,
         (ReferenceRemark("another_drive", 0.0),) if another else remarks_on(judge.train),

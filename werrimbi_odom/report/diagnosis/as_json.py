@@ -71,6 +71,9 @@ def json_of(
         ],
         "train": _sides(diagnosis.train),
         "holdout": _sides(diagnosis.holdout, diagnosis.headings),
+        "without_events": dict(zip(("train", "holdout"), map(_sides, diagnosis.quiet), strict=True))
+        if diagnosis.happened.left_out
+        else None,
         "reference_remarks": remarks_json(diagnosis.remarks),
         "left_out": left_out_json(diagnosis.left_out),
         "remaining": [_cell(cell) for cell in one_each(beyond_chance(diagnosis.remaining))],

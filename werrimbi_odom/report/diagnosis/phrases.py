@@ -185,6 +185,19 @@ def whole(told: Told) -> list[str]:
     ]
 
 
+def without_events(told: Told) -> list[str]:
+    """What the errors are without the legs in which something happened at once."""
+    every, quiet = told.diagnosis.holdout, told.diagnosis.quiet[1]
+    if (quiet.before, quiet.after) == (every.before, every.after) or not math.isfinite(quiet.after):
+        return []
+    before, after = (error_words(error, quiet.unit) for error in (quiet.before, quiet.after))
+    change = f"goes from {before} to {after}" if told.diagnosis.found else f"is {after}"
+    return [
+        "In the errors they count, as in those of `werrimbi compare`. Without their legs the "
+        f"{_of(quiet)} error on {judged(told)} {change}."
+    ]
+
+
 def ruler(diagnosis: Diagnosis, effect: Effect | None, head: str) -> list[str]:
     """How to check an effect on the robot, after some words, and what to expect there."""
     if effect is None:

@@ -29,6 +29,7 @@ from werrimbi_odom.report.diagnosis.phrases import (
     sizes,
     sizes_found,
     whole,
+    without_events,
 )
 from werrimbi_odom.report.document import Paragraph, paragraphs
 from werrimbi_odom.report.events import events_words
@@ -61,6 +62,7 @@ def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     suspect = [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*suspect, *left_out_words(diagnosis.left_out), *jumps_words(diagnosis.left_out)]
     left_out += events_words(diagnosis.happened, diagnosis.robot.track)
+    left_out += without_events(told)
     last = (index for index, text in enumerate(said) if text.startswith("Next: "))
     place = next(last, len(said))
     said[place:place] = left_out
