@@ -58,7 +58,7 @@ demo: setup  ## ticks through the real node, then a robot that finds out what it
 	$(BIN)/python -m werrimbi_odom.demo $(if $(ROBOT),--robot '$(ROBOT)') $(if $(RUN),--run '$(RUN)') --out demo
 
 test: setup lint  ## linters, then all tests but the long ones
-	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -m 'not evidence' --numprocesses $$(( $$(nproc) + 1 )) --dist loadfile
+	OPENBLAS_NUM_THREADS=1 $(BIN)/python -m pytest -m 'not evidence' --numprocesses $$(( $$(nproc) + 1 )) --dist loadfile --no-loadscope-reorder
 
 lint: setup
 	$(BIN)/ruff check .

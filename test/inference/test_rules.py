@@ -124,7 +124,7 @@ BARE = {
     ("calibration/noise_likelihood.py", 10.0): "a decade above where the search ends",
     ("diagnosis/diagnosis.py", 0.999): "a logarithm that stays finite",
     ("events/steps.py", 2.0): "either side",
-    ("fitting/noise.py", 0.01): "damping of a search",
+    ("fitting/fisher_scoring.py", 0.01): "damping of a search",
     ("legs/even_stamps.py", 20.0): "what no wheel does between two messages: counters that wrap",
     ("legs/counters.py", 3.0): "what keeps a cubic monotone (Fritsch and Carlson)",
     ("manoeuvres/drives.py", 0.2): "messages of an ideal drive [s]",

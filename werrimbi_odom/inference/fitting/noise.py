@@ -18,6 +18,7 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.chances import NORMAL_95, upper_part
 from werrimbi_odom.inference.fitting.concatenated_runs import laid_out
 from werrimbi_odom.inference.fitting.design import Costs
+from werrimbi_odom.inference.fitting.fisher_scoring import hessian, minimum
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.prediction import Prediction
 from werrimbi_odom.inference.rules import (
@@ -46,9 +47,6 @@ WALK = ("reference_walk_xy", "reference_walk_yaw", "reference_reversion")
 """And of a reference on a local map [m/s^0.5, rad/s^0.5, 1/s]."""
 
 _ALL = (*NOISES, STAMP_NOISE, *WALK)
-
-_LONGEST = 2.0
-"""Step in a logarithm: beyond it no curvature holds."""
 
 _LOWEST = np.log(1e-14)
 _HIGHEST = np.log([STRANGE_NOISE**2] * 2 + [10.0] * 6)
@@ -110,62 +108,16 @@ def held_variances(variances: Variances, options: EvaluationOptions) -> Variance
 
 
 def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Variances:
-    """Variances of greatest posterior likelihood, the model being given; by Fisher's scoring.
-
-    The innovations' derivatives in the logarithms of the variances come from one pass of the filter
-    over all sets. Expected curvature is positive, so every step goes downhill; what it lacks of the
-    true one (a noise that the drives hardly tell is overshot, to and fro) is learnt from the
-    gradients on the way: Dennis, Gay and Welsch, ACM Trans. Math. Softw. 7, 1981.
-    """
+    """Variances of greatest posterior likelihood, the model being given (`fisher_scoring`)."""
     prediction = costs.prediction()
     moving = _moving(costs, held)
-    highest = _HIGHEST[moving]
-    logs = np.clip(np.log(_row(start)[moving]), _LOWEST, highest)
-    damping = 1e-6
-    cost, gradient, expected = _scored(costs, prediction, start, moving, logs)
-    lacking = np.zeros_like(expected)
-    for _ in range(25):
-        curvature = expected + lacking
-        if np.linalg.eigvalsh(curvature)[0] <= 0.0:
-            curvature = expected
-        free = (logs < highest) | (gradient > 0.0)
-        scale = np.diag(curvature)
-        damped = curvature + np.diag(damping * scale + 1e-9 * scale.max(initial=1e-12) + 1e-12)
-        step = np.zeros(logs.size)
-        step[free] = -np.linalg.solve(damped[np.ix_(free, free)], gradient[free])
-        tried = np.clip(logs + np.clip(step, -_LONGEST, _LONGEST), _LOWEST, highest)
-        ahead = _scored(costs, prediction, start, moving, tried)
-        lacking = _lacking(lacking, ahead[2], tried - logs, ahead[1] - gradient)
-        if ahead[0] > cost + 1e-9 * abs(cost):
-            if damping > 1e4:
-                break
-            damping = max(10.0 * damping, 1e-2)
-            continue
-        gained, moved = cost - ahead[0], np.max(np.abs(tried - logs), initial=0.0)
-        logs, (cost, gradient, expected), damping = tried, ahead, 0.1 * damping
-        if gained < 1e-3 or moved < 1e-4:
-            break
+    logs = minimum(
+        lambda logs: _scored(costs, prediction, start, moving, logs),
+        np.log(_row(start)[moving]),
+        lowest=_LOWEST,
+        highest=_HIGHEST[moving],
+    )
     return _variances(start, moving, logs[None, :])
-
-
-def _lacking(before: Floats, expected: Floats, step: Floats, change: Floats) -> Floats:
-    """What the expected curvature lacks of the true one, after a step that changed the gradient so.
-
-    The symmetric matrix nearest to the one before (shrunk to what this step asks for) with which
-    both together explain the change; none after a step that was cut, which tells of another place.
-    """
-    if np.max(np.abs(step), initial=0.0) >= _LONGEST:
-        return np.zeros_like(before)
-    if not step @ change > 0.0:
-        return before
-    asked = change - expected @ step
-    along = before @ step
-    sized = min(1.0, abs(float(step @ asked)) / max(abs(float(step @ along)), 1e-300))
-    before = sized * before
-    rest = asked - sized * along
-    weight = change / float(step @ change)
-    update = np.outer(rest, weight)
-    return np.asarray(before + update + update.T - float(rest @ step) * np.outer(weight, weight))
 
 
 def prior_cost(costs: Costs, variances: Variances) -> Floats:
@@ -203,7 +155,10 @@ def _scored(
     moving: NDArray[np.bool_],
     logs: Floats,
 ) -> tuple[float, Floats, Floats]:
-    """Cost at the logarithms of the variances, its gradient, and its expected curvature."""
+    """Cost at the logarithms of the variances, its gradient, and its expected curvature.
+
+    The innovations' derivatives come from one pass of the filter over all sets.
+    """
     step = 1e-4
     sets = _variances(base, moving, np.concatenate([logs[None], logs + step * np.eye(logs.size)]))
     found = costs.innovations(sets, prediction)
@@ -240,7 +195,7 @@ def noise_estimates(
     function = _in_logs(costs, variances, moving)
     sigmas = np.sqrt(_row(variances))
     logs = 2.0 * np.log(sigmas[moving])
-    covariance = 2.0 * np.linalg.pinv(_hessian(function, logs), hermitian=True)
+    covariance = 2.0 * np.linalg.pinv(hessian(function, logs), hermitian=True)
     if information is not None:
         step = 0.1
         sides = logs + step * np.concatenate([np.eye(logs.size), -np.eye(logs.size)])
@@ -308,26 +263,3 @@ def _in_logs(
         return costs(sets, prediction) + prior_cost(costs, sets)
 
     return cost
-
-
-def _with_gradient(function: Callable[[Floats], Floats], logs: Floats) -> tuple[float, Floats]:
-    """Cost and gradient, by central differences taken in one pass."""
-    step = 1e-4
-    moves = step * np.eye(logs.size)
-    values = function(np.concatenate([logs[None], logs + moves, logs - moves]))
-    ahead, behind = values[1 : logs.size + 1], values[logs.size + 1 :]
-    return float(values[0]), (ahead - behind) / (2.0 * step)
-
-
-def _hessian(function: Callable[[Floats], Floats], logs: Floats) -> Floats:
-    """Second derivatives, by differences of gradients."""
-    step = 0.05
-    rows = []
-    for index in range(logs.size):
-        move = np.zeros(logs.size)
-        move[index] = step
-        ahead = _with_gradient(function, logs + move)[1]
-        behind = _with_gradient(function, logs - move)[1]
-        rows.append((ahead - behind) / (2.0 * step))
-    matrix = np.array(rows)
-    return np.asarray(0.5 * (matrix + matrix.T))

@@ -1,0 +1,51 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Variances of which one is hardly told: found at the minimum, in few steps."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from werrimbi_odom.inference.fitting.fisher_scoring import hessian, minimum
+
+Floats = np.ndarray
+
+
+def costs(rows: Floats, seen: Floats, shares: Floats) -> Floats:
+    """Minus two log-likelihood (g,) of sums of two normal numbers, at logarithms of variances."""
+    variance = np.exp(rows) @ shares
+    return np.sum(np.log(variance) + seen**2 / variance, axis=-1)
+
+
+@pytest.mark.parametrize("seed", range(20))
+def test_the_minimum_is_found_where_one_of_two_noises_hides_behind_the_other(seed: int) -> None:
+    random = np.random.default_rng(seed)
+    shares = np.stack([np.ones(300), random.uniform(0.0, 0.2, 300)])
+    seen = random.normal(0.0, np.sqrt(np.exp([0.0, 0.5]) @ shares))
+    asked = 0
+
+    def evaluate(logs: Floats) -> tuple[float, Floats, Floats]:
+        nonlocal asked
+        asked += 1
+        parts = np.exp(logs)[:, None] * shares
+        variance = parts.sum(axis=0)
+        slopes = parts / variance
+        gradient = slopes @ (1.0 - seen**2 / variance)
+        return float(costs(logs[None], seen, shares)[0]), gradient, slopes @ slopes.T
+
+    start, bounds = np.array([3.0, -3.0]), {"lowest": -12.0, "highest": np.array([9.0, 9.0])}
+    found = minimum(evaluate, start, **bounds)  # type: ignore[arg-type]
+    steps, grid = asked, np.linspace(-12.0, 9.0, 2101)
+    least = min(
+        costs(np.stack([np.full_like(grid, first), grid], axis=-1), seen, shares).min()
+        for first in np.linspace(-0.5, 0.5, 101)
+    )
+    assert costs(found[None], seen, shares)[0] < least + 2e-3
+    assert steps < 25
+
+
+def test_second_derivatives_of_a_quadratic_are_its_matrix() -> None:
+    matrix = np.array([[2.0, 0.3], [0.3, 5.0]])
+    found = hessian(lambda rows: 0.5 * np.sum(rows @ matrix * rows, axis=-1), np.array([1.0, -2.0]))
+    assert found == pytest.approx(matrix, rel=1e-6)
