@@ -19,7 +19,7 @@ class EvaluationOptions:
     leg: float = 1.0
     """Length of a leg [m]; a quarter turn on the spot is one too."""
     limits: EncoderLimits | None = None
-    """Which jumps of the counters are believed."""
+    """Which jumps of the counters are believed; None: as without any limit (`EncoderLimits()`)."""
     sigma_xy: float | None = None
     """The reference's noise in x and in y where it is known [m]; else as the record states it; else
     it is estimated from differences of the reference itself, so that no error of the model hides in

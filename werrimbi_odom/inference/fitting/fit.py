@@ -3,8 +3,8 @@
 """Maximum likelihood of calibration, effects and noise from any driving with a reference.
 
 Two blocks that hardly disturb each other are fitted in turn: the knobs (multipliers, parameters of
-effects, nuisances of runs) by Gauss-Newton on the whitened innovations, and the four variances on
-their likelihood. What the driving does not excite is left as it was.
+effects, nuisances of runs) by Gauss-Newton on the whitened innovations, and the variances
+(`noise`) on their likelihood. What the driving does not excite is left as it was.
 """
 
 from __future__ import annotations
