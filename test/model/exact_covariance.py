@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The covariance of a piece to 50 digits, from the noise itself and from MODEL.md's expression.
+"""The covariance of a piece to 50 digits, from the noise itself and from the paper's expression.
 
 `by_quadrature` shares no formula with the package. A wheel error dε at the path parameter u moves
 the end along the tangent there, and a heading error dφ swings what is still to be driven:
@@ -55,7 +55,7 @@ def by_quadrature(motion: Sequence[float], noise: Sequence[float], yaw: float = 
 
 
 def by_model_page(motion: Sequence[float], noise: Sequence[float], yaw: float = 0.0) -> Entries:
-    """MODEL.md's E and F, term by term as they stand there; no sideways travel.
+    """The paper's E and F (`model.covariance`), term by term; no sideways travel.
 
     They lose four digits for every one of a small Δ, so at 1e-12 they need 48 more than they give.
     """

@@ -7,7 +7,8 @@ same terms stand as products of four entire functions of h = Δ/2, of which thre
 zero. So there is one formula for line, arc, spin and pivot, and no case to choose between.
 
 With S = sin h / h, T = (1 - sinc 2h) / h², U = (1 + cos(2h)/2 - 3/2 sinc 2h) / h⁴ and
-V = (S - cos h) / h², the terms of MODEL.md (and so of the paper) read, per travel D:
+V = (S - cos h) / h², the paper's integrals in the chord's frame (E with the noise b, F with c; see
+docs/model.md) read, per travel D:
 E_x = -h V / 2, E_y = S / 2, E_xx = h² U / 4, E_yy = (S² + T/2) / 4, E_xy = -h S V / 4,
 F_xx = F_yy = -h T / 4, F_xy = S² / 2.
 

@@ -4,7 +4,7 @@
 
 With w = e^{iθ}, z = x + iy and Gaussian heading error φ, the white noise of the wheels makes the
 first and second moments of the pose obey a linear system with constant coefficients along a piece
-(MODEL.md, "Beyond the paper"); `piece_moments` is its solution in closed form. Pieces are chained
+(docs/model.md, "Large errors"); `piece_moments` is its solution in closed form. Pieces are chained
 by `chained`, exactly: the error of the whole is e = e₀ + w₀ (ω ε + η ζ), where e₀ and ω = e^{iφ₀}
 belong to the earlier pieces, ε to this one, ζ is its nominal displacement, and η = ω - 1.
 Carrying η instead of ω keeps small errors free of cancellation.
@@ -109,7 +109,7 @@ def from_covariance(covariance: PoseCovariance[float] = CERTAIN) -> PathMoments:
 
 
 def piece_moments(motion: BodyMotion[Any], noise: PathNoise[Any]) -> PieceMoments:
-    """Exact moments that one piece of constant twist adds (MODEL.md, last section)."""
+    """Exact moments that one piece of constant twist adds."""
     a, b, c = noise
     travel = motion.along + 1j * motion.sideways
     rate = 1j * motion.turn - 0.5 * b  # of E[w]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The UMBmark equations as the paper has them (5 to 11), of first order; errata of MODEL.md."""
+"""The UMBmark equations as the paper has them (5 to 11), of first order; errata: docs/model.md."""
 
 from __future__ import annotations
 

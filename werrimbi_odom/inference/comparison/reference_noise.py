@@ -92,7 +92,7 @@ def residuals_of(
     Parameters
     ----------
     every
-        Runs from `matching.every_pose`.
+        Runs from `legs.cutting.every_pose`.
 
     Returns
     -------

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether what the errors go with lasts from drive to drive, or was alike for a while.
+"""Test of homogeneity: whether the parts of the drives agree on what the errors go with.
 
 Scores and the evidence map take innovations for independent. Those of a reference that wanders (a
 camera, a map that is matched) are not, and go with something by chance much farther. So runs are

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The same filter for a reference whose own error wanders: a localiser, a matcher on a local map.
+"""The filter of `filtering` for a reference whose own error wanders: a localiser, a local map.
 
 What is measured is the pose, and an error that was nearly the same a moment ago, and noise of the
 moment. The error that wanders is a first-order Gauss-Markov process (Ornstein and Uhlenbeck): a

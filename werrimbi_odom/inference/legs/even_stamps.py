@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Stamps of ticks that say when a message came, and not when the counters were read.
+"""Stamps that say when a message came, and not when counters were read, or a lidar turned.
 
 A driver reads its counters by a timer; over a serial line or radio the messages then come two at a
 time, or late. Wheels turn evenly from one reading to the next, so the counts tell which it was: if
