@@ -137,7 +137,14 @@ def test_every_verb_tells_the_same_of_drives_in_which_something_happened(sound: 
     assert found.holdout.after == pytest.approx(after, rel=1e-12)
     quiet = found.quiet[1]
     assert quiet.after < quiet.before < found.holdout.before
-    assert json_of(found, None)["without_events"]["holdout"]["after"] == quiet.after
+    said = json_of(found, None)
+    assert said["without_events"]["holdout"]["after"] == quiet.after
+    base, *radii = said["calibration"].values()
+    assert abs(base["value"] - robot.wheel_separation_multiplier) < 4.0 * base["std"]
+    assert radii == [{"value": 1.0, "std": None}] * 2
+    for side, some in (("train", fitted), ("holdout", held)):
+        turned = compare(some, wrong).main.all.figures.rmse_yaw_rad
+        assert said[side]["rmse_yaw_rad"]["before"] == turned > said[side]["rmse_yaw_rad"]["after"]
 
 
 def _error(runs: list[Run], robot: Robot) -> float:

@@ -128,7 +128,7 @@ def test_every_verb_gives_the_same_figures(case: str) -> None:
         [added.train.sides.before, added.holdout.sides.before],
         [errors[judged] for errors in of_compare],
     )
-    np.testing.assert_array_equal(diagnosis.headings.before, of_compare[1][2])
+    np.testing.assert_array_equal(diagnosis.headings[1].before, of_compare[1][2])
     counted = [legs.main.all.figures.count for legs in compared]
     assert [added.train.figures("before").count, added.holdout.figures("before").count] == counted
     left_out = (*compared[0].left_out, *compared[1].left_out)

@@ -40,8 +40,8 @@ class Errors:
     train: float
     holdout: float
     holdout_median: float
-    holdout_yaw: float
-    """Root mean square heading error [rad]."""
+    yaw: tuple[float, float]
+    """Root mean square heading errors of train and holdout [rad]."""
     quiet: tuple[float, float]
     """The first two over legs in which nothing happened at once."""
     unit: Unit
@@ -85,7 +85,7 @@ class Judge:
             error_of(train, unit),
             error_of(holdout, unit),
             median_of(holdout, unit),
-            error_of(holdout, "rad"),
+            (error_of(train, "rad"), error_of(holdout, "rad")),
             (error_of(train.quiet, unit), error_of(holdout.quiet, unit)),
             unit,
             holdout,

@@ -88,8 +88,8 @@ class Diagnosis:
     holdout: Sides
     medians: Sides
     """Median position error on the held-out runs, outliers and all [m]."""
-    headings: Sides
-    """Heading error on the held-out runs [rad]: a reference of headings alone is judged by it."""
+    headings: tuple[Sides, Sides]
+    """Heading errors of `train` and `holdout` [rad]: those of headings alone are judged by them."""
     quiet: tuple[Sides, Sides]
     """`train` and `holdout` without the legs in which something happened at once."""
     rivals_of_others: Mapping[str, tuple[str, ...]]
@@ -201,7 +201,7 @@ def told(
         Sides(start.train, last.train, start.unit),
         start.to(last),
         Sides(start.holdout_median, last.holdout_median, start.unit),
-        Sides(start.holdout_yaw, last.holdout_yaw, "rad"),
+        (Sides(start.yaw[0], last.yaw[0], "rad"), Sides(start.yaw[1], last.yaw[1], "rad")),
         (
             Sides(start.quiet[0], last.quiet[0], start.unit),
             Sides(start.quiet[1], last.quiet[1], start.unit),

@@ -14,7 +14,7 @@ from werrimbi_odom.inference.changes.between_drives import Moved
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.inference.diagnosis.values import values_of
+from werrimbi_odom.inference.diagnosis.values import best_sizes, values_of
 from werrimbi_odom.inference.manoeuvres.advice import beyond_chance, one_each, significant
 from werrimbi_odom.inference.manoeuvres.detection_limits import DetectionLimit
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
@@ -69,8 +69,9 @@ def json_of(
             }
             for each in diagnosis.otherwise
         ],
-        "train": _sides(diagnosis.train),
-        "holdout": _sides(diagnosis.holdout, diagnosis.headings),
+        "calibration": _calibration(diagnosis),
+        "train": _sides(diagnosis.train, diagnosis.headings[0]),
+        "holdout": _sides(diagnosis.holdout, diagnosis.headings[1]),
         "without_events": dict(zip(("train", "holdout"), map(_sides, diagnosis.quiet), strict=True))
         if diagnosis.happened.left_out
         else None,
@@ -89,6 +90,16 @@ def json_of(
         "events": events_json(diagnosis.happened, diagnosis.robot.track),
         "events_alike": alike_json(diagnosis.happened),
         "could_have_been_seen": [_limit(sight) for sight in sights],
+    }
+
+
+def _calibration(diagnosis: Diagnosis) -> dict[str, Any]:
+    """Base and radii of the best model; no deviation where one stays as the robot file has it."""
+    if diagnosis.of_another_drive:
+        return {}
+    return {
+        name: {"value": value, "std": std or None}
+        for name, (value, std) in best_sizes(diagnosis).items()
     }
 
 
