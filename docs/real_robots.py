@@ -21,7 +21,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration.any_driving import Calibration, calibrate
 from werrimbi_odom.inference.calibration.recorded_square import Record, recorded_square, squares_of
 from werrimbi_odom.inference.calibration.umbmark import corrected, umbmark
-from werrimbi_odom.inference.comparison.legs import LegErrors, joined, leg_errors, statistics
+from werrimbi_odom.inference.comparison.leg_errors import LegErrors, joined, leg_errors, statistics
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.rules import PARTS_OF_A_LEG, QUARTER_TURN
 from werrimbi_odom.model.robot import Robot

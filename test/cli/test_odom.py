@@ -24,8 +24,8 @@ from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.pose import Pose
+from werrimbi_odom.model.reference_measurement import shown
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.seen_by_reference import shown
 from werrimbi_odom.model.trajectory import trajectory
 
 ROOT = Path(__file__).parents[2]

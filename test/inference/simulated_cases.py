@@ -18,16 +18,16 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.fits import fits_of
+from werrimbi_odom.inference.adding.fitted_parameters import parameters_of, std_of
 from werrimbi_odom.inference.adding.start_values import Drives
 from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
-from werrimbi_odom.inference.adding.values import parameters_of, std_of
 from werrimbi_odom.inference.diagnosis.sizes import sizes_needed, with_sizes
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, changed
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.effect import Effect, view_of
+from werrimbi_odom.model.reference_measurement import shown
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.seen_by_reference import shown
 from werrimbi_odom.model.trajectory import trajectory
 
 GIVEN = Robot(0.35, 0.05, 2000.0, 2000.0)

@@ -13,7 +13,7 @@ import pytest
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.comparison.legs import (
+from werrimbi_odom.inference.comparison.leg_errors import (
     LegErrors,
     LegStatistics,
     joined,

@@ -21,7 +21,7 @@ from werrimbi_odom.inference.calibration.any_driving import calibrate
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, figures_of
 from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.diagnosis.values import values_of
+from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.noise import of_no_wheel
 from werrimbi_odom.inference.legs.cutting import match_finely

@@ -26,7 +26,7 @@ from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import figures_of
-from werrimbi_odom.inference.comparison.legs import LegStatistics
+from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.model.effect import Effect

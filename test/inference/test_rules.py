@@ -37,7 +37,7 @@ ELSEWHERE = {
     "events/common_cause.py": {"MOVES": "as good as standing, in a leg of a tenth of a second"},
     "events/noise.py": {"_ROUNDS": "passes of a robust fit"},
     "events/steps.py": {"STRETCH": "time that it takes", "_HEARD": "a rank"},
-    "comparison/legs.py": {"CHI2_95": "quantiles"},
+    "comparison/leg_errors.py": {"CHI2_95": "quantiles"},
     "comparison/local_map.py": {
         "_MEDIAN_OF_A_SHARE": "a quantile",
         "_ROUNDS": "passes of the search of a doubt",

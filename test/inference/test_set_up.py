@@ -33,7 +33,7 @@ from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.adding.draft_laws import Seen, spot_form
 from werrimbi_odom.inference.adding.draft_source import source_of
 from werrimbi_odom.inference.adding.drafting import loaded
-from werrimbi_odom.inference.comparison.legs import leg_errors, statistics
+from werrimbi_odom.inference.comparison.leg_errors import leg_errors, statistics
 from werrimbi_odom.inference.diagnosis.evidence import Amount
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.set_up.search import SetUp, SetUpFinding, look_for_mistakes

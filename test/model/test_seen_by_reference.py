@@ -11,8 +11,8 @@ import pytest
 
 from test.model.drives import ROBOT, random_drive, read
 from werrimbi_odom.model.pose import Pose
+from werrimbi_odom.model.reference_measurement import axle_of, shown
 from werrimbi_odom.model.reference_view import View
-from werrimbi_odom.model.seen_by_reference import axle_of, shown
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 
 ARM = View(ahead=0.2, left=-0.1)

@@ -63,7 +63,7 @@ def nees(seed: int, loss: float, *, watched: bool, seconds: float = 20.0) -> tup
     pytest.importorskip("rclpy", reason="the tracker takes ROS stamps")
     from builtin_interfaces.msg import Time
 
-    from werrimbi_odom.ros.tracker import Tracker
+    from werrimbi_odom.ros.live_odometer import Tracker
     from werrimbi_odom.simulation import LiveRobot, TrueRobot, free
     from werrimbi_odom.simulation.hidden.floor import SlipperySpot
     from werrimbi_odom.simulation.recorder import wheel_speeds

@@ -23,7 +23,7 @@ import numpy as np
 from werrimbi_odom.api.drives import Drives, Options, collection_of, how_of, refuse_circles
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.content_mark import code_mark, mark_of, written_at
+from werrimbi_odom.files.content_hash import code_mark, mark_of, written_at
 from werrimbi_odom.files.recordings import DriveOptions, gathered, refuse_twice
 from werrimbi_odom.files.replacing import replacing
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from werrimbi_odom.model.pose import Floats, Pose
-    from werrimbi_odom.model.seen_by_reference import Path as ShownPath
+    from werrimbi_odom.model.reference_measurement import Path as ShownPath
     from werrimbi_odom.model.trajectory import Trajectory
     from werrimbi_odom.report.reckoning import Reckoning
 
@@ -77,7 +77,7 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     from werrimbi_odom.files.learned_phases import with_learnt_phases
     from werrimbi_odom.files.start_pose import start_of
     from werrimbi_odom.model.effect import view_of
-    from werrimbi_odom.model.seen_by_reference import shown
+    from werrimbi_odom.model.reference_measurement import shown
     from werrimbi_odom.report.reckoning import reckoning_of
     from werrimbi_odom.report.reckoning_document import document_of
 

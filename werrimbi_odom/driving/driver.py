@@ -14,8 +14,8 @@ from collections import deque
 from typing import Literal
 
 from werrimbi_odom.driving.limits import STILL, Area, Command, Limits
+from werrimbi_odom.driving.path_following import Tracker
 from werrimbi_odom.driving.plan import SLACK, Plan, room_of, seen_from
-from werrimbi_odom.driving.tracker import Tracker
 from werrimbi_odom.driving.watch import SLIP_WINDOW, Reading, Watch, fault_between
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Pose, compose

@@ -28,7 +28,7 @@ from werrimbi_odom.effects.turn_dependent_track import turn_dependent_track
 from werrimbi_odom.effects.tyre_squash import tyre_squash
 from werrimbi_odom.effects.unequal_wheel_radii import unequal_wheel_radii
 from werrimbi_odom.effects.wheel_radius_scale import wheel_radius_scale
-from werrimbi_odom.effects.wiring import (
+from werrimbi_odom.effects.wiring_mistakes import (
     left_wheel_reversed,
     right_wheel_reversed,
     wheels_swapped,

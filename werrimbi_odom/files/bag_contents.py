@@ -16,11 +16,11 @@ from pathlib import Path
 from typing import Any, Literal
 
 from werrimbi_odom.files.bag import Bag, Topic
+from werrimbi_odom.files.derived_references import second_hand
 from werrimbi_odom.files.drivers import DRIVERS
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
 from werrimbi_odom.files.frames import Chain, Edge, EdgeCollector, chains_to_base, frame
 from werrimbi_odom.files.made_from_wheels import ODOMETRY, is_asked_for, why_from_wheels
-from werrimbi_odom.files.second_hand import second_hand
 
 Measures = Literal["poses", "positions", "yaw"]
 Gives = Literal["counts", "positions", "velocities", "odometry"]

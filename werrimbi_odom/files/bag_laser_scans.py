@@ -16,8 +16,8 @@ from werrimbi_odom.files.mounting import Mount, MountingCollector
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.path import ScanMatcher, ScanPath
+from werrimbi_odom.scans.scan_odometry import Flag
 from werrimbi_odom.scans.sweep import sweep_of
-from werrimbi_odom.scans.tracker import Flag
 
 LONGEST_SWEEP = 1.0
 """A turn that takes longer was stated in another unit [s]: its beams count as seen at once."""

@@ -15,8 +15,8 @@ from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, Pose, between, compose
+from werrimbi_odom.model.reference_measurement import Path, axle_of, shown
 from werrimbi_odom.model.reference_view import View
-from werrimbi_odom.model.seen_by_reference import Path, axle_of, shown
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 
 

@@ -10,7 +10,7 @@ from functools import cache
 from importlib.metadata import PackageNotFoundError, entry_points, version
 
 from werrimbi_odom.effects.collection import GROUP
-from werrimbi_odom.files.content_mark import code_mark
+from werrimbi_odom.files.content_hash import code_mark
 
 PACKAGE = "werrimbi_odom"
 EFFECTS = "installed effects"

@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.content_mark import files_of
+from werrimbi_odom.files.content_hash import files_of
 from werrimbi_odom.files.recordings import Asked
 from werrimbi_odom.fleet.robot_task import Task, row_of
 from werrimbi_odom.report.fleet.rows import Row

@@ -16,7 +16,7 @@ from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.files.start_pose import StartPose
 from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.pose import Floats, Pose, between, compose, wrap
-from werrimbi_odom.model.seen_by_reference import Path as ShownPath
+from werrimbi_odom.model.reference_measurement import Path as ShownPath
 from werrimbi_odom.model.trajectory import Trajectory
 from werrimbi_odom.report.numbers import counted
 

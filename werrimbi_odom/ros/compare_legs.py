@@ -16,7 +16,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.comparison.legs import squared_deviation
+from werrimbi_odom.inference.comparison.leg_errors import squared_deviation
 from werrimbi_odom.inference.legs.cutting import legs_worth
 from werrimbi_odom.inference.legs.gaps import are_gaps
 from werrimbi_odom.inference.rules import GAP_FEWEST, GAP_LEG, QUARTER_TURN

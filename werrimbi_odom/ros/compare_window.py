@@ -8,7 +8,7 @@ import math
 from collections import deque
 
 from werrimbi_odom.inference.comparison.consistency import chance_bounds, honest_bounds
-from werrimbi_odom.inference.comparison.legs import CHI2_95
+from werrimbi_odom.inference.comparison.leg_errors import CHI2_95
 
 FREEDOM = 3
 """Degrees of freedom of a leg: x, y, yaw."""

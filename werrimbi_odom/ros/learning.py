@@ -23,7 +23,7 @@ from werrimbi_odom.model.phase_learner import PhaseLearner
 from werrimbi_odom.model.phases import KNOWN_WELL_ENOUGH, Phase, learnable
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros import inputs, planar
-from werrimbi_odom.ros.tracker import Tracker
+from werrimbi_odom.ros.live_odometer import Tracker
 
 FINE = 0.03
 """Standard deviation of a phase [rad] beyond which nothing is gained by telling it anew."""

@@ -30,15 +30,15 @@ from visualization_msgs.msg import MarkerArray
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.ros import inputs, parameters
 from werrimbi_odom.ros.diagnostics import tell
+from werrimbi_odom.ros.estimate_status import status_of
 from werrimbi_odom.ros.graph import Company, full_name
 from werrimbi_odom.ros.health import Health
 from werrimbi_odom.ros.learning import learning_of, told
+from werrimbi_odom.ros.live_odometer import Finished, Tracker
 from werrimbi_odom.ros.markers import PieceTrail
 from werrimbi_odom.ros.messages import OdometryMessage, pose_from
 from werrimbi_odom.ros.running import run
 from werrimbi_odom.ros.slip import slip_of
-from werrimbi_odom.ros.status import status_of
-from werrimbi_odom.ros.tracker import Finished, Tracker
 from werrimbi_odom.ros.transforms import transform_sender
 
 STATUS_PERIOD = 0.2

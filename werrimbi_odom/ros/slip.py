@@ -17,7 +17,7 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.slip import NOTHING, Missed, SlipGuard
 from werrimbi_odom.ros import inputs
 from werrimbi_odom.ros.learning import FASTEST
-from werrimbi_odom.ros.tracker import Tracker
+from werrimbi_odom.ros.live_odometer import Tracker
 
 
 class NoSlip:

@@ -21,8 +21,8 @@ from numpy.typing import NDArray
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.limits import CALM, COMMON, FEWEST_POSES, LONGEST_HOLE, LOST_AFTER
 from werrimbi_odom.scans.matching import MAD
+from werrimbi_odom.scans.scan_odometry import Flag, Tracker, motion_between, moved
 from werrimbi_odom.scans.sweep import Course, Sweep, deskewed, own_course
-from werrimbi_odom.scans.tracker import Flag, Tracker, motion_between, moved
 
 AROUND = 3
 """Scans before and after one, that its course in the second pass is fitted to."""

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison
-from werrimbi_odom.inference.comparison.legs import LegStatistics, statistics
+from werrimbi_odom.inference.comparison.leg_errors import LegStatistics, statistics
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.comparison.phrases import NAMES
 

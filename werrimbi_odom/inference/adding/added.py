@@ -9,11 +9,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.adding.values import FittedParameter
+from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.consistency import Consistency
 from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
-from werrimbi_odom.inference.comparison.legs import LegStatistics
+from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit

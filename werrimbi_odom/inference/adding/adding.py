@@ -19,17 +19,17 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, Side
 from werrimbi_odom.inference.adding.fits import fits_without_jumps
+from werrimbi_odom.inference.adding.fitted_parameters import (
+    parameters_of,
+    std_of,
+    to_write,
+)
 from werrimbi_odom.inference.adding.start_values import (
     Drives,
     drives_of,
     with_set_up,
 )
 from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
-from werrimbi_odom.inference.adding.values import (
-    parameters_of,
-    std_of,
-    to_write,
-)
 from werrimbi_odom.inference.adding.worth import Question
 from werrimbi_odom.inference.calibration_sizes import base_name
 from werrimbi_odom.inference.comparison.compare import compare

@@ -11,6 +11,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference.adding.fitted_parameters import (
+    parameters_of,
+    undetermined,
+    weakest,
+    without_phases_stuck,
+)
 from werrimbi_odom.inference.adding.start_values import (
     Drives,
     Start,
@@ -18,12 +24,6 @@ from werrimbi_odom.inference.adding.start_values import (
     mistake_put_in,
     start_of_held,
     starts,
-)
-from werrimbi_odom.inference.adding.values import (
-    parameters_of,
-    undetermined,
-    weakest,
-    without_phases_stuck,
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED

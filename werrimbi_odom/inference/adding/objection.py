@@ -10,8 +10,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.adding.start_values import is_of_set_up
-from werrimbi_odom.inference.adding.values import FittedParameter
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.rules import SURE_WHEN_ASKED

@@ -29,7 +29,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, conc
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, knobs_of
-from werrimbi_odom.inference.fitting.own_values import with_own_values
+from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.rules import SHAPES_FITTED
 from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUp

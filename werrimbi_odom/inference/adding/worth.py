@@ -9,9 +9,9 @@ from dataclasses import dataclass
 
 from werrimbi_odom.inference.adding.added import Side
 from werrimbi_odom.inference.adding.fits import Fits
+from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter, parameters_of
 from werrimbi_odom.inference.adding.objection import Worth, objection
 from werrimbi_odom.inference.adding.start_values import Drives
-from werrimbi_odom.inference.adding.values import FittedParameter, parameters_of
 from werrimbi_odom.inference.chances import chi2_above
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.diagnosis import chance

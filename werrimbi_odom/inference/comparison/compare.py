@@ -15,7 +15,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.consistency import AtLength
 from werrimbi_odom.inference.comparison.groups import ByVariable, Cell, by_variables, cells_of
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs, paths
-from werrimbi_odom.inference.comparison.legs import (
+from werrimbi_odom.inference.comparison.leg_errors import (
     LegStatistics,
     root_mean_square,
     squared_deviation,

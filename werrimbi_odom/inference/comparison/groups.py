@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.chances import fisher_above, in_any_of, student_above
-from werrimbi_odom.inference.comparison.legs import LegErrors, LegStatistics, statistics
+from werrimbi_odom.inference.comparison.leg_errors import LegErrors, LegStatistics, statistics
 from werrimbi_odom.inference.comparison.systematic import CHANNELS
 from werrimbi_odom.inference.rules import (
     BINS,

@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.comparison.legs import (
+from werrimbi_odom.inference.comparison.leg_errors import (
     LegErrors,
     LegStatistics,
     errors_of,
@@ -30,8 +30,8 @@ from werrimbi_odom.inference.comparison.reference_noise import (
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.knobs import YAW_DRIFT, Model
-from werrimbi_odom.inference.fitting.own_values import known_at_home
 from werrimbi_odom.inference.fitting.prediction import legs_shown
+from werrimbi_odom.inference.fitting.run_phases import known_at_home
 from werrimbi_odom.inference.rules import (
     DRIFT_LEGS,
     FAR_ABOVE_NOISE,

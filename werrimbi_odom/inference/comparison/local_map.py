@@ -21,8 +21,8 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, conc
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.likelihood import Variances, errors_between, innovations
-from werrimbi_odom.inference.fitting.own_values import with_own_values
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
+from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.legs.cutting import Record, cut_finely
 from werrimbi_odom.inference.rules import HONEST_WITHIN, NOISE_NUMBERS, UNKNOWN_HEADING
 from werrimbi_odom.model.effect import view_of

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA, student_above
-from werrimbi_odom.inference.comparison.legs import LegErrors, root_mean_square
+from werrimbi_odom.inference.comparison.leg_errors import LegErrors, root_mean_square
 from werrimbi_odom.inference.rules import (
     LEGS_OF_A_PART,
     NOISE_FACTOR_TOLD,

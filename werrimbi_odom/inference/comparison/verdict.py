@@ -20,7 +20,7 @@ from werrimbi_odom.inference.comparison.consistency import (
     trend_of,
 )
 from werrimbi_odom.inference.comparison.groups import Cell
-from werrimbi_odom.inference.comparison.legs import LegStatistics
+from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.inference.comparison.systematic import CHANNELS, NoiseFactor, Systematic
 from werrimbi_odom.inference.rules import (
     ALIKE,

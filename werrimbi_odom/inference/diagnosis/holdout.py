@@ -26,7 +26,7 @@ from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.own_values import at_home, known_at_home
+from werrimbi_odom.inference.fitting.run_phases import at_home, known_at_home
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.set_up.search import SetUp, look_for_mistakes

@@ -28,7 +28,7 @@ from werrimbi_odom.inference.fitting.knobs import (
     Model,
     changed,
 )
-from werrimbi_odom.inference.fitting.own_values import with_own_values
+from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.rules import (
     EDGE,
     EDGE_LEGS,

@@ -10,10 +10,7 @@ import numpy as np
 
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
-from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
-from werrimbi_odom.inference.diagnosis.values import (
+from werrimbi_odom.inference.diagnosis.estimated_values import (
     Value,
     at_bounds,
     best_sizes,
@@ -21,6 +18,9 @@ from werrimbi_odom.inference.diagnosis.values import (
     ranked_of,
     values_of,
 )
+from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
+from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.rules import SIGNIFICANT
 from werrimbi_odom.model.effect import Effect

@@ -9,8 +9,12 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.estimated_values import (
+    mistakes,
+    one_wheel,
+    reference_wanders,
+)
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.inference.diagnosis.values import mistakes, one_wheel, reference_wanders
 from werrimbi_odom.inference.manoeuvres.advice import Told, significant
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.changes import changes_words

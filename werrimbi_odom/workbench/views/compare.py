@@ -10,7 +10,7 @@ import numpy as np
 
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.consistency import consistency
-from werrimbi_odom.inference.comparison.legs import LegStatistics
+from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
 from werrimbi_odom.report.comparison.tables import tables_of
 from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.workbench.html import box, button, prose, text
