@@ -3,6 +3,6 @@
 """Driving a manoeuvre within limits: plain functions and objects, without ROS and without a clock.
 
 Reading order: `limits` (what the user allows), `plan` (what is to be driven), `manoeuvres` (the
-library), `tracker` (how it is followed), `watch` (what must not happen), `driver` (when it moves,
-and when it stops). `werrimbi_odom.ros.drive_node` is the shell around it.
+library), `path_following` (how it is followed), `watch` (what must not happen), `driver` (when it
+moves, and when it stops). `werrimbi_odom.ros.drive_node` is the shell around it.
 """

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a drive's path holds, as a mark of its content: the same bytes, the same mark."""
+"""What a drive's path holds, as a hash of its content: the same bytes, the same hash."""
 
 from __future__ import annotations
 
