@@ -202,7 +202,7 @@ def _turned(covariance: PoseCovariance[Number], cos: Number, sin: Number) -> Pos
 
 
 # Below |h| = 1 the series, beyond it the closed form: there both hold to a few units in the last
-# place (test/model/test_covariance.py), so the seam is not visible in any entry.
+# place (test/model/test_covariance_exact.py), so the seam is not visible in any entry.
 _SEAM = 1.0
 _TERMS = 14
 _T = tuple((-1) ** (n + 1) * 4.0**n / math.factorial(2 * n + 1) for n in range(_TERMS - 1, 0, -1))
