@@ -65,7 +65,9 @@ def spoken(told: Told) -> str:
     return "\n".join(each.text for each in words_of(told, NextSteps()))
 
 
-MEASURED = pytest.mark.parametrize("keep", [poses, headings, positions])
+MEASURED = pytest.mark.parametrize(
+    "keep", [pytest.param(poses, marks=pytest.mark.evidence), headings, positions]
+)
 
 
 @MEASURED

@@ -181,7 +181,7 @@ def test_no_reference_is_better_than_the_step_of_its_values(kind: ReferenceKind)
 
 
 @pytest.mark.parametrize("kind", ["absolute", "incremental"])
-@pytest.mark.parametrize("every", [1, 5])
+@pytest.mark.parametrize("every", [1, pytest.param(5, marks=pytest.mark.evidence)])
 def test_a_gyro_gives_base_and_delay_and_nothing_else_at_any_rate(
     kind: ReferenceKind, every: int
 ) -> None:
@@ -274,7 +274,7 @@ def test_a_noise_that_no_wheel_has_is_not_written() -> None:
 
 @with_recordings
 @pytest.mark.parametrize("kind", ["absolute", "incremental"])
-@pytest.mark.parametrize("every", [1, 2, 10])
+@pytest.mark.parametrize("every", [1, pytest.param(2, marks=pytest.mark.evidence), 10])
 def test_the_kobuki_has_a_late_gyro_and_a_wide_base_at_any_rate(
     kind: ReferenceKind, every: int
 ) -> None:
