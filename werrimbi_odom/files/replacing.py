@@ -9,6 +9,7 @@ import secrets
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
+from tempfile import TemporaryFile
 from typing import TextIO
 
 from werrimbi_odom.errors import InputError
@@ -66,10 +67,9 @@ def refuse_unwritable(path: Path, option: str) -> None:
     target = Path(place_of(path))
     if not target.parent.is_dir():
         raise InputError(f"{option}: there is no folder {target.parent}")
-    part = _part_of(target)
     try:
-        part.touch(exist_ok=False)
-        part.unlink()
+        with TemporaryFile(dir=target.parent):  # without a name: nobody who interrupts leaves it
+            pass
     except OSError as error:
         raise InputError(f"{option} cannot be written: {error.strerror or error}") from error
 
