@@ -133,12 +133,7 @@ def begin(
         set_up = look_for_mistakes(kept, robot, options)
         if set_up.to_convert is not None:
             raise InputError(f"{kept[0].path}: {set_up.to_convert}")
-        return set_up, judge_of(
-            kept,
-            held,
-            given or robot,
-            options,
-        )
+        return set_up, judge_of(kept, held, given or robot, options)
 
     runs, holdout = (
         tuple(looked_at(run, given or robot, options.limits) for run in some)
@@ -175,14 +170,7 @@ def judge_of(
 ) -> Judge:
     """Cut the legs of the runs that are fitted, and of those that judge."""
     fitted_on, kept_back = tuple(runs), tuple(holdout)
-    train, held = (
-        prepare(
-            some,
-            robot,
-            options,
-        )
-        for some in (fitted_on, kept_back)
-    )
+    train, held = (prepare(some, robot, options) for some in (fitted_on, kept_back))
     return Judge(robot, options, fitted_on, kept_back, train, held, finely(held))
 
 

@@ -122,9 +122,8 @@ def instead_of_calibration(
     nuisances = model.nuisance_knobs
     held = {applied.name for applied in model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
-    wanders = (
-        point.options.reference_kind == "local_map"
-    )  # on a map that somebody made, by a laser's metre
+    # On a map that somebody made, by a laser's metre.
+    wanders = point.options.reference_kind == "local_map"
     looked_at = candidates(effects, held, channels, len(runs.runs), own_scale=wanders)
     found = scores(runs, point, (*calibrated.knobs, *nuisances), looked_at)
     results = []

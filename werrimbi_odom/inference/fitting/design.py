@@ -64,18 +64,7 @@ def unexpected(
 ) -> Innovations:
     """Innovations of all runs; the latest are remembered with them."""
     seen = prediction or predict_all(point.model, runs)
-    return runs.latest(
-        (point, seen),
-        lambda: innovations(
-            point.model.robot,
-            runs,
-            seen,
-            point.variances,
-            point.options.reference_kind,
-            excluded=point.skip,
-            start_yaws=point.model.start_yaws,
-        ),
-    )
+    return runs.latest((point, seen), lambda: Costs(runs, point).innovations(point.variances, seen))
 
 
 @dataclass(frozen=True, slots=True)
