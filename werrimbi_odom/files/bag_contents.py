@@ -101,13 +101,16 @@ class Contents:
         return tuple(each for each in self.references if each.independent)
 
 
-def contents_of(bag: Bag, base: str = "") -> Contents:
+def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
     """What an open bag holds.
 
     Parameters
     ----------
     base
         The robot's frame, as `base_frame_id` of its file; "" for what is called a base.
+    choosing
+        Whether a reference is still to be chosen: those that the odometry has a hand in are last
+        then, and to tell them takes another pass over their messages.
     """
     edges = EdgeCollector()
     names = [each.name for each in bag.topics if each.kind in TRANSFORMS]
@@ -121,7 +124,7 @@ def contents_of(bag: Bag, base: str = "") -> Contents:
         *(_measured(each, firsts.get(each.name)) for each in bag.topics if each.kind in POSES),
     ]
     references = [each for each in references if not is_asked_for(each.name)]
-    made_of = second_hand(bag, references)
+    made_of = second_hand(bag, references) if choosing else {}
     references = [
         replace(each, why=f"{each.why}; {made_of[each.name]}") if each.name in made_of else each
         for each in references

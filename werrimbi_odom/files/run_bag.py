@@ -67,7 +67,7 @@ def read_run_bag(
     """
     path = Path(path)
     with opened_bag(path) as bag:
-        held = contents_of(bag, str(robot_file.values["base_frame_id"]))
+        held = _contents_of(bag, robot_file, reference_topic)
         source = choose_ticks(held, ticks_topic, robot_file)
         topics = source.name.split(",")
         chosen = _chosen(held, source, reference_topic, force)
@@ -111,7 +111,7 @@ def read_reference_bag(
     """Read a reference from a bag whose wheels, if it has any, are not asked for."""
     nothing = Wheels("", "", 0, "counts")
     with opened_bag(path) as bag:
-        held = contents_of(bag, str(robot_file.values["base_frame_id"]))
+        held = _contents_of(bag, robot_file, reference_topic)
         chosen = _chosen(held, nothing, reference_topic, force)
         collectors = [_collector(path, held, each, robot_file) for each in chosen]
         _collect(bag, [(each.topics, each) for each in collectors], None)
@@ -123,6 +123,10 @@ def read_reference_bag(
         )
     damage = (*bag.damage, *found.damage)
     return found._replace(damage=tuple(f"{path}: {words}" for words in damage))
+
+
+def _contents_of(bag: Bag, robot_file: RobotFile, wish: Topics) -> Contents:
+    return contents_of(bag, str(robot_file.values["base_frame_id"]), choosing=not wish)
 
 
 def _chosen(held: Contents, source: Wheels, wish: Topics, force: bool) -> list[Chosen]:
