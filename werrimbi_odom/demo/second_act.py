@@ -118,6 +118,8 @@ def _driven(stage: Stage, file: Path, new: Path) -> Drive | None:
     stage.start("compare_node", {"robot_file": file, "new_robot_file": new, **LOOK})
     stage.start("drive_node", DRIVE)
     stage.until(lambda: stage.ask("drive_node/check").success, "robot that could start")
+    # Drivers may hear the odometry before we do: the picture needs it from where the robot stands.
+    stage.until(lambda: bool(stage.odometry and stage.measured), "odometry and reference")
     print(f"$ {CALL}/drive_node/start {TRIGGER}")
     print(f"{stage.ask('drive_node/start').message}.")
     stage.until(
