@@ -178,7 +178,7 @@ def _best(this: Round, runs: Concatenated) -> Fitted | None:
     before = this.before.cost + this.before.needless + this.before.price * fit.scatter
     if fit.total >= before or chance(fit, this.before, this.number) >= SURE:
         return None
-    return fit if lasting_effect(runs, fit) < SURE else None
+    return fit if lasting_effect(runs, fit, fit.names[-1]) < SURE else None
 
 
 def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) -> Dependence | None:

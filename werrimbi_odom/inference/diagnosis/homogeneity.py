@@ -12,7 +12,6 @@ where the others could as well, is something that happened on that drive.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
@@ -27,15 +26,12 @@ from werrimbi_odom.inference.fitting.candidates import of_each_run, unexplained
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob
+from werrimbi_odom.inference.fitting.parts import heard_share, parts_of_innovations
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import (
     DRIVES_TO_LEAVE_ONE,
-    LASTING_FEWEST,
     LASTING_HEARD,
-    LASTING_LEGS,
-    LASTING_MOST,
-    LASTING_PARTS,
     OTHER_DRIVES,
     SURE_WHEN_ASKED,
 )
@@ -52,18 +48,19 @@ class Lasting(NamedTuple):
     """The one drive that shows it where the others could and do not."""
 
 
-def lasting_effect(runs: Concatenated, fit: Fitted) -> float:
-    """How often chance would make a model's newest effect, by the disagreement of the parts.
+def lasting_effect(runs: Concatenated, fit: Fitted, name: str) -> float:
+    """How often chance would make an effect of a model, by the disagreement of the parts.
 
     Each part's own sizes are those that the law would have there by its derivatives *at the fit*:
     half of a late reference (a tenth of a second, at every start and stop) lies beyond what its
     derivative at no delay says, and would pass for a disagreement of the parts.
     """
-    if _too_few(runs):
-        return 0.0
-    model, name = fit.point.model, fit.names[-1]
-    applied = next(item for item in model.robot.effects if item.name == name)
     white, flat = fit.design.flat()
+    parts = parts_of_innovations(runs, white)
+    if parts is None:
+        return 0.0
+    model = fit.point.model
+    applied = next(item for item in model.robot.effects if item.name == name)
     whose = [knob.name.rpartition(".") for knob, _ in fit.design.columns]
     own, away = [], []
     for column, (knob, run) in enumerate(fit.design.columns):
@@ -78,7 +75,11 @@ def lasting_effect(runs: Concatenated, fit: Fitted) -> float:
     free = others.residual(flat[:, own])
     rest = others.residual(white) - free @ np.array(away)
     test = score_test(flat[:, own], free, rest)
-    return 1.0 if test is None else _chance(test.gain, test.degrees, free, rest, _parts(runs))
+    return (
+        1.0
+        if test is None
+        else _chance(test.gain, test.degrees, free, rest, parts_of_innovations(runs))
+    )
 
 
 def lasting(
@@ -88,12 +89,12 @@ def lasting(
 
     `knobs` are those of the map.
     """
-    if _too_few(runs):
-        yield from (Lasting(cell, 0.0, None) for cell in cells)
-        return
     prediction = predict_all(point.model, runs)
     frame, rest = unexplained(runs, point, knobs, prediction)
-    parts = _parts(runs)
+    parts = parts_of_innovations(runs, rest)
+    if parts is None:
+        yield from (Lasting(cell, 0.0, None) for cell in cells)
+        return
     for cell in cells:
         free = frame.residual(pattern_of(runs, point, cell))
         p_value = _chance(cell.gain, cell.degrees, free, rest, parts)
@@ -128,32 +129,8 @@ def lasting_columns(
     rest : ndarray, shape (3 m,)
         Innovations clear of it.
     """
-    return 0.0 if _too_few(runs) else _chance(gain, degrees, free, rest, _parts(runs))
-
-
-def _too_few(runs: Concatenated) -> bool:
-    """Whether legs are so long, or so few, that each stands for itself."""
-    return runs.count < LASTING_LEGS * LASTING_FEWEST * len(runs.runs)
-
-
-def parts_of(run: NDArray[np.intp]) -> NDArray[np.intp]:
-    """The part of a run to which each leg belongs, counted through, (m,).
-
-    Parameters
-    ----------
-    run : ndarray, shape (m,)
-        Index of each leg's run, in order.
-    """
-    each = min(max(math.ceil(LASTING_PARTS / np.unique(run).size), LASTING_FEWEST), LASTING_MOST)
-    first = np.searchsorted(run, run, side="left")
-    count = np.bincount(run)[run]
-    part = (np.arange(run.size) - first) * each // count
-    return np.asarray(each * run + part)
-
-
-def _parts(runs: Concatenated) -> NDArray[np.intp]:
-    """The part to which each innovation belongs, (3 m,)."""
-    return np.repeat(parts_of(runs.run_of_leg), 3)
+    parts = parts_of_innovations(runs, rest)
+    return 0.0 if parts is None else _chance(gain, degrees, free, rest, parts)
 
 
 def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp]) -> int | None:
@@ -192,8 +169,7 @@ def _chance(
     size = np.sqrt(np.sum(free**2, axis=0))
     scaled = free[:, size > 0.0] / size[size > 0.0]
     apart, freedom = 0.0, 0
-    # Of very many drives each part holds less than is asked of one of 28, however alike they are.
-    heard = LASTING_HEARD * math.sqrt(min(1.0, LASTING_PARTS / (parts.max() + 1)))
+    heard = heard_share(parts)
     for part in range(parts.max() + 1):
         here = parts == part
         basis, values, _ = np.linalg.svd(scaled[here], full_matrices=False)

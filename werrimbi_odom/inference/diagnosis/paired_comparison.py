@@ -22,7 +22,7 @@ import numpy as np
 
 from werrimbi_odom.inference.chances import student_above
 from werrimbi_odom.inference.comparison.judged_legs import Legs, statistics_of
-from werrimbi_odom.inference.diagnosis.homogeneity import parts_of
+from werrimbi_odom.inference.fitting.parts import parts_of
 from werrimbi_odom.inference.rules import HELD_OUT_FALL, SURE_WHEN_ASKED
 
 Unit = Literal["m", "rad"]

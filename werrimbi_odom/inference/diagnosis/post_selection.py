@@ -94,6 +94,8 @@ def spread_over_choices(
     weights = np.array([math.exp(-0.5 * (cost - least)) for cost, *_ in found])
     squares = [np.diag(inside) + (there - there_now) ** 2 for _, there, inside in found]
     spread = np.sqrt(np.average(squares, axis=0, weights=weights))
+    doubt = {knob.name: by for (knob, _), by in zip(fit.design.columns, fit.widening, strict=True)}
+    spread *= [doubt.get(name, 1.0) for name in names]
     return dict(zip(names, spread.tolist(), strict=True))
 
 

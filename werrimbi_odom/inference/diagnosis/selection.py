@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.calibration_sizes import calibration_deviation
+from werrimbi_odom.inference.calibration_sizes import calibration_deviation, std_as_effect
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
@@ -37,6 +37,7 @@ from werrimbi_odom.inference.fitting.knobs import (
     own_of,
     shared_of,
 )
+from werrimbi_odom.inference.fitting.parts import widening
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import (
     CALIBRATION_KNOWN,
@@ -79,7 +80,10 @@ class Fitted:
     importance: dict[str, float]
     """By effect, how much the cost would rise without it."""
     covariance: Floats
-    """Of the values of the design's columns."""
+    """Of the values of the design's columns, by the disagreement of the parts where that is more
+    than the noise makes."""
+    widening: Floats
+    """By how much that widened the standard deviation of each, (p,)."""
     moves: Floats
     """Of the design's columns, for a unit of each number that was free; (p, q)."""
     design: Design
@@ -139,12 +143,15 @@ def fitted(
     kept, rise, *_ = min(
         (each for each in rises if each.fitted), key=lambda each: totals[each.kept]
     )
-    covariance = covariance_of(design, ways) + np.diag(grain_of(design, result.robot))
+    wide = widening(*design.flat(), ways.matrix, runs)
+    covariance = covariance_of(design, ways)
+    doubt = doubts_of_sizes(design, covariance, wide, result.robot)
+    covariance = covariance * np.outer(wide, wide) + np.diag(grain_of(design, result.robot))
     importance = {name: rise_without(name, design, covariance, result.point) for name in names}
     for name in kept:
         without = tuple(other for other in kept if other != name)
         rest = next(each.rise for each in rises if each.kept == without)
-        importance[name] = (rest - rise) / scatter
+        importance[name] = (rest - rise) / max(scatter, doubt[name])
     counted = sum(
         1
         for knob, _ in design.columns
@@ -172,6 +179,7 @@ def fitted(
         tuple(knob.name for knob in result.at_bound if knob.name not in MULTIPLIERS),
         importance,
         covariance,
+        wide,
         ways.matrix,
         design,
         ways.held,
@@ -216,6 +224,21 @@ def calibration_rises(
         found.append(_Rise(kept, -test.gain if test else 0.0, not off, believed))
     least = min(each.rise for each in found if each.fitted)
     return [each._replace(rise=each.rise - least) for each in found]
+
+
+def doubts_of_sizes(
+    design: Design, covariance: Floats, wide: Floats, robot: Robot
+) -> dict[str, float]:
+    """By how much the variance of each calibration effect is widened, for all three."""
+    names = [knob.name for knob, _ in design.columns]
+    where = [names.index(name) for name in MULTIPLIERS]
+    inside = covariance[np.ix_(where, where)]
+    wider = inside * np.outer(wide[where], wide[where])
+    found = {}
+    for name in CALIBRATED:
+        usual, now = (std_as_effect(name, robot, each) for each in (inside, wider))
+        found[name] = max((now / usual) ** 2, 1.0) if usual > 0.0 else 1.0
+    return found
 
 
 def covariance_of(design: Design, ways: Directions) -> Floats:

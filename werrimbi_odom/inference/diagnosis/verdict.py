@@ -20,6 +20,7 @@ from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark,
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge
+from werrimbi_odom.inference.diagnosis.homogeneity import lasting_effect
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import (
@@ -112,6 +113,22 @@ class Diagnosis:
         return any(remark.what == "another_drive" for remark in self.remarks)
 
     @property
+    def widest(self) -> float:
+        """By how much the scatter of the parts widened the deviation of what is told, at most.
+
+        1 where the parts agree to within the noise, or where nothing is told.
+        """
+        fit = self.final
+        columns = enumerate(fit.design.columns)
+        told = [index for index, (knob, run) in columns if run < 0 and self._is_told(knob.name)]
+        return float(np.max(fit.widening[told], initial=1.0))
+
+    def _is_told(self, knob: str) -> bool:
+        """Whether a knob is of what was found: all three sizes where one is."""
+        of_size = bool({*CALIBRATED, *self.final.calibrated} & set(self.found))
+        return of_size if knob in MULTIPLIERS else knob.rpartition(".")[0] in self.found
+
+    @property
     def robot(self) -> Robot:
         """With everything that was found put in."""
         return self.final.point.model.robot
@@ -187,7 +204,7 @@ def told(
         verdict,
         found[0] if found else None,
         found,
-        tuple(_ranking(found, set_up, rounds, final, judge, start)),
+        tuple(_ranking(found, set_up, rounds, final, judge, start, laid)),
         rivals,
         torn,
         set_up,
@@ -245,6 +262,7 @@ def _ranking(
     final: Fitted,
     judge: Judge,
     start: Errors,
+    laid: Concatenated,
 ) -> list[Ranked]:
     """All effects, what was found first, with the figures of the round that took it.
 
@@ -264,6 +282,8 @@ def _ranking(
             taken = final.names[number : number + 1] == (name,)
             if name not in ranked or taken:
                 p_value = chance(fit, this.before, this.number)
+                if taken:
+                    p_value = max(p_value, lasting_effect(laid, final, name))
                 ranked[name] = _worth(name, p_value, before, judge.of(fit.point.model))
     calibrated = judge.of(rounds[0].before.point.model)
     for name in CALIBRATED:

@@ -78,6 +78,7 @@ def json_of(
         "reference_remarks": remarks_json(diagnosis.remarks),
         "left_out": left_out_json(diagnosis.left_out),
         "remaining": [_cell(cell) for cell in one_each(beyond_chance(diagnosis.remaining))],
+        "widened": diagnosis.widest,
         "misfit": None
         if diagnosis.misfit is None
         else {

@@ -21,7 +21,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
-from werrimbi_odom.inference.manoeuvres.advice import Told
+from werrimbi_odom.inference.manoeuvres.advice import Told, beyond_chance
 from werrimbi_odom.inference.rules import SIGNIFICANT
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
@@ -258,6 +258,22 @@ def law(told: Told) -> list[str]:
     return [
         f"But: the law of {misfit.effect} does not fit fully. What it leaves{share} is in what it "
         f"looks at: {cell}. That is a matter of the law's form, and no other effect."
+    ]
+
+
+def scatter(told: Told) -> list[str]:
+    """That values scatter from part to part of the drives, and their deviations with them."""
+    diagnosis = told.diagnosis
+    widest = diagnosis.widest
+    if widest <= 1.0:
+        return []
+    left = next(iter(beyond_chance(diagnosis.remaining)), None)
+    most = f" What is left goes most with this: {dependence_words(left)}." if left else ""
+    return [
+        f"But: the parts of the drives do not agree on these values; each ± is as wide as they "
+        f"scatter, up to {widest:.2g} times what the noise would make. So they are no more than "
+        "the mean of something that is still missing: a law that the library lacks, a reference "
+        f"that wanders, or a robot that was changed.{most}"
     ]
 
 

@@ -30,6 +30,7 @@ from werrimbi_odom.report.diagnosis.phrases import (
     not_shown,
     otherwise,
     ruler,
+    scatter,
     sizes,
     sizes_found,
     whole,
@@ -159,7 +160,7 @@ def _named(told: Told, steps: NextSteps) -> list[str]:
     sizes = sizes_found(diagnosis)
     if sizes:
         lines.append(f"On the robot: {sizes}.")
-    lines += [*whole(told), *law(told), *_at_bounds(diagnosis)]
+    lines += [*whole(told), *law(told), *scatter(told), *_at_bounds(diagnosis)]
     lines += _next_add(told, steps)
     return [*lines, *by_headings_alone(told.diagnosis), *not_shown(told)]
 
@@ -215,7 +216,7 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
     for other in diagnosis.found[1:]:
         if other not in rivals and other not in mistakes(diagnosis):
             lines += also(told, other)
-    return [*lines, *law(told), *_at_bounds(diagnosis)]
+    return [*lines, *law(told), *scatter(told), *_at_bounds(diagnosis)]
 
 
 def _unknown(told: Told, steps: NextSteps) -> list[str]:

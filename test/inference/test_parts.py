@@ -1,0 +1,70 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A standard deviation is as wide as parts of the drives scatter, where noise alone is less."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+
+from test.inference.test_homogeneity import ROBOT, driven, nothing
+from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, value_of
+from werrimbi_odom.inference.fitting.parts import parts_of, parts_of_innovations, widening
+from werrimbi_odom.inference.legs.cutting import match_finely
+
+Spoil = Callable[[np.ndarray, np.random.Generator], np.ndarray]
+
+
+def calibrated(seed: int, spoil: Spoil, hotter: float = 0.0) -> Fitted:
+    runs = [driven(10 * seed + each, spoil, f"drive_{each}", hotter) for each in range(4)]
+    return first_fit(concatenated(match_finely(runs, ROBOT, 1.0, None)), ROBOT)
+
+
+def deviations(fit: Fitted) -> tuple[np.ndarray, np.ndarray]:
+    """Of base and radii from the truth: in standard deviations, and in those of the noise alone."""
+    names = [knob.name for knob, _ in fit.design.columns]
+    where = [names.index(name) for name in MULTIPLIERS]
+    robot = fit.point.model.robot
+    error = np.array([value_of(robot, name) - value_of(ROBOT, name) for name in MULTIPLIERS])
+    std = np.sqrt(np.diag(fit.covariance))[where]
+    return error / std, error / (std / fit.widening[where])
+
+
+def rms(values: list[np.ndarray]) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
+
+
+def test_where_the_model_holds_nothing_is_widened() -> None:
+    fits = [calibrated(seed, nothing) for seed in range(100, 116)]
+    assert all((fit.widening == 1.0).all() for fit in fits)
+    assert rms([deviations(fit)[0] for fit in fits]) < 1.4
+
+
+def test_sizes_are_known_as_well_as_the_parts_agree_on_them() -> None:
+    """Of wheels that shrink by 5 % with something that nobody put in, to and fro in a minute."""
+    fits = [calibrated(seed, nothing, hotter=0.05) for seed in range(200, 216)]
+    by_parts, by_noise = zip(*map(deviations, fits), strict=True)
+    assert rms(list(by_noise)) > 1.5
+    assert rms(list(by_parts)) < 1.2
+
+
+def test_legs_without_data_are_no_part() -> None:
+    runs = [driven(each, nothing, f"drive_{each}") for each in range(2)]
+    laid = concatenated(match_finely(runs, ROBOT, 0.25, None))
+    white = np.random.default_rng(0).normal(size=(laid.count, 3))
+    half = laid.run_of_leg * 0 + (np.arange(laid.count) % 100 < 50)
+    parts = parts_of_innovations(laid, (white * half[:, None]).ravel())
+    assert parts is not None
+    assert ((parts >= 0) == np.repeat(half > 0, 3)).all()
+    sizes = np.bincount(parts[parts >= 0])
+    assert sizes.size == parts_of(laid.run_of_leg).max() + 1
+    for of_one in (sizes[:12], sizes[12:]):
+        assert of_one.max() - of_one.min() <= 3
+    few = np.zeros(3 * laid.count)
+    few[:60] = 1.0
+    assert parts_of_innovations(laid, few) is None
+    assert (widening(few, np.ones((few.size, 1)), np.eye(1), laid) == 1.0).all()
