@@ -75,11 +75,7 @@ def lasting_effect(runs: Concatenated, fit: Fitted, name: str) -> float:
     free = others.residual(flat[:, own])
     rest = others.residual(white) - free @ np.array(away)
     test = score_test(flat[:, own], free, rest)
-    return (
-        1.0
-        if test is None
-        else _chance(test.gain, test.degrees, free, rest, parts_of_innovations(runs))
-    )
+    return 1.0 if test is None else _chance(test.gain, test.degrees, free, rest, parts)
 
 
 def lasting(
