@@ -152,6 +152,22 @@ def _spreads(fit: Fitted) -> dict[str, float]:
     }
 
 
+def widest(diagnosis: Diagnosis) -> float:
+    """By how much the scatter of the parts widened the deviation of what is told, at most.
+
+    1 where the parts agree to within the noise, or where nothing is told.
+    """
+    fit, found = diagnosis.final, set(diagnosis.found)
+    sizes = bool({*CALIBRATED, *fit.calibrated} & found)
+    told = [
+        index
+        for index, (knob, run) in enumerate(fit.design.columns)
+        if run < 0
+        and (sizes if knob.name in MULTIPLIERS else knob.name.rpartition(".")[0] in found)
+    ]
+    return float(np.max(fit.widening[told], initial=1.0))
+
+
 def mistakes(diagnosis: Diagnosis) -> dict[str, SetUpFinding]:
     """What is set up wrongly, by name."""
     return {finding.effect: finding for finding in diagnosis.set_up.findings}

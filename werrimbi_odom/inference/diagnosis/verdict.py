@@ -113,22 +113,6 @@ class Diagnosis:
         return any(remark.what == "another_drive" for remark in self.remarks)
 
     @property
-    def widest(self) -> float:
-        """By how much the scatter of the parts widened the deviation of what is told, at most.
-
-        1 where the parts agree to within the noise, or where nothing is told.
-        """
-        fit = self.final
-        columns = enumerate(fit.design.columns)
-        told = [index for index, (knob, run) in columns if run < 0 and self._is_told(knob.name)]
-        return float(np.max(fit.widening[told], initial=1.0))
-
-    def _is_told(self, knob: str) -> bool:
-        """Whether a knob is of what was found: all three sizes where one is."""
-        of_size = bool({*CALIBRATED, *self.final.calibrated} & set(self.found))
-        return of_size if knob in MULTIPLIERS else knob.rpartition(".")[0] in self.found
-
-    @property
     def robot(self) -> Robot:
         """With everything that was found put in."""
         return self.final.point.model.robot

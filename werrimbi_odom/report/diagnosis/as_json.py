@@ -12,7 +12,7 @@ import numpy as np
 
 from werrimbi_odom.inference.changes.between_drives import Moved
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, values_of
+from werrimbi_odom.inference.diagnosis.estimated_values import best_sizes, values_of, widest
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.manoeuvres.advice import beyond_chance, one_each, significant
@@ -78,7 +78,7 @@ def json_of(
         "reference_remarks": remarks_json(diagnosis.remarks),
         "left_out": left_out_json(diagnosis.left_out),
         "remaining": [_cell(cell) for cell in one_each(beyond_chance(diagnosis.remaining))],
-        "widened": diagnosis.widest,
+        "widened": widest(diagnosis),
         "misfit": None
         if diagnosis.misfit is None
         else {

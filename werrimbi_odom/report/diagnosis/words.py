@@ -19,6 +19,7 @@ from werrimbi_odom.inference.manoeuvres.advice import Told, significant
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.changes import changes_words
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.diagnosis.left import law, scatter
 from werrimbi_odom.report.diagnosis.phrases import (
     about,
     also,
@@ -26,11 +27,9 @@ from werrimbi_odom.report.diagnosis.phrases import (
     by_headings_alone,
     cost,
     judged,
-    law,
     not_shown,
     otherwise,
     ruler,
-    scatter,
     sizes,
     sizes_found,
     whole,
