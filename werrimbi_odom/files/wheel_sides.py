@@ -7,6 +7,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.model.counter_wraps import differences
 from werrimbi_odom.model.pose import Floats
 
 
@@ -39,11 +40,7 @@ def side_counts(counts: Floats, per_revolution: float, bits: int) -> Floats:
 
 def _counted_on(counts: Floats, per_revolution: float, bits: int) -> Floats:
     raw = np.diff(counts, axis=0)
-    steps = raw.copy()
-    if bits:
-        half = 2.0 ** (bits - 1)
-        wrapped = np.abs(raw) > half
-        steps[wrapped] = (raw[wrapped] + half) % (2.0 * half) - half
+    steps, _ = differences(counts, bits)
     fell = (np.abs(counts[1:]) < per_revolution) & (np.abs(steps) > per_revolution)
     all_fell: NDArray[np.bool_] = np.logical_and.reduce(fell, axis=1)
     some_fell = fell.any(axis=1) & ~all_fell

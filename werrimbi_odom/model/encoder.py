@@ -17,6 +17,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.model.counter_wraps import wrapped
 from werrimbi_odom.model.pace import USUAL_AT_FIRST, Pace
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -259,16 +260,6 @@ class Encoder:
         return fell_to_zero(new_left, last.left / per_left, step_left, reach) or fell_to_zero(
             new_right, last.right / per_right, step_right, reach
         )
-
-
-def wrapped(difference: float, bits: int) -> float:
-    """A difference of counts read from counters that wrap at `bits` (0: they do not)."""
-    if bits == 0:
-        return difference
-    half = 1 << (bits - 1)
-    if -half <= difference < half:
-        return difference
-    return (difference + half) % (2 * half) - half
 
 
 def fell_to_zero(new: float, old: float, step: float, reach: float) -> bool:

@@ -11,6 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.model.counter_wraps import differences
 from werrimbi_odom.model.encoder import (
     RESOLUTION,
     Counts,
@@ -174,8 +175,8 @@ def _quiet_steps(encoder: Encoder, record: _Record, row: int) -> _Part:
     limit = limits.max_wheel_speed
     with np.errstate(all="ignore"):  # numbers that are not finite are in doubt, and so not used
         duration = np.diff(time)
-        left_count, left_wraps = _differences(left, robot.encoder_bits)
-        right_count, right_wraps = _differences(right, robot.encoder_bits)
+        left_count, left_wraps = differences(left, robot.encoder_bits)
+        right_count, right_wraps = differences(right, robot.encoder_bits)
         left_turns, right_turns = left_count / per_left, right_count / per_right
         usual = encoder.pace.usual_at(time[1:])
         lasted = np.where(duration >= CLOSE * usual[:-1], duration, usual[:-1])
@@ -211,18 +212,6 @@ def _quiet_steps(encoder: Encoder, record: _Record, row: int) -> _Part:
             record.reading(row + count - 1),
         )
     return part
-
-
-def _differences(counts: Counts, bits: int) -> tuple[Floats, NDArray[np.bool_]]:
-    """`wrapped` differences of consecutive counts, and where they wrapped."""
-    steps = np.diff(counts)
-    wraps = np.zeros(steps.shape, dtype=np.bool_)
-    if bits > 0:
-        half = 1 << (bits - 1)
-        wraps = (steps < -half) | (steps >= half)
-        if wraps.any():
-            steps[wraps] = (steps[wraps] + half) % (2 * half) - half
-    return steps.astype(np.float64, copy=False), wraps
 
 
 def _is_huge(counts: Counts) -> bool:

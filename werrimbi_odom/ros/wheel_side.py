@@ -7,7 +7,7 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from werrimbi_odom.model.encoder import wrapped
+from werrimbi_odom.model.counter_wraps import wrapped
 
 COUNTER_LIMIT = 2.0**63
 """No counter has more bits; what lies beyond is a broken message, and its square overflows."""

@@ -1,0 +1,34 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Counters that wrap at the end of their range: what a difference of two readings means."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.model.pose import Floats
+
+
+def wrapped(difference: float, bits: int) -> float:
+    """A difference of counts read from counters that wrap at `bits` (0: they do not)."""
+    if bits == 0:
+        return difference
+    half = 1 << (bits - 1)
+    if -half <= difference < half:
+        return difference
+    return (difference + half) % (2 * half) - half
+
+
+def differences(
+    counts: NDArray[np.float64] | NDArray[np.int64], bits: int
+) -> tuple[Floats, NDArray[np.bool_]]:
+    """`wrapped` differences of consecutive counts (n, ...), and where they wrapped."""
+    steps = np.diff(counts, axis=0)
+    wraps = np.zeros(steps.shape, dtype=np.bool_)
+    if bits > 0:
+        half = 1 << (bits - 1)
+        wraps = (steps < -half) | (steps >= half)
+        if wraps.any():
+            steps[wraps] = (steps[wraps] + half) % (2 * half) - half
+    return steps.astype(np.float64, copy=False), wraps
