@@ -133,6 +133,10 @@ def test_every_verb_tells_the_same_of_drives_in_which_something_happened(sound: 
     assert [found.train.before, found.holdout.before] == compared
     added = add_effects([find("track_width")], fitted, wrong, holdout=held)
     assert [side.sides.before for side in (added.train, added.holdout)] == compared
+    assert [event.run for event in added.happened.events] == [runs[0].path, runs[1].path]
+    assert added.holdout.sides.after == pytest.approx(found.holdout.after, rel=1e-3)
+    base_by_both = [each.robot.wheel_separation_multiplier for each in (added, found)]
+    assert base_by_both[0] == pytest.approx(base_by_both[1], rel=2e-5)
     after = figures_of(prepare(held, wrong), found.robot).rmse_position_m
     assert found.holdout.after == pytest.approx(after, rel=1e-12)
     quiet = found.quiet[1]

@@ -18,6 +18,7 @@ from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, Unit, error_of, sides_of
+from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate
@@ -118,6 +119,8 @@ class Added:
     """By effect, why it should not be added; empty where nothing speaks against any."""
     left_out: tuple[LeftOut, ...]
     """Stretches of all runs that none of it is about."""
+    happened: Events
+    """What no law explains, for it happened at an instant; left out of the fits."""
     compared: Comparison
     """The robot as it is written over the held-out drives, or all where none were given: what
     `compare` of that file says."""

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.adding.added import WHEEL_NOISES, Added, Side
-from werrimbi_odom.inference.adding.fits import fits_without_jumps
+from werrimbi_odom.inference.adding.fits import Fits, fits_without_jumps
 from werrimbi_odom.inference.adding.fitted_parameters import (
     parameters_of,
     std_of,
@@ -41,6 +42,8 @@ from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides, sides_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, sizes_needed, with_sizes
+from werrimbi_odom.inference.diagnosis.without_events import events_beside, fitted_without_events
+from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import (
@@ -55,6 +58,17 @@ from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
+
+
+class _Fitted(NamedTuple):
+    """Effects fitted to drives, and who judges them."""
+
+    judge: Judge
+    set_up: SetUp
+    also: tuple[str, ...]
+    """Set-up mistakes that are put right with them."""
+    drives: Drives
+    fits: Fits
 
 
 def add_effects(
@@ -95,18 +109,22 @@ def add_effects(
             )
     if any(base_name(effect) is not None for effect in effects):
         robot = replace(robot, wheels_a_side=max(robot.wheels_a_side, 2))  # so says who asks for it
-    show(0.0, "set-up")
-    started = begin(runs, holdout, robot, options, given=given)
-    judge, set_up = started.judge, started.set_up
-    begun, also = with_set_up(effects, robot, set_up)
-    stated = replace(
-        options,
-        sigma_xy=options.sigma_xy or _stated(judge, "xy_told"),
-        sigma_yaw=options.sigma_yaw or _stated(judge, "yaw_told"),
-    )
-    show(0.15, "calibration")
-    drives = drives_of(judge.train, begun, stated)
-    drives, fits = fits_without_jumps(effects, drives, begun, robot, also, show)
+
+    def fit_them(
+        runs: Sequence[Run], holdout: Sequence[Run], first: bool
+    ) -> tuple[_Fitted, Events]:
+        told = show if first else silent
+        told(0.0, "set-up")
+        started = begin(runs, holdout, robot, options, given=given)
+        judge, set_up = started.judge, started.set_up
+        begun, also = with_set_up(effects, robot, set_up)
+        told(0.15, "calibration")
+        drives = drives_of(judge.train, begun, options)
+        drives, fits = fits_without_jumps(effects, drives, begun, robot, also, told)
+        found = _Fitted(judge, set_up, also, drives, fits)
+        return found, events_beside(drives.laid, fits.all.point, judge)
+
+    (judge, set_up, also, drives, fits), happened = fitted_without_events(fit_them, runs, holdout)
     fit = fits.all
     wanted = _calibrations_wanted(effects, set_up)
     sizes = sizes_needed(fit, robot, wanted)
@@ -130,7 +148,8 @@ def add_effects(
     if explained:
         final = with_noise(final, {name: _told(noises[name]) for name in WHEEL_NOISES})
     show(0.95, "comparing")
-    compared = compare(judge.kept_back if holdout else runs, final, options)
+    kept_back = [replace(run, happened=()) for run in judge.kept_back]
+    compared = compare(kept_back if holdout else runs, final, options)
     return Added(
         effects=tuple(effects),
         fitted={effect.name: parameters_of(effect, known, robot) for effect in effects},
@@ -152,6 +171,7 @@ def add_effects(
         chances=chances,
         objections=objections,
         left_out=judge.left_out,
+        happened=happened,
         compared=compared,
     )
 
@@ -170,15 +190,6 @@ def _refuse_unmeasured(effect: Effect, runs: Sequence[Run]) -> None:
                 f"{effect.name} looks at the measured channel {channel}, a column of "
                 f"ticks.csv, and {run.name} has none"
             )
-
-
-def _stated(judge: Judge, told: str) -> float | None:
-    """The reference's noise where all records state it."""
-    name = {"xy_told": "sigma_xy", "yaw_told": "sigma_yaw"}[told]
-    noises = [noise for _, noise in judge.train.noises]
-    if any(getattr(noise, told) not in ("stated", "given") for noise in noises):
-        return None
-    return max(float(getattr(noise, name)) for noise in noises)
 
 
 def _judged(judge: Judge, base: Fitted, fit: Fitted) -> tuple[Side, Side]:
@@ -253,10 +264,10 @@ def _on_all(
         drives_of(judge.holdout, fit.point.model.robot, drives.options),
     ]
     laid = tuple(run for part in both for run in part.laid.runs)
-    jumped = tuple(legs for part in both for legs in part.jumped)
-    every = replace(drives, laid=concatenated(laid), jumped=jumped)
+    skipped = tuple(legs for part in both for legs in part.skipped)
+    every = replace(drives, laid=concatenated(laid), skipped=skipped)
     home = judge.at_home(fit.point.model)
     own = (*fit.point.model.own, *home.model.own)
-    point = replace(fit.point, model=Model(fit.point.model.robot, own), excluded=jumped)
+    point = replace(fit.point, model=Model(fit.point.model.robot, own), excluded=skipped)
     again = every.fit(point, fit.names, fit.knobs, given)
     return every, with_sizes(every.laid, again, given, sizes)

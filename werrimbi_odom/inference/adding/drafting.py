@@ -21,7 +21,6 @@ import numpy as np
 from werrimbi_odom.effects.collection import load_file
 from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.adding.draft_laws import Form, Seen, forms_of, spot_form
 from werrimbi_odom.inference.adding.draft_source import name_of, source_of
 from werrimbi_odom.inference.adding.start_values import Drives, scored, start_at
@@ -109,11 +108,7 @@ def draft_effect(
             "there is nothing to draft: the errors go with no measured variable beyond chance"
         )
     final = diagnosis.final
-    drives = Drives(
-        diagnosis.runs,
-        final.point.excluded,
-        EvaluationOptions(reference_kind=final.point.options.reference_kind),
-    )
+    drives = Drives(diagnosis.runs, final.point.excluded, final.point.options)
     variables = {item.name: item for item in variables_of(diagnosis.runs, final.point.model)}
     options: list[_Option] = []
     plans = [

@@ -62,10 +62,10 @@ def fits_without_jumps(
     if drives.options.reference_kind == "absolute":
         return drives, fits
     found = without_jumps(drives.laid, fits.all.point).excluded
-    jumped = tuple(old | new for old, new in zip(drives.jumped, found, strict=True))
-    if all(np.array_equal(*pair) for pair in zip(jumped, drives.jumped, strict=True)):
+    skipped = tuple(old | new for old, new in zip(drives.skipped, found, strict=True))
+    if all(np.array_equal(*pair) for pair in zip(skipped, drives.skipped, strict=True)):
         return drives, fits
-    drives = replace(drives, jumped=jumped)
+    drives = replace(drives, skipped=skipped)
     return drives, fits_of(effects, drives, begun, given, also, show)
 
 

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.comparison.jumps import jumped_legs
@@ -30,7 +31,7 @@ from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, knobs_of
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
-from werrimbi_odom.inference.legs.cutting import match_finely
+from werrimbi_odom.inference.legs.cutting import at_edges, match_finely, with_stated_noise
 from werrimbi_odom.inference.rules import SHAPES_FITTED
 from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUp
 from werrimbi_odom.model.effect import AppliedEffect, Effect
@@ -39,16 +40,17 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True, slots=True)
 class Drives:
-    """The drives of a fit, in short legs, without those on which the reference jumped."""
+    """The drives of a fit, in short legs."""
 
     laid: Concatenated
-    jumped: tuple[np.ndarray[tuple[int], np.dtype[np.bool_]], ...]
+    skipped: tuple[NDArray[np.bool_], ...]
+    """Legs on which the reference jumped, and those at the edges of the records."""
     options: EvaluationOptions
     """With what the records state of the reference's noise."""
 
     def begin(self, robot: Robot) -> tuple[Point, tuple[Knob, ...]]:
         """A robot as it is, with what each run has of its own learnt; and what may be turned."""
-        point = replace(start_point(self.laid, robot, self.options), excluded=self.jumped)
+        point = replace(start_point(self.laid, robot, self.options), excluded=self.skipped)
         return with_own_values(self.laid, point)
 
     def fit(
@@ -80,12 +82,12 @@ class Start:
 def drives_of(prepared: Prepared, robot: Robot, options: EvaluationOptions) -> Drives:
     """Cut the drives of a fit by the travel of `robot`."""
     runs = match_finely(prepared.runs, robot, options.leg, options.limits)
-    jumped = [np.zeros(run.legs, dtype=np.bool_) for run in runs]
+    skipped = list(at_edges(runs))
     for group in prepared.groups:
         for index, every, jumps in zip(group.index, group.every.runs, group.jumps, strict=True):
             nodes = np.searchsorted(every.measured.time, runs[index].measured.time)
-            jumped[index] = jumped_legs(jumps, nodes, options.reference_kind)
-    return Drives(concatenated(runs), tuple(jumped), options)
+            skipped[index] |= jumped_legs(jumps, nodes, options.reference_kind)
+    return Drives(concatenated(runs), tuple(skipped), with_stated_noise(options, runs))
 
 
 def is_of_set_up(effect: Effect, set_up: SetUp) -> bool:

@@ -37,15 +37,14 @@ from werrimbi_odom.inference.diagnosis.search import (
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import Support, askable, support_of
 from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, chance, told
-from werrimbi_odom.inference.events.events import Events, Side, events_among, without
-from werrimbi_odom.inference.events.noise import noise_of_most
+from werrimbi_odom.inference.diagnosis.without_events import events_beside, fitted_without_events
+from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import Score
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
 from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
 from werrimbi_odom.inference.rules import (
     CELLS_ASKED,
-    EVENT_ROUNDS,
     LAW_SHARE,
     OWN_LAW_SHARE,
     RIVAL,
@@ -84,39 +83,17 @@ def diagnose(
         When a run has no usable reference or no ticks, or is in degrees or millimetres.
     """
 
-    def search(show: Show) -> tuple[Diagnosis, Events]:
-        found, judge = _searched(runs, holdout, robot, effects, options, show)
-        return found, _happened(found, judge)
+    def search(
+        runs: Sequence[Run], holdout: Sequence[Run], first: bool
+    ) -> tuple[Diagnosis, Events]:
+        told = show if first else silent
+        found, judge = _searched(runs, holdout, robot, effects, options, told)
+        if found.of_another_drive:
+            return found, Events()
+        return found, events_beside(found.runs, found.final.point, judge)
 
-    found, happened = search(show)
-    for _ in range(EVENT_ROUNDS):
-        if not happened.left_out:
-            break
-        both = [[without(run, happened) for run in some] for some in (runs, holdout)]
-        if both == [list(runs), list(holdout)]:
-            break
-        runs, holdout = both
-        again, happened = search(silent)
-        if not happened.many and happened.alike is None:
-            found = again
+    found, happened = fitted_without_events(search, runs, holdout)
     return replace(found, happened=happened)
-
-
-def _happened(found: Diagnosis, judge: Judge) -> Events:
-    """What happened at an instant beside the model with everything found."""
-    if found.of_another_drive:
-        return Events()
-    noise = noise_of_most(found.runs, found.final.point)
-    point = replace(found.final.point, variances=noise)
-    home = replace(judge.at_home(point.model), variances=noise)
-    fitted, kept = ([run.path for run in some] for some in (judge.fitted_on, judge.kept_back))
-    return events_among(
-        [
-            Side(found.runs.runs, fitted, point, held_out=False),
-            Side(judge.fine.runs, kept, home, held_out=True),
-        ],
-        point.options.reference_kind,
-    )
 
 
 def _searched(

@@ -7,9 +7,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
-import numpy as np
-from numpy.typing import NDArray
-
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
@@ -29,9 +26,8 @@ from werrimbi_odom.inference.fitting.knobs import (
     changed,
 )
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
+from werrimbi_odom.inference.legs.cutting import at_edges
 from werrimbi_odom.inference.rules import (
-    EDGE,
-    EDGE_LEGS,
     INSTEAD_FITTED,
     REFITTED,
     RIVAL,
@@ -64,7 +60,7 @@ def first_fit(
 ) -> Fitted:
     """The robot as given, calibrated."""
     point = start_point(runs, robot, options)
-    point = replace(point, excluded=_edges(runs))
+    point = replace(point, excluded=at_edges(runs.runs))
     point, knobs = with_own_values(runs, point)
     if options.reference_kind != "absolute":
         point = fit_model(runs, point, (*CALIBRATION, *knobs), rounds=0).point
@@ -80,24 +76,9 @@ def jumps_anew(runs: Concatenated, fit: Fitted, robot: Robot) -> Fitted:
     if fit.point.options.reference_kind == "absolute":
         return fit
     point = without_jumps(runs, fit.point)
-    both = (jumped | edge for jumped, edge in zip(point.excluded, _edges(runs), strict=True))
+    both = (jumped | edge for jumped, edge in zip(point.excluded, at_edges(runs.runs), strict=True))
     point = replace(point, excluded=tuple(both))
     return fitted(runs, point, fit.names, fit.knobs, robot)
-
-
-def _edges(runs: Concatenated) -> tuple[NDArray[np.bool_], ...]:
-    """Legs that a shifted clock would move out of the ticks' time; of few legs none.
-
-    A record that begins or ends in motion knows nothing of the motion beyond, so such legs would
-    speak against a delay however true it is.
-    """
-    found = []
-    for run in runs.runs:
-        first, last = run.counters.time[0], run.counters.time[-1]
-        begin, end = run.measured.time[:-1], run.measured.time[1:]
-        outside = (begin < first + EDGE) | (end > last - EDGE)
-        found.append(outside if run.legs > EDGE_LEGS else np.zeros(run.legs, dtype=np.bool_))
-    return tuple(found)
 
 
 @dataclass(frozen=True, slots=True)

@@ -132,7 +132,7 @@ def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: Sizes) -> F
         point=point,
         cost=cost,
         needless=0.0,
-        covariance=covariance,
+        covariance=covariance * np.outer(fit.widening, fit.widening),
         moves=np.concatenate([free[:, : sizes.free], others], axis=1),
         design=design,
     )

@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
@@ -32,6 +32,7 @@ from werrimbi_odom.inference.diagnosis.rivals import (
 )
 from werrimbi_odom.inference.diagnosis.search import Instead, Round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.sizes import sizes_needed, with_sizes
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
@@ -82,7 +83,9 @@ class Diagnosis:
     given: Robot
     rounds: tuple[Round, ...]
     final: Fitted
-    """The model with everything found."""
+    """The fit of everything found, with all sizes free."""
+    model: Model
+    """What is told: sizes that are not worth their price as they were given, as `add` has them."""
     runs: Concatenated
     train: Sides
     """Position error with the robot as given, and with everything found [m]."""
@@ -115,7 +118,7 @@ class Diagnosis:
     @property
     def robot(self) -> Robot:
         """With everything that was found put in."""
-        return self.final.point.model.robot
+        return self.model.robot
 
     def effect_named(self, name: str) -> Effect | None:
         """The effect of a name, a user's own among them; None for a finding that is no effect."""
@@ -183,7 +186,8 @@ def told(
     else:
         verdict = "ambiguous" if len(rivals) > 1 else "named"
     start = judge.of(as_given)
-    last = judge.of(_plain(final, set_up.robot))
+    model = _as_told(final, set_up.robot, found, laid)
+    last = judge.of(model)
     return Diagnosis(
         verdict,
         found[0] if found else None,
@@ -198,6 +202,7 @@ def told(
         given,
         rounds,
         final,
+        model,
         laid,
         Sides(start.train, last.train, start.unit),
         start.to(last),
@@ -237,6 +242,14 @@ def _plain(fit: Fitted, given: Robot) -> Model:
     model = fit.point.model
     back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
     return Model(changed(model.robot, back), model.own)
+
+
+def _as_told(fit: Fitted, given: Robot, found: Collection[str], laid: Concatenated) -> Model:
+    """A fitted model with those sizes alone that are told."""
+    if not (fit.calibrated or fit.names):
+        return _plain(fit, given)
+    sizes = sizes_needed(fit, given, set(found) & set(CALIBRATED))
+    return with_sizes(laid, fit, given, sizes).point.model
 
 
 def _ranking(

@@ -30,6 +30,8 @@ from werrimbi_odom.inference.legs.counters import Counters, counters_of, nodes_a
 from werrimbi_odom.inference.legs.gaps import LeftOut, gaps_in, touched
 from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.inference.rules import (
+    EDGE,
+    EDGE_LEGS,
     FEW_POSES,
     MOMENT,
     PARTS_OF_A_LEG,
@@ -124,6 +126,21 @@ class MatchedRun:
     def legs(self) -> int:
         """Number of legs, those that are marked as gaps among them."""
         return self.ends.size - 1
+
+
+def at_edges(runs: Sequence[MatchedRun]) -> tuple[NDArray[np.bool_], ...]:
+    """Legs of each run that a shifted clock would move out of the ticks' time; of few legs none.
+
+    A record that begins or ends in motion knows nothing of the motion beyond, so such legs would
+    speak against a delay however true it is.
+    """
+    found = []
+    for run in runs:
+        first, last = run.counters.time[0], run.counters.time[-1]
+        begin, end = run.measured.time[:-1], run.measured.time[1:]
+        outside = (begin < first + EDGE) | (end > last - EDGE)
+        found.append(outside if run.legs > EDGE_LEGS else np.zeros(run.legs, dtype=np.bool_))
+    return tuple(found)
 
 
 def match(

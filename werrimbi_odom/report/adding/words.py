@@ -12,6 +12,7 @@ from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
 from werrimbi_odom.report.comparison.words import headline
 from werrimbi_odom.report.document import Entry, Part, Table, paragraphs
+from werrimbi_odom.report.events import events_json, events_words
 from werrimbi_odom.report.numbers import listed, picked, quantity, scaled_with_std
 from werrimbi_odom.report.phrases import jumps_words, left_out_json, left_out_words, sizes_words
 
@@ -133,7 +134,8 @@ def _remarks(added: Added) -> list[str]:
         )
     else:
         texts.append("The written values are fitted on RUN alone; --holdout only judged them.")
-    return [*texts, *left_out_words(added.left_out), *jumps_words(added.left_out)]
+    texts += [*left_out_words(added.left_out), *jumps_words(added.left_out)]
+    return [*texts, *events_words(added.happened, added.robot.track)]
 
 
 def _rest(added: Added) -> str:
@@ -248,6 +250,7 @@ def json_of(added: Added) -> dict[str, Any]:
         "covariance": added.covariance,
         "explains": added.verdict.good,
         "left_out": left_out_json(added.left_out),
+        "events": events_json(added.happened, added.robot.track),
     }
 
 

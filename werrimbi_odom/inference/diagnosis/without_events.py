@@ -1,0 +1,61 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Fits without what happened at an instant: of a diagnosis, and of effects that are added."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import TypeVar
+
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.diagnosis.holdout import Judge
+from werrimbi_odom.inference.events.events import Events, Side, events_among, without
+from werrimbi_odom.inference.events.noise import noise_of_most
+from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
+from werrimbi_odom.inference.fitting.design import Point
+from werrimbi_odom.inference.rules import EVENT_ROUNDS
+
+Found = TypeVar("Found")
+
+
+def fitted_without_events(
+    fit: Callable[[Sequence[Run], Sequence[Run], bool], tuple[Found, Events]],
+    runs: Sequence[Run],
+    holdout: Sequence[Run],
+) -> tuple[Found, Events]:
+    """What is fitted to drives, and fitted anew without the events that are found beside it.
+
+    Parameters
+    ----------
+    fit
+        Of runs and held-out runs what is found, and what happened beside it; whether for the first
+        time.
+    """
+    found, happened = fit(runs, holdout, True)
+    for _ in range(EVENT_ROUNDS):
+        if not happened.left_out:
+            break
+        both = [[without(run, happened) for run in some] for some in (runs, holdout)]
+        if both == [list(runs), list(holdout)]:
+            break
+        runs, holdout = both
+        again, happened = fit(runs, holdout, False)
+        if not happened.many and happened.alike is None:
+            found = again
+    return found, happened
+
+
+def events_beside(runs: Concatenated, fitted: Point, judge: Judge) -> Events:
+    """What happened at an instant beside a model, in the drives it was fitted to and in others."""
+    noise = noise_of_most(runs, fitted)
+    point = replace(fitted, variances=noise)
+    home = replace(judge.at_home(point.model), variances=noise)
+    fitted_on, kept = ([run.path for run in some] for some in (judge.fitted_on, judge.kept_back))
+    return events_among(
+        [
+            Side(runs.runs, fitted_on, point, held_out=False),
+            Side(judge.fine.runs, kept, home, held_out=True),
+        ],
+        point.options.reference_kind,
+    )
