@@ -27,7 +27,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import rclpy
-from diagnostic_msgs.msg import DiagnosticArray
+from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus
 from geometry_msgs.msg import PoseStamped
 from rclpy.clock import ClockType
 from rclpy.executors import SingleThreadedExecutor
@@ -49,6 +49,8 @@ from werrimbi_odom.simulation import LiveRobot, Peculiarity, hide, write_robot_f
 
 BEGINS = 1_000_000
 """The first stamp [s]: zero means none."""
+ALARMS = (DiagnosticStatus.WARN, DiagnosticStatus.ERROR)
+"""STALE is none: to the node's own clock everything is silent while a look is waited for."""
 PERIOD = 1.0
 """Simulated seconds between two reports of the node, as on a robot."""
 
@@ -229,7 +231,8 @@ class Watched:
             self._executor.spin_once(timeout_sec=1.0)
         for status in self._arrays.pop().status:
             name = status.name.removeprefix("compare_node: ")
-            if name in self.status and status.level > self.status[name].level:
+            before = self.status.get(name)
+            if status.level in ALARMS and (before is None or before.level not in ALARMS):
                 self.alarms[name] += 1
             self.status[name] = status
         self._arrays.clear()
