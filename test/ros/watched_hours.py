@@ -51,6 +51,8 @@ BEGINS = 1_000_000
 """The first stamp [s]: zero means none."""
 ALARMS = (DiagnosticStatus.WARN, DiagnosticStatus.ERROR)
 """STALE is none: to the node's own clock everything is silent while a look is waited for."""
+RATES = (25, 10)
+"""Messages a second of the wheels and of the reference."""
 PERIOD = 1.0
 """Simulated seconds between two reports of the node, as on a robot."""
 
@@ -81,7 +83,7 @@ def patrols(file: RobotFile, seed: int, hidden: list[Peculiarity], sets_in: floa
     """Patrols of five minutes without end, on one clock; something sets in after so many [s]."""
     rng = np.random.default_rng(seed)
     live = LiveRobot(TRUTH, seed=seed)
-    there, begun, counted = InEngine(live, file), 0.0, np.zeros(2)
+    there, begun, counted = InEngine(live, file, *RATES), 0.0, np.zeros(2)
     sound = True
     while True:
         if sound and live.time >= sets_in:
@@ -89,7 +91,7 @@ def patrols(file: RobotFile, seed: int, hidden: list[Peculiarity], sets_in: floa
             counted = np.array(live.counters(live.time), dtype=float)
             live = LiveRobot(TRUTH, seed=seed + 1, hidden=hidden, start=live.pose)
             counted -= live.counters(0.0)
-            there = InEngine(live, file)
+            there = InEngine(live, file, *RATES)
         run, driver = there.drive(patrol(rng))
         assert driver.state == "done", driver.words
         ticks, reference = run.ticks, run.reference
