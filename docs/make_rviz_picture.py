@@ -21,6 +21,7 @@ from geometry_msgs.msg import PoseStamped
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.patches import Ellipse, FancyArrow
+from matplotlib.ticker import MultipleLocator
 from nav_msgs.msg import Odometry
 from rclpy.qos import DurabilityPolicy, QoSProfile
 from ruamel.yaml import YAML
@@ -31,9 +32,12 @@ from werrimbi_odom.demo.stage import Stage
 ROOT = Path(__file__).parents[1]
 DISPLAYS = ROOT / "rviz" / "simulated.rviz"
 PICTURE = ROOT / "docs" / "pictures" / "rviz.png"
+GROUND = "#fafafa"
+LINES, ELLIPSES = 2, 3
+"""What lies above what: all of it is on the floor."""
 KINDS = {"MarkerArray": MarkerArray, "Marker": Marker, "Odometry": Odometry, "Pose": PoseStamped}
 """Displays that listen to a topic; the grid does not, and /tf is left out."""
-ROBOT = {"hide": "track_width=1.05", "real_time_factor": 2.0, "publish_clock": True}
+ROBOT = {"hide": "track_width=1.05", "publish_clock": True}
 DRIVE: dict[str, object] = {
     "manoeuvre": "umbmark_ccw",
     "length": 2.0,
@@ -42,7 +46,7 @@ DRIVE: dict[str, object] = {
     "max_vel_theta": 1.4,
     "acc_lim_x": 1.0,
     "odom_timeout": 2.0,
-    "max_deviation": 0.5,
+    "max_deviation": 1.0,
 }
 
 
@@ -86,11 +90,12 @@ def _marker(axes: Axes, marker: Any) -> None:
         x, y = [point.x for point in marker.points], [point.y for point in marker.points]
         pixels = axes.transData.transform([(0.0, 0.0), (marker.scale.x, 0.0)])
         points = (pixels[1, 0] - pixels[0, 0]) * 72.0 / axes.figure.get_dpi()
-        axes.plot(x, y, color=colour, alpha=of.a, linewidth=points)
+        axes.plot(x, y, color=colour, alpha=of.a, linewidth=points, zorder=LINES)
     elif marker.type == Marker.CYLINDER:
         angle = math.degrees(_yaw(marker.pose))
         size = marker.scale.x, marker.scale.y
-        axes.add_patch(Ellipse((place.x, place.y), *size, angle=angle, color=colour, alpha=of.a))
+        shape = Ellipse((place.x, place.y), *size, angle=angle, color=colour, alpha=of.a)
+        axes.add_patch(shape).set_zorder(ELLIPSES)
     else:
         raise ValueError(f"a marker of type {marker.type} has no drawing here")
 
@@ -101,7 +106,8 @@ def _position(axes: Axes, covariance: Any, pose: Any, display: Any) -> None:
     width, height = 2.0 * shown["Scale"] * np.sqrt(variances)
     angle = math.degrees(math.atan2(vectors[1, 0], vectors[0, 0]))
     place, colour = (pose.position.x, pose.position.y), _colour(shown["Color"])
-    axes.add_patch(Ellipse(place, width, height, angle=angle, color=colour, alpha=shown["Alpha"]))
+    shape = Ellipse(place, width, height, angle=angle, color=colour, alpha=shown["Alpha"])
+    axes.add_patch(shape).set_zorder(ELLIPSES)
 
 
 def _arrow(axes: Axes, pose: Any, shape: Any) -> None:
@@ -117,7 +123,7 @@ def _arrow(axes: Axes, pose: Any, shape: Any) -> None:
         length_includes_head=True,
         color=_colour(shape["Color"]),
     )
-    axes.add_patch(arrow)
+    axes.add_patch(arrow).set_zorder(LINES)
 
 
 def _yaw(pose: Any) -> float:
@@ -163,18 +169,19 @@ def driven() -> list[Shown]:
 
 
 def draw(shown: Sequence[Shown], path: Path) -> None:
-    """A PNG, from above."""
-    figure = Figure(figsize=(9.0, 7.0), dpi=100, facecolor="#fafafa")
-    axes = figure.add_axes((0.06, 0.06, 0.92, 0.92), facecolor="#fafafa")
-    axes.set_xlim(-1.2, 3.3)
-    axes.set_ylim(-0.9, 2.7)
-    axes.set_aspect("equal")
-    axes.grid(color="#c8c8c8")  # RViz's Grid, 1 m
-    axes.set_xticks(range(-1, 4))
-    axes.set_yticks(range(3))
-    figure.canvas.draw()
-    for each in shown:
-        each.draw(axes)
+    """A PNG, from above: all of it, and where the drive ended."""
+    figure = Figure(figsize=(13.0, 6.5), dpi=100, facecolor=GROUND)
+    for left, (x, y, half) in zip((0.04, 0.53), ((1.0, 1.0, 1.5), (0.0, 0.1, 0.25)), strict=True):
+        axes = figure.add_axes((left, 0.06, 0.45, 0.9), facecolor=GROUND)
+        axes.set_xlim(x - half, x + half)
+        axes.set_ylim(y - half, y + half)
+        step = 1.0 if half > 1.0 else 0.1
+        axes.xaxis.set_major_locator(MultipleLocator(step))
+        axes.yaxis.set_major_locator(MultipleLocator(step))
+        axes.grid(color="#c8c8c8")  # RViz's own is of 1 m
+        axes.set_axisbelow(True)
+        for each in reversed(shown):
+            each.draw(axes)
     figure.savefig(path)
 
 

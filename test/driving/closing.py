@@ -4,7 +4,9 @@
 
 What `diagnose` proposes is driven by the code of drive_node; in the engine, without ROS.
 
-    python -m test.driving.closing SEED COUNT        # a line for each case, and the table
+    python -m test.driving.closing SEED COUNT [EFFECT ...]     # a line for each case, and the table
+
+Of all kinds, or of those that are named.
 """
 
 from __future__ import annotations
@@ -144,9 +146,9 @@ def _driven(there: InEngine, plan: Plan, measured: str) -> Run:
     return replace(run, reference=replace(run.reference, yaw=nowhere))
 
 
-def cases(seed: int) -> Iterator[Closed]:
+def cases(seed: int, effects: Sequence[str] = ()) -> Iterator[Closed]:
     """All kinds, all plain drives, whatever was measured; in an order that is drawn."""
-    kinds = list(itertools.product(KINDS, PLAIN, MEASURED))
+    kinds = list(itertools.product(effects or KINDS, PLAIN, MEASURED))
     random.Random(seed).shuffle(kinds)
     return (closed(*kind, seed) for kind in kinds)
 
@@ -170,9 +172,9 @@ def table(found: Sequence[Closed]) -> str:
 
 def main() -> None:
     """Judge as many cases of a seed as are asked for, and print."""
-    seed, count = map(int, sys.argv[1:])
+    seed, count = map(int, sys.argv[1:3])
     found = []
-    for each in itertools.islice(cases(seed), count):
+    for each in itertools.islice(cases(seed, sys.argv[3:]), count):
         found.append(each)
         print(each, flush=True)
     print(table(found))

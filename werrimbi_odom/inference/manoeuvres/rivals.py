@@ -25,6 +25,11 @@ from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 
 
+_RELUCTANT = 1e-2
+"""What it costs calibrations beside a rival to be moved, as a share of what they show: far below
+what tells them from it where anything does, and far above rounding."""
+
+
 @dataclass(frozen=True)
 class Experiment:
     """Some drives, the model to begin from, and how all that may be fitted acts in them."""
@@ -119,10 +124,20 @@ def trace_along(look: Sensitivities, name: str, sizes: Floats) -> Trace:
 
 
 def best_alias(look: Sensitivities, target: Trace, rival: Candidate) -> Floats:
-    """How far along its coordinates a rival looks most like the target in some drives, (k,)."""
+    """How far along its coordinates a rival looks most like the target in some drives, (k,).
+
+    Where a calibration beside it could do the same (one circle cannot tell a base that depends on
+    the turning from a base), the rival does it: else it would be imagined with next to nothing of
+    itself, and no drive could tell that from the calibration.
+    """
     squeezed, width = _squeezed(look, target, (rival.name, *_beside(target.name, rival)), ())
-    found = solved(squeezed[:, :width], squeezed[:, width])
-    return np.asarray(found[: look.white[rival.name].shape[-1]])
+    columns, wanted = squeezed[:, :width], squeezed[:, width]
+    own = look.white[rival.name].shape[-1]
+    reluctant = np.diag(_RELUCTANT * np.linalg.norm(columns, axis=0))[own:]
+    found = solved(
+        np.concatenate([columns, reluctant]), np.concatenate([wanted, np.zeros(width - own)])
+    )
+    return np.asarray(found[:own])
 
 
 def separation(pairs: Sequence[tuple[Sensitivities, Trace]], rival: Candidate) -> float:
