@@ -95,8 +95,10 @@ def test_spins_tell_a_lever_arm_from_slip_in_curves_and_lines_do_not() -> None:
 
 
 def test_a_rival_that_one_circle_cannot_tell_from_a_base_is_imagined_whole() -> None:
-    """Seen by positions alone it could be the base, a wheel, or a base that depends on the turning:
-    were it shared among them, no drive would seem to tell them apart."""
+    """By positions alone it could be the base, a wheel, or a base that depends on the turning.
+
+    Shared among them, it would be so small that no drive seemed to tell them apart.
+    """
     circle = Ideal("circle", "", "", lambda size: [(6.0 * size, 6.0, 0.6)] * 4)
     drives = driven(circle, yaw=False)
     rival = Candidate(find("turn_dependent_track"), {})

@@ -24,7 +24,6 @@ from werrimbi_odom.inference.linear import nuisance, solved
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 
-
 _RELUCTANT = 1e-2
 """What it costs calibrations beside a rival to be moved, as a share of what they show: far below
 what tells them from it where anything does, and far above rounding."""
