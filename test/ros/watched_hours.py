@@ -1,12 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Hours of a patrol in the engine, watched by compare_node itself, faster than time.
+"""Hours of driving watched by compare_node itself, faster than time.
 
-    python -m test.ros.watched_hours SEED HOURS [EFFECT=STRENGTH SETS_IN_AT_HOUR]
+    python -m test.ros.watched_hours engine|paper SEED HOURS [EFFECT=STRENGTH SETS_IN_AT_HOUR]
 
-Each message is handed to the node's own callbacks, so that hours take minutes: all but DDS is as on
-a robot, and the odometry is what odom_node would publish. Simulated time stands still for as long
-as a look of the node's takes. Prints each look, and what everything cost.
+The robot is one in the engine on patrol, or one on paper whose wheels err with white noise, which
+costs a third. Each message is handed to the node's own callbacks, so that hours take minutes: all
+but DDS is as on a robot, and the odometry is what odom_node would publish. Simulated time stands
+still for as long as a look of the node's takes. Prints each look, and what everything cost.
 """
 
 from __future__ import annotations
@@ -39,13 +40,15 @@ from sensor_msgs.msg import JointState
 import werrimbi_odom as wo
 from test.driving.in_engine import InEngine
 from test.driving.test_watched_hours import TRUTH, patrol
+from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.demo.stage import private_domain
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
-from werrimbi_odom.files.run import Run, Ticks
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.model.pose import Floats, Pose, compose, inverse
 from werrimbi_odom.ros.compare_node import CompareNode
 from werrimbi_odom.ros.live_odometer import Tracker
 from werrimbi_odom.ros.messages import OdometryMessage
-from werrimbi_odom.simulation import LiveRobot, Peculiarity, hide, write_robot_file
+from werrimbi_odom.simulation import LiveRobot, hide, write_robot_file
 
 BEGINS = 1_000_000
 """The first stamp [s]: zero means none."""
@@ -79,28 +82,85 @@ class Look(NamedTuple):
     """The same of its looks."""
 
 
-def patrols(file: RobotFile, seed: int, hidden: list[Peculiarity], sets_in: float) -> Iterator[Run]:
-    """Patrols of five minutes without end, on one clock; something sets in after so many [s]."""
+def patrols(seed: int, file: RobotFile, sets_in: float, hidden: str) -> Iterator[Run]:
+    """Patrols of five minutes in the engine, on one clock; something sets in after so many [s]."""
     rng = np.random.default_rng(seed)
     live = LiveRobot(TRUTH, seed=seed)
     there, begun, counted = InEngine(live, file, *RATES), 0.0, np.zeros(2)
     sound = True
     while True:
         if sound and live.time >= sets_in:
+            effect, _, strength = hidden.partition("=")
+            odd = hide(effect, float(strength) if strength else None, seed=seed).peculiarity
             sound, begun = False, live.time
             counted = np.array(live.counters(live.time), dtype=float)
-            live = LiveRobot(TRUTH, seed=seed + 1, hidden=hidden, start=live.pose)
+            live = LiveRobot(TRUTH, seed=seed + 1, hidden=[odd], start=live.pose)
             counted -= live.counters(0.0)
             there = InEngine(live, file, *RATES)
         run, driver = there.drive(patrol(rng))
         assert driver.state == "done", driver.words
-        ticks, reference = run.ticks, run.reference
-        assert reference is not None
+        yield _later(run, begun, counted, Pose())
+
+
+ON_PAPER = {"unequal_wheel_radii": "right_radius", "track_width": "separation"}
+"""What can set in there: a size that becomes so many times as large."""
+
+
+def wanderings(seed: int, file: RobotFile, sets_in: float, hidden: str) -> Iterator[Run]:
+    """The same of a robot on paper, by quarters of an hour."""
+    rng = np.random.default_rng(seed)
+    believed = file.robot
+    robot = WhiteNoiseRobot(
+        believed.track, 0.05, 0.05, believed.left_wheel_noise, believed.right_wheel_noise
+    )
+    begun, counted, there = 0.0, np.zeros(2), Pose()
+    sound = True
+    while True:
+        if sound and begun >= sets_in:
+            effect, _, strength = hidden.partition("=")
+            size = ON_PAPER[effect]
+            robot = replace(robot, **{size: getattr(robot, size) * float(strength)})
+            sound = False
+        speeds = wandering(rng, 900.0, RATES[0])
+        every = RATES[0] // RATES[1]
+        run = drive(robot, speeds, rng, sigma_xy=0.0, sigma_yaw=0.0, every=every, hertz=RATES[0])
+        ticks, exact = run.ticks, run.reference
+        assert exact is not None
+        counted -= ticks.left[0], ticks.right[0]
+        origin = compose(there, inverse(Pose(exact.x[0], exact.y[0], exact.yaw[0])))
+        run = _later(run, begun, counted, origin)
+        assert run.reference is not None
+        x, y, yaw = run.reference.x, run.reference.y, run.reference.yaw
+        there = Pose(float(x[-1]), float(y[-1]), float(yaw[-1]))
+        begun, counted = (
+            float(run.ticks.time[-1]),
+            np.array([run.ticks.left[-1], run.ticks.right[-1]]),
+        )
+        noise = (sigma * rng.standard_normal(x.size) for sigma in (0.001, 0.001, 0.002))
+        x, y, yaw = (one + other for one, other in zip((x, y, yaw), noise, strict=True))
+        keep = slice(0, -1)  # the last reading is the next one's first
         yield replace(
             run,
-            ticks=Ticks(ticks.time + begun, ticks.left + counted[0], ticks.right + counted[1]),
-            reference=replace(reference, time=reference.time + begun),
+            ticks=Ticks(run.ticks.time[keep], run.ticks.left[keep], run.ticks.right[keep]),
+            reference=Reference(run.reference.time[keep], x[keep], y[keep], yaw[keep]),
         )
+
+
+def _later(run: Run, begun: float, counted: Floats, origin: Pose) -> Run:
+    """The same drive at another time, with other counts, from another place."""
+    ticks, reference = run.ticks, run.reference
+    assert reference is not None
+    cos, sin = math.cos(origin.yaw), math.sin(origin.yaw)
+    return replace(
+        run,
+        ticks=Ticks(ticks.time + begun, ticks.left + counted[0], ticks.right + counted[1]),
+        reference=Reference(
+            reference.time + begun,
+            origin.x + cos * reference.x - sin * reference.y,
+            origin.y + sin * reference.x + cos * reference.y,
+            origin.yaw + reference.yaw,
+        ),
+    )
 
 
 @dataclass
@@ -255,25 +315,25 @@ def _resident() -> float:
 
 
 def looks(
-    seed: int, hours: float, hidden: list[Peculiarity], sets_in: float, folder: Path
+    kind: str, seed: int, hours: float, hidden: str, sets_in: float, folder: Path
 ) -> Iterator[Look]:
-    """Each look at so many hours of patrols; what is hidden sets in at an hour."""
+    """Each look at so many hours; what is hidden sets in at an hour."""
     robot = folder / "robot.yaml"
     write_robot_file(TRUTH, robot)
+    runs = {"engine": patrols, "paper": wanderings}[kind]
     with Watched(folder, robot) as watched:
         seen, driven_at = "0", math.nan
-        for run in patrols(wo.read_robot(robot), seed, hidden, 3600.0 * sets_in):
-            if run.ticks.time[0] > 3600.0 * hours:
-                return
+        for run in runs(seed, wo.read_robot(robot), 3600.0 * sets_in, hidden):
             for time in watched.drive(run):
                 driven = float(watched.told("what is missing", "driven").removesuffix(" min"))
                 if math.isnan(driven_at) and time >= 3600.0 * sets_in:
                     driven_at = driven
                 count = watched.told("what is missing", "looks")
-                if count == seen:
-                    continue
-                seen = count
-                yield look(watched, time, driven - driven_at)
+                if count != seen:
+                    seen = count
+                    yield look(watched, time, driven - driven_at)
+            if time > 3600.0 * hours:
+                return
 
 
 def look(watched: Watched, time: float, since: float) -> Look:
@@ -297,14 +357,10 @@ def look(watched: Watched, time: float, since: float) -> Look:
 
 def main() -> None:
     """Watch, and print."""
-    seed, hours = int(sys.argv[1]), float(sys.argv[2])
-    hidden, sets_in = [], math.inf
-    if len(sys.argv) > 3:
-        effect, _, strength = sys.argv[3].partition("=")
-        hidden = [hide(effect, float(strength) if strength else None, seed=seed).peculiarity]
-        sets_in = float(sys.argv[4])
+    kind, seed, hours = sys.argv[1], int(sys.argv[2]), float(sys.argv[3])
+    hidden, sets_in = (sys.argv[4], float(sys.argv[5])) if len(sys.argv) > 4 else ("", math.inf)
     with tempfile.TemporaryDirectory() as folder:
-        for each in looks(seed, hours, hidden, sets_in, Path(folder)):
+        for each in looks(kind, seed, hours, hidden, sets_in, Path(folder)):
             print(*each, sep="; ", flush=True)
 
 
