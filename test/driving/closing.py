@@ -44,7 +44,10 @@ PLAIN = {
     )
 }
 """What robots do all day, some minutes of it."""
-KINDS = [each.name for each in CATALOGUE if each.kind == "effect"]
+KINDS = [
+    each.name for each in CATALOGUE if each.kind == "effect" and not find(each.name).one_of_channels
+]
+"""All but what follows a temperature or a payload: nobody records one here."""
 MEASURED = ("poses", "positions")
 """By a reference with a heading, and by one without."""
 MOST = 3
