@@ -22,7 +22,7 @@ from werrimbi_odom.simulation import LiveRobot
 LIMITS = Limits(0.3, 1.0, 0.5, 1.5)
 """Those that drive_node has by default."""
 TICKS, POSES = 50, 20
-"""Readings a second."""
+"""Readings a second, unless told otherwise."""
 STEPS = 200
 """The engine's."""
 STANDS = 1.0
@@ -37,10 +37,15 @@ class InEngine:
     robot : LiveRobot
     file : RobotFile
         What odom_node believes of it.
+    ticks, poses : int
+        Readings a second of the counters and of the reference.
     """
 
-    def __init__(self, robot: LiveRobot, file: RobotFile) -> None:
+    def __init__(
+        self, robot: LiveRobot, file: RobotFile, ticks: int = TICKS, poses: int = POSES
+    ) -> None:
         self._robot, self._file = robot, file
+        self._per_tick, self._per_pose = STEPS // ticks, STEPS // poses
         self._drives = 0
 
     def drive(self, plan: Plan, limits: Limits = LIMITS) -> tuple[Run, Driver]:
@@ -59,9 +64,9 @@ class InEngine:
             step += 1
             at = round(step - lag * STEPS) - begun
             time = (begun + at) / STEPS
-            if at > 0 and at % (STEPS // POSES) == 0:
+            if at > 0 and at % self._per_pose == 0:
                 poses.append((time, *robot.reference(time)))
-            if at > 0 and at % (STEPS // TICKS) == 0:
+            if at > 0 and at % self._per_tick == 0:
                 ticks.append((time, *robot.counters(time)))
                 estimate = odometer.update(*ticks[-1])
                 pose = pose if estimate is None else estimate.pose

@@ -139,6 +139,29 @@ def test_a_fault_of_the_odometry_stops_it_within_its_timeout(fault: str) -> None
     assert math.hypot(plant.pose.x - before.x, plant.pose.y - before.y) < 0.1
 
 
+def test_what_came_while_a_recording_was_begun_is_neither_silent_nor_late() -> None:
+    """A bag takes a busy machine a part of a second, in which messages queue."""
+    one, plant = driver(), Plant()
+    plant.rest(one)
+    asked, busy = plant.time, 0.4
+    now = asked + busy
+    one.start(now, busy=busy)
+    one.tick(now + 0.003)
+    assert one.state == "driving", one.words
+    for stamp in np.arange(asked + 0.02, now, 0.02).tolist():
+        one.odometry(Reading(stamp, now - stamp, plant.pose), now + 0.004)
+    plant.time = now
+    plant.rest(one, 5)
+    assert one.state == "driving", one.words
+    one.tick(plant.time + 0.3)
+    assert "silent for 0.30 s" in one.words
+    late = driver()
+    plant.rest(late)
+    late.start(plant.time + busy, busy=busy)
+    late.odometry(Reading(plant.time + 0.02, busy + 0.3, plant.pose), plant.time + busy)
+    assert "later than before" in late.words
+
+
 def test_a_stop_is_at_once_and_only_another_start_moves_it_on() -> None:
     one, plant = under_way()
     one.stop("asked to")

@@ -89,12 +89,16 @@ def test_what_diagnose_proposes_is_driven_for_as_long_as_it_says(tmp_path: Path)
 @pytest.mark.parametrize(
     ("told", "says"),
     [
-        ({}, "nothing needs to be driven next: the verdict is ambiguous"),
+        ({}, "no manoeuvre tells its rivals apart in reasonable time; a ruler may"),
         ({"name": "push", "why": "w", "do": "push it by hand"}, "work by hand: push it by hand"),
     ],
 )
 def test_what_cannot_be_driven_is_said(tmp_path: Path, told: dict[str, object], says: str) -> None:
     with pytest.raises(InputError, match=says):
         proposed(diagnosis(tmp_path / "d.json", **told), LIMITS)
+    found = tmp_path / "named.json"
+    found.write_text(json.dumps({"verdict": "named", "next_manoeuvre": None}))
+    with pytest.raises(InputError, match="nothing needs to be driven next: the verdict is named"):
+        proposed(found, LIMITS)
     with pytest.raises(InputError, match="cannot be read as JSON"):
         proposed(tmp_path / "none.json", LIMITS)

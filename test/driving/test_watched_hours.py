@@ -2,16 +2,13 @@
 # SPDX-License-Identifier: Apache-2.0
 """Hours of driving in the engine, looked at as compare_node does: five minutes and the last five.
 
-    python -m test.driving.test_watched_hours SEED HOURS         # a line for each look
-
-No alarm where nothing is hidden; what sets in is named by the second look.
+No alarm where nothing is hidden; what sets in is named by the second look. By the node itself, for
+hours: `test.ros.watched_hours`.
 """
 
 from __future__ import annotations
 
 import math
-import sys
-import tempfile
 from collections.abc import Iterator
 from itertools import pairwise
 from pathlib import Path
@@ -87,16 +84,3 @@ def test_what_sets_in_is_named_by_the_second_look(name: str, tmp_path: Path) -> 
     runs = iter([next(sound), next(ill), next(ill)])
     _, second = looks(file, runs)
     assert second[:2] == ("named", (effect,))
-
-
-def main() -> None:
-    """Look at hours, and print."""
-    seed, hours = int(sys.argv[1]), float(sys.argv[2])
-    with tempfile.TemporaryDirectory() as folder:
-        file, runs = drives([], seed, Path(folder))
-        for look, number in zip(looks(file, runs), range(round(12.0 * hours)), strict=False):
-            print(number, *look, flush=True)
-
-
-if __name__ == "__main__":
-    main()

@@ -20,10 +20,12 @@ from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
 from werrimbi_odom.inference.fitting.prediction import legs_shown
 from werrimbi_odom.inference.legs.cutting import match
+from werrimbi_odom.inference.linear import nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, Pace, ideal_run
 from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
 from werrimbi_odom.inference.manoeuvres.rivals import (
     Experiment,
+    best_alias,
     sensitivities_of,
     separation,
     trace_at,
@@ -90,6 +92,22 @@ def test_spins_tell_a_lever_arm_from_slip_in_curves_and_lines_do_not() -> None:
     truth = find("reference_lever_arm").using(x=0.02)
     assert rise("spins", truth, "lateral_slip") > 100.0
     assert rise("out_and_back", truth, "lateral_slip") < 1e-3
+
+
+def test_a_rival_that_one_circle_cannot_tell_from_a_base_is_imagined_whole() -> None:
+    """By positions alone it could be the base, a wheel, or a base that depends on the turning.
+
+    Shared among them, it would be so small that no drive seemed to tell them apart.
+    """
+    circle = Ideal("circle", "", "", lambda size: [(6.0 * size, 6.0, 0.6)] * 4)
+    drives = driven(circle, yaw=False)
+    rival = Candidate(find("turn_dependent_track"), {})
+    names = ("track_width", "unequal_wheel_radii", "wheel_radius_scale")
+    look = sensitivities_of(drives, [rival, *(Candidate(find(n), {}) for n in names)], ())
+    target = trace_at(look, find("track_width").using(multiplier=1.02))
+    alone = look.white[rival.name] @ best_alias(look, target, rival)
+    free = nuisance(look.own).residual(np.stack([alone, target.white], axis=-1))
+    assert free[:, 0] @ free[:, 1] > 0.9 * free[:, 1] @ free[:, 1]
 
 
 def test_slow_and_fast_lines_tell_lost_counts_from_a_smaller_wheel() -> None:

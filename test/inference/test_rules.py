@@ -113,6 +113,7 @@ ELSEWHERE = {
     "legs/cutting.py": {"ROUNDING": "of sums"},
     "linear.py": {"DETERMINED": "a rank", "ROUNDING": "a rank", "SILENT": "rounding"},
     "manoeuvres/drives.py": {"REST": "of an ideal drive [s]", "FINE": "its steps [s]"},
+    "manoeuvres/rivals.py": {"_RELUCTANT": "a rank, by the noise", "_WILLING": "a rank"},
     "set_up/delay.py": {"_PERIOD": "of a grid"},
     "set_up/regression.py": {"_LARGE": "the usual one of Tukey's biweight"},
     "set_up/sparse.py": {"STEPS": "time that it takes"},

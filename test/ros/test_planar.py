@@ -106,3 +106,27 @@ def test_what_is_published_is_semi_definite_whatever_rounding_made_of_it(entries
     assert is_covariance(rounded.matrix(), 1e-14)
     if is_covariance(given_in.matrix(), 0.0):
         np.testing.assert_allclose(rounded, given_in, rtol=1e-9, atol=0.0)
+
+
+@given(BLOCKS, SCALES)
+def test_the_short_way_lets_in_what_the_long_way_does(block: np.ndarray, scales: Any) -> None:
+    """And both say the same of it: made of any numbers, so that covariances are among them."""
+    with np.errstate(all="ignore"):
+        product = (block @ block.T) * scales * scales[:, None]
+    entries = whole(0.5 * (product + product.T))
+    short = planar._plainly_sound(entries.tolist())
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(planar, "_plainly_sound", lambda _: None)
+        try:
+            long = planar.covariance_of(entries)
+        except InputError:
+            assert short is None
+        else:
+            assert short in (None, long)
+
+
+def test_an_ordinary_covariance_goes_the_short_way() -> None:
+    entries = whole(np.array([[4e-4, 1e-4, 2e-4], [1e-4, 3e-4, -1e-4], [2e-4, -1e-4, 5e-4]]))
+    assert planar._plainly_sound(entries.tolist()) is not None
+    entries[1] = 2e-4  # as sent by nobody: the other entry differs
+    assert planar._plainly_sound(entries.tolist()) is None

@@ -97,22 +97,31 @@ class Driver:
             )
         return ""
 
-    def start(self, now: float) -> None:
+    def start(self, now: float, busy: float = 0.0) -> None:
         """Begin to drive.
+
+        Parameters
+        ----------
+        busy : float
+            For so long before now nobody listened [s], as while a recording is begun: what came
+            then is still to be handed over, and is neither silence nor delay.
 
         Raises
         ------
         InputError
             When it cannot be; the message says why.
         """
-        wrong = self.refusal(now)
+        wrong = self.refusal(now - busy)
         if wrong:
             raise InputError(wrong)
         assert self.last is not None
+        self._heard += busy
+        self._scanned += busy
+        self._turned += busy
         self._origin = self.last.pose
         self._anchor = self._anchor or self._origin
         self._tracker = Tracker(self.plan, self.limits)
-        self._commanded, self._least_age = self.last.stamp, self.last.age
+        self._commanded, self._least_age = self.last.stamp, self.last.age + busy
         planned = self.plan.duration(self.limits)
         self._ends_by = self.last.stamp + 1.5 * planned + LATER
         self.state, self.words = "driving", f"driving {self.plan.name}"

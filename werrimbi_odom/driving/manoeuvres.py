@@ -102,9 +102,12 @@ def proposed(path: Path, limits: Limits, *, size: float = 1.0) -> Plan:
         raise InputError(f"diagnosis: {path} was not written by werrimbi diagnose --json")
     ahead = told["next_manoeuvre"]
     if ahead is None:
-        raise InputError(
-            f"diagnosis: nothing needs to be driven next: the verdict is {told.get('verdict')}"
-        )
+        verdict = told.get("verdict")
+        if verdict == "ambiguous":
+            raise InputError(
+                "diagnosis: no manoeuvre tells its rivals apart in reasonable time; a ruler may"
+            )
+        raise InputError(f"diagnosis: nothing needs to be driven next: the verdict is {verdict}")
     if ahead["name"] not in NAMES:
         raise InputError(
             f"diagnosis: {ahead['name']} is no drive, but work by hand: "

@@ -145,7 +145,8 @@ class DriveNode(Node):  # type: ignore[misc]
     # ------------------------------------------------------------------------- asked for
 
     def _on_start(self, _: Any, response: Any) -> Any:
-        wrong = self._others() or self._driver.refusal(time.monotonic())
+        asked = time.monotonic()
+        wrong = self._others() or self._driver.refusal(asked)
         if wrong:
             response.success, response.message = False, f"it does not start: {wrong}"
             self.get_logger().warning(response.message)
@@ -157,7 +158,8 @@ class DriveNode(Node):  # type: ignore[misc]
             return response
         try:
             self._records.begin(self._driver.plan.name)
-            self._driver.start(time.monotonic())
+            now = time.monotonic()
+            self._driver.start(now, busy=now - asked)
         except InputError as error:
             self._records.close()
             response.success, response.message = False, f"it does not start: {error}"

@@ -20,9 +20,14 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.knobs import Knob, Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
-from werrimbi_odom.inference.linear import nuisance, solved
+from werrimbi_odom.inference.linear import SILENT, nuisance, solved
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
+
+_RELUCTANT, _WILLING = 1.0, 0.1
+"""What it costs calibrations beside a rival, and the rival itself, to do all of the target's work
+[standard deviations]: less than the drives tell, where they tell the two apart, and the rival's is
+there lest two coordinates that do the same grow against each other."""
 
 
 @dataclass(frozen=True)
@@ -119,10 +124,21 @@ def trace_along(look: Sensitivities, name: str, sizes: Floats) -> Trace:
 
 
 def best_alias(look: Sensitivities, target: Trace, rival: Candidate) -> Floats:
-    """How far along its coordinates a rival looks most like the target in some drives, (k,)."""
+    """How far along its coordinates a rival looks most like the target in some drives, (k,).
+
+    Where a calibration beside it could do the same within the noise (one circle cannot tell a base
+    that depends on the turning from a base), the rival does it: else it would be imagined with next
+    to nothing of itself, and no drive could tell that from the calibration.
+    """
     squeezed, width = _squeezed(look, target, (rival.name, *_beside(target.name, rival)), ())
-    found = solved(squeezed[:, :width], squeezed[:, width])
-    return np.asarray(found[: look.white[rival.name].shape[-1]])
+    columns, wanted = squeezed[:, :width], squeezed[:, width]
+    own, whole = look.white[rival.name].shape[-1], float(np.linalg.norm(wanted))
+    if whole < SILENT:
+        return np.zeros(own)
+    costs = np.where(np.arange(width) < own, _WILLING, _RELUCTANT) / whole
+    slow = np.diag(costs * np.linalg.norm(columns, axis=0))
+    found = solved(np.concatenate([columns, slow]), np.concatenate([wanted, np.zeros(width)]))
+    return np.asarray(found[:own])
 
 
 def separation(pairs: Sequence[tuple[Sensitivities, Trace]], rival: Candidate) -> float:
