@@ -12,7 +12,7 @@ import json
 import math
 import shutil
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -42,8 +42,8 @@ TURNED = 0.5
 OWN_SCALE = frozenset({"reference_scale", "track_width", "wheel_radius_scale"})
 """A gyro has a scale of its own, and headings alone cannot tell it from the base."""
 
-ON_THE_FLOOR = frozenset({"floor_slope"})
-"""By scans nobody is asked for it, and an unknown says so: their axes begin anew in each drive."""
+ON_THE_FLOOR = frozenset({"floor_slope", "anisotropic_floor"})
+"""By scans nobody is asked for these, and an unknown says so: axes begin anew in each drive."""
 
 DELAYS = frozenset({"reference_delay", "reference_heading_delay"})
 """Of headings alone they are one."""
@@ -85,13 +85,13 @@ SEEN = {
 
 
 def sets(start: int, each: int, clean: int, effects: int) -> list[HiddenSet]:
-    """So many sets of each of some effects, and with nothing hidden."""
-    found = [
+    """So many sets with nothing hidden, and of each of some effects; these take turns."""
+    found = [HiddenSet("field", (), start + 8500 + n, "field") for n in range(clean)]
+    return found + [
         HiddenSet("field", (name,), start + 8000 + 20 * EFFECTS.index(name) + seed, "field")
-        for name in evenly(EFFECTS, effects, start)
         for seed in range(each)
+        for name in evenly(EFFECTS, effects, start)
     ]
-    return found + [HiddenSet("field", (), start + 8500 + n, "field") for n in range(clean)]
 
 
 def make(what: HiddenSet) -> Path:
@@ -136,6 +136,15 @@ def _write(reference: Reference, folder: Path, *, headings: bool) -> None:
 
 def work(what: HiddenSet) -> Line:
     """All references of a set, and what is made from the wheels, as a line of results."""
+    return _judged(what, SEEN) | {"circles": circles(make(what))}
+
+
+def by_scans(what: HiddenSet) -> Line:
+    """A set judged by its lidar, and by nothing else."""
+    return _judged(what, ["scans"])
+
+
+def _judged(what: HiddenSet, names: Iterable[str]) -> Line:
     folder = make(what)
     truth = what.truth
     (strength,) = (each["strength"] for each in truth["hidden"]) if what.effects else (None,)  # type: ignore[attr-defined]
@@ -143,8 +152,7 @@ def work(what: HiddenSet) -> Line:
         "hidden": what.names,
         "strength": strength,
         "commit": commit_now(),
-        "said": {name: _said(folder, truth["field"], name) for name in SEEN},  # type: ignore[arg-type]
-        "circles": circles(folder),
+        "said": {name: _said(folder, truth["field"], name) for name in names},  # type: ignore[arg-type]
     }
 
 
