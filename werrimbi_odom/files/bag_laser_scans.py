@@ -43,6 +43,7 @@ class LidarCollector:
         self._mounting = MountingCollector(mounting) if mounting else None
         self._base = mounting.parent if mounting else ""
         self._matcher = ScanMatcher()
+        self._echoes, self._reach = 0, (0.0, np.inf)
         self.topics = (source.name, *(self._mounting.topics if self._mounting else ()))
         self.taken_out: tuple[tuple[float, float], ...] = ()
         """Between two pieces of the path, from and to [s]; known when the reference is."""
@@ -64,7 +65,9 @@ class LidarCollector:
         limits = float(scan.range_min), float(scan.range_max)
         if not limits[0] < limits[1]:
             limits = 0.0, np.inf
-        self._matcher.take(sweep_of(stamp_of(message), ranges, angles, interval, *limits))
+        sweep = sweep_of(stamp_of(message), ranges, angles, interval, *limits)
+        self._echoes, self._reach = self._echoes + len(sweep.points), limits
+        self._matcher.take(sweep)
 
     def reference(self) -> tuple[Reference, str]:
         """The reference, and in words what it is.
@@ -76,7 +79,8 @@ class LidarCollector:
         """
         found = self._matcher.path()
         if found.time.size == 0:
-            raise InputError(f"{self._place}: {_lost(found)}")
+            words = _lost(found) if self._echoes else _blind(found, self._reach)
+            raise InputError(f"{self._place}: {words}")
         mount = self._mounting.mount(self._place) if self._mounting else Mount(0.0, 0.0, 0.0, False)
         poses, sigma_xy, sigma_yaw = _of_base(found, mount)
         self.taken_out = tuple(found.cuts)
@@ -153,6 +157,15 @@ def _because(found: ScanPath) -> str:
         return ""
     flag = max(found.flags, key=lambda each: found.flags[each])
     return f", mostly for {WHY[flag]}" if flag == "few" else f", mostly because {WHY[flag]}"
+
+
+def _blind(found: ScanPath, reach: tuple[float, float]) -> str:
+    return (
+        f"the scans do not hold where the robot was: none of {found.scans} scans holds an echo "
+        f"between {reach[0]:g} and {reach[1]:g} m, its range_min and range_max. A lidar that is "
+        "covered, or that looks at something nearer, sees so; or it does not measure, or its "
+        "limits are wrong. Mend that, or choose another reference"
+    )
 
 
 def _lost(found: ScanPath) -> str:
