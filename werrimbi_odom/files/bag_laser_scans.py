@@ -15,7 +15,8 @@ from werrimbi_odom.files.frames import Chain
 from werrimbi_odom.files.mounting import Mount, MountingCollector
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.scans.path import ScanMatcher, ScanPath
+from werrimbi_odom.scans.beam_order import EitherOrder
+from werrimbi_odom.scans.path import ScanPath
 from werrimbi_odom.scans.scan_odometry import Flag
 from werrimbi_odom.scans.sweep import sweep_of
 
@@ -42,7 +43,7 @@ class LidarCollector:
         self._frame = source.child
         self._mounting = MountingCollector(mounting) if mounting else None
         self._base = mounting.parent if mounting else ""
-        self._matcher = ScanMatcher()
+        self._matcher = EitherOrder()
         self._echoes, self._reach = 0, (0.0, np.inf)
         self.topics = (source.name, *(self._mounting.topics if self._mounting else ()))
         self.taken_out: tuple[tuple[float, float], ...] = ()
@@ -87,6 +88,11 @@ class LidarCollector:
         if found.cuts:
             self.damage = (f"the path by {self._name} is in pieces: {_unmatched(found)}",)
         told = f"{self._mounted(mount)}; {_in_words(found, sigma_xy, sigma_yaw)}"
+        if self._matcher.backwards:
+            told += (
+                "; its beams are deskewed from the last to the first, for so the walls are sharper "
+                "while it turns: its driver states them the other way round"
+            )
         x, y, yaw = (np.ascontiguousarray(each) for each in poses.T)
         # Not local_map: in a room the map walks by less than a match errs (docs/scans.md), and a
         # wander that is fitted takes what a lidar mounted askew does for its own.
