@@ -246,3 +246,17 @@ def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
     assert "By /scan nothing can be judged" in " ".join(printed.split())
     assert main(shlex.split(printed.splitlines()[-1].strip())[1:]) == 0
     assert "It can show the base" in " ".join(capsys.readouterr().out.split())
+
+
+def test_a_cloud_of_points_is_told_with_what_makes_a_reference_of_it(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ros, kind = Messages(), "sensor_msgs/msg/PointCloud2"
+    none = np.zeros(0, dtype=np.uint8)
+    cloud = (kind, ros.make(kind, ros.header(1), 1, 0, [], False, 16, 0, none, True))
+    wheels = [("/joint_states", n, ros.joints(n, JOINTS, [0.1 * n] * 2)) for n in (1, 2, 3)]
+    bag = ros.write(tmp_path / "cloud", [*wheels, ("/velodyne_points", 4, cloud)])
+    assert main(["info", str(bag)]) == 0
+    told = " ".join(capsys.readouterr().out.split())
+    assert "No reference as it is: /velodyne_points, clouds of points" in told
+    assert "pointcloud_to_laserscan makes them of it" in told

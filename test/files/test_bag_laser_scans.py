@@ -139,12 +139,33 @@ def test_a_lidar_that_is_tilted_is_refused(tmp_path: Path, ros: Any, robot: Any)
         read_run(bag, robot())
 
 
-def test_where_nothing_is_seen_it_says_so(tmp_path: Path, ros: Any, robot: Any) -> None:
-    nothing = replace(sweeps(), ranges=np.full_like(sweeps().ranges, np.inf))
+@pytest.mark.parametrize("ranges", [np.inf, np.nan, 0.0, 0.1])
+def test_without_an_echo_it_says_so(ranges: float, tmp_path: Path, ros: Any, robot: Any) -> None:
+    """All infinite, or all nearer than the lidar measures: a wall at 10 cm, a box over it."""
+    nothing = replace(sweeps(), ranges=np.full_like(sweeps().ranges, ranges))
     bag = ros.write(tmp_path / "run", entries(ros, nothing))
+    with pytest.raises(InputError, match=r"none of 89 scans holds an echo between 0\.12 and 8 m"):
+        read_run(bag, robot())
+
+
+def test_in_an_empty_hall_it_says_so(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """A few chairs are within its reach."""
+    hall = Room(np.concatenate([rooms.box(x, 4.0, x + 0.1, 4.1) for x in (-1.0, 0.0, 1.0)]))
+    bag = ros.write(tmp_path / "run", entries(ros, scanned(path(), hall, LIDAR, 1)))
     with pytest.raises(
         InputError, match=r"do not hold where the robot was.*within the lidar's reach"
     ):
+        read_run(bag, robot())
+
+
+def test_before_a_wall_at_10_cm_it_says_so(tmp_path: Path, ros: Any, robot: Any) -> None:
+    """One that the lidar still measures."""
+    near = replace(LIDAR, nearest=0.05)
+    off = np.angle(np.exp(1j * near.increment * np.arange(near.beams)))
+    wall = np.where(np.abs(off) < 1.2, 0.1 / np.cos(np.clip(off, -1.2, 1.2)), np.inf)
+    noise = np.random.default_rng(0).normal(0.0, 2e-3, sweeps().ranges.shape)
+    bag = ros.write(tmp_path / "run", entries(ros, replace(sweeps(), ranges=wall + noise), near))
+    with pytest.raises(InputError, match="leaves a direction free, as a bare corridor does"):
         read_run(bag, robot())
 
 

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -47,6 +48,23 @@ def test_a_gyros_headings_are_laid_upon_a_localisers() -> None:
         assert "steady drift of" in told
         assert "+34" in told or "-34" in told, "0.01 rad/s are 34 degrees a minute"
         assert with_one_scale([found], [found]) == [found], "its scale is right"
+
+
+@pytest.mark.parametrize("late", [0.1, -0.04])
+def test_a_gyro_is_put_on_the_clock_of_scans(late: float) -> None:
+    """Their headings are of the instant of their places; a localiser's may be of another one."""
+    rng = np.random.default_rng(5)
+    turned = 4.0 * np.sin(0.3 * (TIME - late)) + 0.2 * (TIME - late)
+    seen = turned + rng.normal(0.0, 2e-3, TIME.size)
+    scans = replace(localiser(), yaw=np.angle(np.exp(1j * seen)), own_axes=True)
+    found, told = merged("bag", scans, gyro())
+    off = found.yaw - turned
+    assert np.abs(off - off.mean())[1:-1].max() < 2e-3
+    assert f"{1e3 * abs(late):.0f} ms {'before' if late > 0.0 else 'after'} it does" in told
+    found, told = merged("bag", replace(scans, own_axes=False), gyro())
+    off = found.yaw - turned
+    assert np.abs(off - off.mean()).max() > 0.5 * abs(late)
+    assert "ms" not in told
 
 
 def test_a_gyro_that_shows_too_little_of_a_turn_is_mended_by_the_localiser() -> None:

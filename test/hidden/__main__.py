@@ -4,7 +4,8 @@
 
     python -m test.hidden [PART...] [--all] [--only WORD] [--workers N] [--start SEED]
 
-Parts: make, judge, field, survive, coverage, smallest, gaps, margins, table; all if none is given.
+Parts: make, judge, field, scans, survive, coverage, smallest, gaps, margins, table; all if none is
+given.
 It can be stopped at any time: what was made and judged stays, and the next call goes on from there.
 Other code begins anew, on sets that nobody has seen: seeds are drawn from the code's digest.
 """
@@ -37,7 +38,18 @@ from test.hidden.sets import ROOT, HiddenSet, make_all
 from test.hidden.tables import Table, show
 from test.hidden.work import Line, done, kept, mark, results_of
 
-PARTS = ("make", "judge", "field", "survive", "coverage", "smallest", "gaps", "margins", "table")
+PARTS = (
+    "make",
+    "judge",
+    "field",
+    "scans",
+    "survive",
+    "coverage",
+    "smallest",
+    "gaps",
+    "margins",
+    "table",
+)
 
 
 @dataclass(frozen=True)
@@ -55,17 +67,31 @@ class Extent:
     """Sets for each number."""
     field: tuple[int, int, int]
     """Sets of an effect, with nothing hidden, and effects, as people record them."""
+    scans: tuple[int, int, int]
+    """The same, judged by their scans alone."""
 
 
 EVERYTHING = Extent(
-    ALL, survive=100, smallest=8, gaps=200, margins=24, field=(4, 12, len(plan.EFFECTS))
+    ALL,
+    survive=100,
+    smallest=8,
+    gaps=200,
+    margins=24,
+    field=(4, 12, len(plan.EFFECTS)),
+    scans=(2, 12, len(plan.EFFECTS)),
 )
-PART_OF_IT = Extent(SAMPLE, survive=12, smallest=1, gaps=40, margins=3, field=(1, 2, 8))
+PART_OF_IT = Extent(
+    SAMPLE, survive=12, smallest=1, gaps=40, margins=3, field=(1, 2, 8), scans=(1, 2, 8)
+)
+
+SCANS = 1000
+"""Their seeds go on from there: other sets than those of "field"."""
 
 SECONDS = {
     "make": 6.5,
     "judge": 17.0,
     "field": 100.0,
+    "scans": 60.0,
     "survive": 4.5,
     "coverage": 3.0,
     "smallest": 42.0,
@@ -90,6 +116,9 @@ def works(
     all_of_it = {
         "judge": Work({each.name: each for each in wanted}, judge.work),
         "field": Work({each.name: each for each in field.sets(start, *extent.field)}, field.work),
+        "scans": Work(
+            {each.name: each for each in field.sets(start + SCANS, *extent.scans)}, field.by_scans
+        ),
         "survive": Work(survive.tasks(wanted, extent.survive, start), survive.work),
         "coverage": Work(coverage.tasks(wanted), coverage.work),
         "smallest": Work(smallest.tasks(start, extent.smallest), smallest.work),
@@ -143,6 +172,7 @@ def all_tables(wanted: Sequence[HiddenSet], there: Mapping[str, Work]) -> list[T
     made = [
         *table.tables(lines),
         *field_table.tables(own["field"]),
+        *field_table.tables_by_scans(own["scans"]),
         *survive.tables(lines, own["survive"]),
         coverage.table(scores),
         coverage.rank_table(scores),

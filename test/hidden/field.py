@@ -12,7 +12,7 @@ import json
 import math
 import shutil
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -42,8 +42,8 @@ TURNED = 0.5
 OWN_SCALE = frozenset({"reference_scale", "track_width", "wheel_radius_scale"})
 """A gyro has a scale of its own, and headings alone cannot tell it from the base."""
 
-ON_THE_FLOOR = frozenset({"floor_slope"})
-"""By scans nobody is asked for it, and an unknown says so: their axes begin anew in each drive."""
+ON_THE_FLOOR = frozenset({"floor_slope", "anisotropic_floor"})
+"""By scans nobody is asked for these, and an unknown says so: axes begin anew in each drive."""
 
 DELAYS = frozenset({"reference_delay", "reference_heading_delay"})
 """Of headings alone they are one."""
@@ -85,17 +85,17 @@ SEEN = {
 
 
 def sets(start: int, each: int, clean: int, effects: int) -> list[HiddenSet]:
-    """So many sets of each of some effects, and with nothing hidden."""
+    """So many sets of each of some effects, which take turns, and with nothing hidden."""
     found = [
         HiddenSet("field", (name,), start + 8000 + 20 * EFFECTS.index(name) + seed, "field")
-        for name in evenly(EFFECTS, effects, start)
         for seed in range(each)
+        for name in evenly(EFFECTS, effects, start)
     ]
     return found + [HiddenSet("field", (), start + 8500 + n, "field") for n in range(clean)]
 
 
-def make(what: HiddenSet) -> Path:
-    """The folder of a set, made if it is not there yet."""
+def make(what: HiddenSet, *, beside: bool = True) -> Path:
+    """The folder of a set, made if it is not there yet, with what is no topic or without."""
     if what.path.exists():
         return what.path
     what.path.parent.mkdir(parents=True, exist_ok=True)
@@ -106,7 +106,7 @@ def make(what: HiddenSet) -> Path:
         done = run([*words, *(word for name in what.effects for word in ("--hide", name))])
         assert done.code == 0, done.complained
         file = read_robot_file(folder / "robot.yaml")
-        for part in ("train", "holdout"):
+        for part in ("train", "holdout") if beside else ():
             for bag in runs_of(folder, part):
                 _beside(bag, file, folder / BESIDE, part)
         folder.rename(what.path)
@@ -137,20 +137,32 @@ def _write(reference: Reference, folder: Path, *, headings: bool) -> None:
 def work(what: HiddenSet) -> Line:
     """All references of a set, and what is made from the wheels, as a line of results."""
     folder = make(what)
+    return _judged(what, folder, SEEN) | {"circles": circles(folder)}
+
+
+def by_scans(what: HiddenSet) -> Line:
+    """A set judged by its lidar, and by nothing else.
+
+    One drive is held out: they report, and have no part in a verdict; matching takes its time.
+    """
+    return _judged(what, make(what, beside=False), ["scans"], apart=1)
+
+
+def _judged(what: HiddenSet, folder: Path, names: Iterable[str], apart: int | None = None) -> Line:
     truth = what.truth
     (strength,) = (each["strength"] for each in truth["hidden"]) if what.effects else (None,)  # type: ignore[attr-defined]
     return {
         "hidden": what.names,
         "strength": strength,
         "commit": commit_now(),
-        "said": {name: _said(folder, truth["field"], name) for name in SEEN},  # type: ignore[arg-type]
-        "circles": circles(folder),
+        "said": {name: _said(folder, truth["field"], name, apart) for name in names},  # type: ignore[arg-type]
     }
 
 
-def _said(folder: Path, field: Mapping[str, Any], name: str) -> Line:
-    """The diagnosis by one reference."""
+def _said(folder: Path, field: Mapping[str, Any], name: str, apart: int | None = None) -> Line:
+    """The diagnosis by one reference, some drives held out (None: all that there are)."""
     train, holdout = (list(map(str, runs_of(folder, part))) for part in ("train", "holdout"))
+    holdout = holdout[:apart]
     with tempfile.TemporaryDirectory() as place:
         file = Path(place) / "diagnosis.json"
         words = ["diagnose", "--robot", str(folder / "robot.yaml"), *train, "--holdout", *holdout]
@@ -158,6 +170,7 @@ def _said(folder: Path, field: Mapping[str, Any], name: str) -> Line:
         if done.code != 0:
             return {"verdict": "refused", "error": done.complained, "seconds": done.seconds}
         said = json.loads(file.read_text(encoding="utf-8"))
+    judged = {name: true for name, true in field.items() if str(folder / name) in train + holdout}
     return {
         "verdict": said["verdict"],
         "found": [each["effect"] for each in said["found"]],
@@ -168,7 +181,7 @@ def _said(folder: Path, field: Mapping[str, Any], name: str) -> Line:
             for each in reversed(said["could_have_been_seen"])
             if math.isfinite(each["seen_from"] or math.inf)
         },
-        "stretches": stretches(folder, field, said["left_out"], SEEN[name]),
+        "stretches": stretches(folder, judged, said["left_out"], SEEN[name]),
         "seconds": round(done.seconds, 1),
     }
 

@@ -16,14 +16,29 @@ from test.hidden.work import Line
 WORDS = (
     "Sets made by `werrimbi simulate --like field`: wheels at 20 Hz with stamps that jitter, a "
     "gyro with a scale of its own, a localiser that wanders and jumps, the robot held and carried "
-    "in each drive. The same bags are judged by five references. *Small*: not told, and the "
-    "diagnosis itself says that one of this size would not have been seen."
+    "in each drive. {by} *Small*: not told, and the diagnosis itself says that one of this size "
+    "would not have been seen."
 )
+BY_EACH = "The same bags are judged by five references."
+BY_SCANS = "Other such sets, judged by their scans, and by nothing else."
 
 
 def tables(results: Mapping[str, Line]) -> list[Table]:
     """The rules, each effect by each reference, and all wrong verdicts."""
-    return [_rules(results), _effects(results), _wrong(results)]
+    return _tables(results, "As people record", BY_EACH)
+
+
+def tables_by_scans(results: Mapping[str, Line]) -> list[Table]:
+    """The same where a lidar is all that there is."""
+    return _tables(results, "As people record, by a lidar alone", BY_SCANS)
+
+
+def _tables(results: Mapping[str, Line], title: str, by: str) -> list[Table]:
+    return [
+        _rules(results, f"{title}: rules", WORDS.format(by=by)),
+        _effects(results, f"{title}: each effect"),
+        _wrong(results, f"{title}: all wrong verdicts"),
+    ]
 
 
 def _judged(results: Mapping[str, Line]) -> Iterator[tuple[str, Line, str, Line, str]]:
@@ -42,7 +57,7 @@ def rules(results: Mapping[str, Line]) -> dict[str, tuple[int, int, float]]:
     for _, _, _, said, _ in _judged(results):
         for why, there in said.get("stretches", {}).items():
             found[why] += [hit for _, _, hit in there]
-    circles = [refused for line in results.values() for refused in line["circles"].values()]
+    circles = [refused for line in results.values() for refused in line.get("circles", {}).values()]
     counted = {
         "no wrong name": (told, 0.98),
         "nothing hidden: none (by a gyro: nothing but its own scale)": (clean, 0.98),
@@ -53,7 +68,7 @@ def rules(results: Mapping[str, Line]) -> dict[str, tuple[int, int, float]]:
     return {says: (sum(kept), len(kept), least) for says, (kept, least) in counted.items() if kept}
 
 
-def _rules(results: Mapping[str, Line]) -> Table:
+def _rules(results: Mapping[str, Line], title: str, words: str) -> Table:
     rows = [
         (
             says,
@@ -66,20 +81,21 @@ def _rules(results: Mapping[str, Line]) -> Table:
         for says, (kept, count, needed) in rules(results).items()
     ]
     columns = ("rule", "judged", "share", "95 % interval", "needed", "")
-    return Table("As people record: rules", columns, tuple(rows), WORDS)
+    return Table(title, columns, tuple(rows), words)
 
 
-def _effects(results: Mapping[str, Line]) -> Table:
+def _effects(results: Mapping[str, Line], title: str) -> Table:
+    judged = {name for line in results.values() for name in line["said"]}
+    by = [name for name in SEEN if name in judged]
     rows = []
     for effect in ("", *EFFECTS):
         own = [
             each for each in _judged(results) if each[1]["hidden"] == ([effect] if effect else [])
         ]
-        cells = [", ".join(_counted(own, effect, name)) for name in SEEN]
+        cells = [", ".join(_counted(own, effect, name)) for name in by]
         if any(cells):
             rows.append((effect or "nothing", *cells))
-    columns = ("hidden", *(seen.says for seen in SEEN.values()))
-    return Table("As people record: each effect by each reference", columns, tuple(rows))
+    return Table(title, ("hidden", *(SEEN[name].says for name in by)), tuple(rows))
 
 
 def _counted(own: list[tuple[str, Line, str, Line, str]], effect: str, name: str) -> list[str]:
@@ -97,7 +113,7 @@ def _counted(own: list[tuple[str, Line, str, Line, str]], effect: str, name: str
     return [f"{counts[each]} {each}" for each in sorted(counts, key=order)]
 
 
-def _wrong(results: Mapping[str, Line]) -> Table:
+def _wrong(results: Mapping[str, Line], title: str) -> Table:
     rows = [
         (
             f"`{key}`",
@@ -110,4 +126,4 @@ def _wrong(results: Mapping[str, Line]) -> Table:
         if worth == "wrong"
     ]
     columns = ("set", "by", "verdict", "found", "rivals")
-    return Table("As people record: all wrong verdicts", columns, tuple(rows))
+    return Table(title, columns, tuple(rows))

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 import pytest
 
-from test.hidden import field, field_table, plan
+from test.hidden import field_table, plan
 from test.hidden.__main__ import extent_wanted, judged_lines, works
 from test.hidden.judged import Judged
 from test.hidden.rules import RULES, Rule
@@ -44,14 +44,14 @@ def test_rule(lines: Sequence[Judged], rule: Rule) -> None:
     assert rule.share(lines) >= rule.needed, f"of {len(there)} sets otherwise:\n{broken}"
 
 
-def test_rules_of_ordinary_recordings() -> None:
-    """Bags by a gyro, a localiser, both, and positions alone."""
-    start = plan.start_of(mark())
-    sets = {each.name: each for each in field.sets(start, *extent_wanted(False).field)}
-    for _ in done(results_of("field"), sets, field.work, os.cpu_count() or 1):
+@pytest.mark.parametrize("part", ["field", "scans"])
+def test_rules_of_ordinary_recordings(part: str) -> None:
+    """Bags by a gyro, a localiser, both, positions alone and scans; others by scans alone."""
+    work = works([], plan.start_of(mark()), extent_wanted(False))[part]
+    for _ in done(results_of(part), work.tasks, work.by, os.cpu_count() or 1):
         pass
-    there = {key: line for key, line in kept(results_of("field")).items() if key in sets}
-    assert len(there) == len(sets)
+    there = {key: line for key, line in kept(results_of(part)).items() if key in work.tasks}
+    assert len(there) == len(work.tasks)
     counted = field_table.rules(there)
     broken = {says: found for says, found in counted.items() if found[0] < found[2] * found[1]}
     assert not broken

@@ -27,6 +27,7 @@ from test.hidden import (
     survive,
     work,
 )
+from test.hidden.__main__ import SCANS
 from test.hidden.follow import commands, follow, typed
 from test.hidden.intervals import clopper_pearson
 from test.hidden.judged import Judged
@@ -336,17 +337,32 @@ def test_of_ordinary_recordings_each_rule_counts_what_it_speaks_of() -> None:
     assert [(kept, of) for kept, of, _ in counted.values()] == [(3, 4), (1, 1), (0, 1), (2, 2)]
     rules, effects, wrongs = field_table.tables(lines)
     assert [row[-1] for row in rules.rows] == ["BROKEN", "kept", "BROKEN", "kept"]
-    assert effects.rows == (("castor_kick", "1 small, 1 missed", "1 named, 1 WRONG", "", "", ""),)
+    assert effects.rows == (("castor_kick", "1 small, 1 missed", "1 named, 1 WRONG"),)
     assert [row[0] for row in wrongs.rows] == ["`b`"]
+
+
+def test_where_a_lidar_is_all_that_there_is_the_table_has_its_column_alone() -> None:
+    """What nobody can be asked for by scans is missed and no wrong name, if it is unknown."""
+    lines = {
+        name: {"hidden": [name], "strength": 0.01, "said": {"scans": given | {"seen_from": {}}}}
+        for name, given in (("floor_slope", said("unknown")), ("track_width", said("unknown")))
+    }
+    rules, effects, wrongs = field_table.tables_by_scans(lines)
+    assert effects.columns == ("hidden", "a lidar's scans")
+    assert effects.rows == (("track_width", "1 WRONG"), ("floor_slope", "1 small"))
+    assert [(row[0], row[1]) for row in rules.rows] == [("no wrong name", "1 of 2")]
+    assert [row[0] for row in wrongs.rows] == ["`track_width`"]
 
 
 def test_field_sets_have_seeds_of_their_own() -> None:
     start = plan.start_of("abcdef012345")
     own = field.sets(start, 4, 12, len(plan.EFFECTS))
     assert len({each.name for each in own}) == len(own) == 4 * len(plan.EFFECTS) + 12
+    scans = field.sets(start + SCANS, 4, 12, len(plan.EFFECTS))
+    assert not {each.seed for each in own} & {each.seed for each in scans}
     others = {each.seed for each in plan.plan(start, plan.ALL)}
-    assert not others & {each.seed for each in own}
-    assert all(start <= each.seed < start + plan.APART for each in own)
+    assert not others & {each.seed for each in own + scans}
+    assert all(start <= each.seed < start + plan.APART for each in own + scans)
 
 
 # ------------------------------------------------------------------ margins

@@ -22,7 +22,9 @@ from test.hidden.sets import ROOT, cache, code_mark
 Task = TypeVar("Task")
 Line = dict[str, Any]
 
-CODE = tuple(f"werrimbi_odom/{name}" for name in ("model", "effects", "files", "inference"))
+CODE = tuple(
+    f"werrimbi_odom/{name}" for name in ("model", "effects", "scans", "files", "inference")
+)
 """What a verdict depends on; when it changes, everything is judged anew, on other sets."""
 
 

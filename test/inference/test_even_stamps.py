@@ -4,11 +4,15 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
-from werrimbi_odom.files.run import Reference
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.legs.counters import counters_of
 from werrimbi_odom.inference.legs.even_stamps import evened, evened_scans
+from werrimbi_odom.model.robot import Robot
 
 PERIOD = 0.2
 
@@ -121,3 +125,19 @@ def test_scans_that_are_stamped_truly_stay() -> None:
     seen = np.sort(PERIOD * np.arange(300) + random.uniform(0.0, 0.1, 300))
     reference = by_scans(seen, seen)
     assert evened_scans(reference) is reference
+
+
+@pytest.mark.parametrize("matched", [True, False])
+def test_by_scans_wheels_are_put_right_where_their_stamps_scatter_by_less(matched: bool) -> None:
+    """By 4 ms of 50: to a lidar, whose clock is its own, a slip; a gyro may share it."""
+    random = np.random.default_rng(5)
+    read = 0.05 * np.arange(800)
+    stamps = np.sort(read + random.normal(0.0, 4e-3, read.size))
+    seen = 0.1 * np.arange(400)
+    ticks = Ticks(stamps, *driven(read))
+    run = Run("run", Path("run"), ticks, by_scans(seen, seen, matched=matched))
+    found = counters_of(run, Robot(0.3, 0.05, 0.05, 1000.0, 1000.0), None).time
+    if matched:
+        assert scatter(found - read) < 0.3 * scatter(stamps - read)
+    else:
+        np.testing.assert_array_equal(found, stamps)

@@ -15,7 +15,8 @@ from werrimbi_odom.files.frames import Chain
 from werrimbi_odom.files.mounting import Mount, MountingCollector
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.scans.path import ScanMatcher, ScanPath
+from werrimbi_odom.scans.beam_order import EitherOrder
+from werrimbi_odom.scans.path import ScanPath
 from werrimbi_odom.scans.scan_odometry import Flag
 from werrimbi_odom.scans.sweep import sweep_of
 
@@ -42,7 +43,8 @@ class LidarCollector:
         self._frame = source.child
         self._mounting = MountingCollector(mounting) if mounting else None
         self._base = mounting.parent if mounting else ""
-        self._matcher = ScanMatcher()
+        self._matcher = EitherOrder()
+        self._echoes, self._reach = 0, (0.0, np.inf)
         self.topics = (source.name, *(self._mounting.topics if self._mounting else ()))
         self.taken_out: tuple[tuple[float, float], ...] = ()
         """Between two pieces of the path, from and to [s]; known when the reference is."""
@@ -64,7 +66,9 @@ class LidarCollector:
         limits = float(scan.range_min), float(scan.range_max)
         if not limits[0] < limits[1]:
             limits = 0.0, np.inf
-        self._matcher.take(sweep_of(stamp_of(message), ranges, angles, interval, *limits))
+        sweep = sweep_of(stamp_of(message), ranges, angles, interval, *limits)
+        self._echoes, self._reach = self._echoes + len(sweep.points), limits
+        self._matcher.take(sweep)
 
     def reference(self) -> tuple[Reference, str]:
         """The reference, and in words what it is.
@@ -76,13 +80,19 @@ class LidarCollector:
         """
         found = self._matcher.path()
         if found.time.size == 0:
-            raise InputError(f"{self._place}: {_lost(found)}")
+            words = _lost(found) if self._echoes else _blind(found, self._reach)
+            raise InputError(f"{self._place}: {words}")
         mount = self._mounting.mount(self._place) if self._mounting else Mount(0.0, 0.0, 0.0, False)
         poses, sigma_xy, sigma_yaw = _of_base(found, mount)
         self.taken_out = tuple(found.cuts)
         if found.cuts:
             self.damage = (f"the path by {self._name} is in pieces: {_unmatched(found)}",)
         told = f"{self._mounted(mount)}; {_in_words(found, sigma_xy, sigma_yaw)}"
+        if self._matcher.backwards:
+            told += (
+                "; its beams are deskewed from the last to the first, for so the walls are sharper "
+                "while it turns: its driver states them the other way round"
+            )
         x, y, yaw = (np.ascontiguousarray(each) for each in poses.T)
         # Not local_map: in a room the map walks by less than a match errs (docs/scans.md), and a
         # wander that is fitted takes what a lidar mounted askew does for its own.
@@ -153,6 +163,15 @@ def _because(found: ScanPath) -> str:
         return ""
     flag = max(found.flags, key=lambda each: found.flags[each])
     return f", mostly for {WHY[flag]}" if flag == "few" else f", mostly because {WHY[flag]}"
+
+
+def _blind(found: ScanPath, reach: tuple[float, float]) -> str:
+    return (
+        f"the scans do not hold where the robot was: none of {found.scans} scans holds an echo "
+        f"between {reach[0]:g} and {reach[1]:g} m, its range_min and range_max. A lidar that is "
+        "covered, or that looks at something nearer, sees so; or it does not measure, or its "
+        "limits are wrong. Mend that, or choose another reference"
+    )
 
 
 def _lost(found: ScanPath) -> str:

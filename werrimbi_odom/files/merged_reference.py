@@ -6,7 +6,8 @@ A gyro tells turning far better than a localiser does, and drifts; a localiser t
 is and roughly how it faces, and does not drift. So the gyro's heading is laid upon the localiser's
 (an angle and a steady drift, fitted to all of the drive) and stands in its place; its scale is told
 by all drives together. Positions and headings keep a noise and a delay of their own; the wheels
-take no part in this.
+take no part in this. A scan's heading is of the instant of its place, so the gyro is put on the
+clock of scans: else places that are late by their own would be a lever arm to steady driving.
 """
 
 from __future__ import annotations
@@ -28,6 +29,9 @@ LASTING = 10.0
 _MEDIAN_TO_SIGMA = 1.4826  # of a normal scatter
 SCALE_TOLD, SCALE_MOST = 4.0, 0.1
 """Standard deviations beyond which a gyro's scale is told, and the most that a gyro's is off."""
+LATE_MOST = 0.5
+"""By how much a gyro and a lidar of one robot may be apart [s]: more is no driver's delay."""
+_ROUNDS = 6
 
 
 def merged(
@@ -77,11 +81,12 @@ def merged(
             f"{place}: they were not recorded at the same time: {_span(poses.time)} and "
             f"{_span(headings.time)}"
         )
-    at = np.interp(poses.time, time, yaw)
     since = poses.time - poses.time[both][0]
     piece = np.searchsorted([end for _, end in cuts], poses.time, side="right")
     pieces = (piece[:, None] == np.arange(len(cuts) + 1)).astype(np.float64)
     columns = np.column_stack([pieces, since])
+    late = _later(poses, (time, yaw), pieces, columns, both) if poses.own_axes else 0.0
+    at = np.interp(poses.time - late, time, yaw)
     apart = poses.yaw - at
     told = _laid(pieces[both], columns[both], apart[both])
     drift = told[-1]
@@ -92,6 +97,12 @@ def merged(
         f"headings are those of the one without positions, turned onto the other's{each} and freed "
         f"of a steady drift of {degrees:+.2g}° a minute"
     )
+    if late:
+        when = "before" if late > 0.0 else "after"
+        words += (
+            f"; by them the robot turns {1e3 * abs(late):.0f} ms {when} it does by the other, on "
+            "whose clock they are put"
+        )
     gyro = _gyro_turn(pieces[both], columns, at, apart, both)
     return replace(poses, yaw=laid, sigma_yaw=None, gyro=gyro), words
 
@@ -123,6 +134,33 @@ def with_one_scale(references: Sequence[Reference], of: Sequence[Reference]) -> 
         else replace(each, yaw=each.yaw + (scale - 1.0) * each.gyro.turned)
         for each in references
     ]
+
+
+def _later(
+    poses: Reference,
+    gyro: tuple[Floats, Floats],
+    pieces: Floats,
+    columns: Floats,
+    both: NDArray[np.bool_],
+) -> float:
+    """By how much the headings of poses are later than a gyro's [s]; 0 where it is not told.
+
+    By Gauss and Newton: one that is late by d shows d times the turn rate less.
+    """
+    late, pieces, time = 0.0, pieces[both], poses.time[both]
+    step = float(np.median(np.diff(time)))
+    for _ in range(_ROUNDS):
+        ahead, at, back = (np.interp(time - late + side, *gyro) for side in (step, 0.0, -step))
+        rate = (ahead - back) / (2.0 * step)
+        free = np.column_stack([columns[both], rate])
+        told = _laid(pieces, free, poses.yaw[both] - at)
+        late -= float(told[-1])
+        if not abs(late) < LATE_MOST:
+            return 0.0
+    left = np.unwrap(poses.yaw[both] - at) - free @ told
+    noise = _MEDIAN_TO_SIGMA * float(np.median(np.abs(left - np.median(left))))
+    std = max(noise, 1e-6) * float(np.sqrt(np.linalg.pinv(free.T @ free)[-1, -1]))
+    return late if abs(late) > SCALE_TOLD * std > 0.0 else 0.0
 
 
 def _gyro_turn(

@@ -81,6 +81,13 @@ def listed(found: Sequence[Measured]) -> str:
     return ", ".join(f"{each.name} ({each.kind})" for each in found) or "none"
 
 
+def other_scans(held: Contents) -> list[tuple[str, str]]:
+    """Topics of lidars whose messages are not matched, each with what it holds, in words."""
+    return [
+        (each.name, _OTHER_SCANS[each.kind]) for each in held.topics if each.kind in _OTHER_SCANS
+    ]
+
+
 def _not_independent(found: Sequence[Measured]) -> str:
     names = ", ".join(each.name for each in found if not each.independent)
     return f"; made from the wheels, and so no reference: {names}" if names else ""
@@ -95,9 +102,9 @@ def _wished(held: Contents, there: Sequence[Measured], wish: str, force: bool) -
     for each in there:
         if each.name == name and len(frames) <= 1:
             return Chosen(each, frames[0] if frames else "")
-    kind = next((each.kind for each in held.topics if each.name == name), "")
-    if kind in _OTHER_SCANS:
-        raise InputError(f"{held.path}: {name} holds {_OTHER_SCANS[kind]}")
+    for other, what in other_scans(held):
+        if other == name:
+            raise InputError(f"{held.path}: {name} holds {what}")
     candidates = [each for each in there if each.independent]
     raise InputError(
         f"{held.path}: there is no reference in {name}; candidates are: "

@@ -11,6 +11,7 @@ from dataclasses import asdict
 from typing import Any
 
 from werrimbi_odom.files.bag_contents import SCAN, Measured
+from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.spans import Driven
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of
@@ -101,6 +102,9 @@ def _references(held: Held) -> Iterator[str]:
                 )
         else:
             yield f"No reference: {each.name}, {each.why}."
+    yield from (
+        f"No reference as it is: {name}, {what}." for name, what in other_scans(held.contents)
+    )
     if held.reference is None:
         yield "Nothing in the bag measures the robot but its own wheels."
 

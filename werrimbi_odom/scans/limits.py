@@ -48,3 +48,15 @@ rooms; with a real LD08, whose turns begin anywhere, 5 to 15."""
 CALM = 0.25
 """Share of a drive in which speeds change least, where that scatter is looked for: of short hops
 with hard starts and stops half is neither."""
+
+ORDER_TURNING = 0.1
+"""Rate of turning [rad/s] from which on a scan tells in which order its beams were seen: a wall 2 m
+away is bent by 2 cm in a tenth of a second, and by 4 cm if it is deskewed the wrong way."""
+
+ORDER_FEWEST, ORDER_SURE = 30, 5.0
+"""Such scans that are asked, at the least, and by how many standard deviations more often than not
+their echoes must lie nearer to the walls one way. Scans in a row see the same walls: if four of
+them told alike, five deviations would be two and a half."""
+
+ORDER_MOST = 400
+"""Scans after which, if they have not told, the order of the messages is believed."""

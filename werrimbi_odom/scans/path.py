@@ -19,7 +19,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.scans.limits import CALM, COMMON, FEWEST_POSES, LONGEST_HOLE, LOST_AFTER
+from werrimbi_odom.scans.limits import (
+    CALM,
+    COMMON,
+    FEWEST_POSES,
+    LONGEST_HOLE,
+    LOST_AFTER,
+    ORDER_MOST,
+    ORDER_TURNING,
+)
 from werrimbi_odom.scans.matching import MAD
 from werrimbi_odom.scans.scan_odometry import Flag, Tracker, motion_between, moved
 from werrimbi_odom.scans.sweep import Course, Sweep, deskewed, own_course
@@ -80,6 +88,9 @@ class ScanMatcher:
         self._failed_again, self._piece, self._scans = 0, 0, 0
         self._flags: dict[Flag, int] = {}
         self._found = array("d")  # of each pose: time, pose, covariance, piece
+        self.scatter: dict[float, float] = {}
+        """By the time of the first scans in which the lidar turned: how far their echoes lie from
+        the walls [m]."""
 
     def take(self, sweep: Sweep) -> None:
         """Take a scan; one that is not later than the last is left out."""
@@ -157,7 +168,8 @@ class ScanMatcher:
     def _again(self) -> None:
         """The second pass over the next scan."""
         seen = self._seen[self._done]
-        points = deskewed(seen.sweep, _course(self._seen, self._done))
+        course = _course(self._seen, self._done)
+        points = deskewed(seen.sweep, course)
         motion, duration = np.zeros(3), USUAL
         if self._done:
             last = self._seen[self._done - 1]
@@ -173,6 +185,8 @@ class ScanMatcher:
                 self._renew()
             return
         self._failed_again = 0
+        if abs(course.linear[2]) > ORDER_TURNING and len(self.scatter) < ORDER_MOST:
+            self.scatter[seen.sweep.time] = self._second.scatter
         self._found.append(seen.sweep.time)
         self._found.extend(self._second.pose)
         self._found.extend(self._second.covariance.ravel())

@@ -36,6 +36,8 @@ class Tracker:
         self._map = LocalMap()
         self.covariance = FLOOR**2 * np.eye(3)
         """Of the last pose on the map, world axes, shape (3, 3)."""
+        self.scatter = 0.0
+        """Of the echoes of the last scan about the map's lines [m]."""
 
     def take(self, points: Floats, spacing: Floats, motion: Floats, duration: float) -> Flag:
         """Match deskewed echoes (k, 2); `motion` (3,) since the last pose is the guess.
@@ -51,6 +53,7 @@ class Tracker:
         flag = _flag(found, motion_between(self.pose, found.pose), duration)
         if not flag:
             self.pose, self.covariance = found.pose, found.covariance.copy()
+            self.scatter = found.noise
             least = np.maximum(np.diagonal(found.covariance), FLOOR**2)
             np.fill_diagonal(self.covariance, least)
             self._map.take(self.pose, points, spacing)

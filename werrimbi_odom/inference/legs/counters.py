@@ -14,6 +14,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.legs.even_stamps import evened
 from werrimbi_odom.inference.legs.leaps import Leap, bridged
+from werrimbi_odom.inference.rules import EVEN_LEAST, EVEN_LEAST_BY_SCANS
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
@@ -85,12 +86,15 @@ def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counter
     InputError
         When fewer than two rows can be used, or the clock was set back.
     """
-    return run.ticks.latest((robot, limits), lambda: _counted(run, robot, limits))
+    seen = run.reference
+    by_scans = seen is not None and seen.own_axes and seen.gyro is None
+    least = EVEN_LEAST_BY_SCANS if by_scans else EVEN_LEAST
+    return run.ticks.latest((robot, limits, least), lambda: _counted(run, robot, limits, least))
 
 
-def _counted(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counters:
+def _counted(run: Run, robot: Robot, limits: EncoderLimits | None, least: float) -> Counters:
     ticks = run.ticks
-    read = evened(ticks.time, ticks.left, ticks.right)
+    read = evened(ticks.time, ticks.left, ticks.right, least=least)
     steps = wheel_steps(robot, read, ticks.left, ticks.right, limits)
     if steps.first_row < 0 or steps.time.size == 0:
         raise InputError(f"{run.path}: fewer than two usable rows of ticks")

@@ -31,7 +31,11 @@ from werrimbi_odom.model.pose import Floats
 
 
 def evened(
-    time: Floats, left: Counts, right: Counts, lost: NDArray[np.intp] | None = None
+    time: Floats,
+    left: Counts,
+    right: Counts,
+    lost: NDArray[np.intp] | None = None,
+    least: float = EVEN_LEAST,
 ) -> Floats:
     """When the counters were read, if a timer read them; else the stamps as they are.
 
@@ -43,6 +47,8 @@ def evened(
         Cumulative counts.
     lost : ndarray, shape (n - 1,), optional
         How many messages are missing between two; none where not given.
+    least : float
+        Share of the time between two messages that stamps must be off to be put right.
 
     Returns
     -------
@@ -66,9 +72,9 @@ def evened(
     late = median_filter(stamps - even, EVEN_WINDOW, mode="reflect")  # a pause is a step of it
     off = np.clip(stamps - even - late, -period, period)
     late += uniform_filter1d(off, EVEN_WINDOW, mode="reflect")
-    least = 0.1 * even  # none is read before the one before it
-    read = (np.maximum.accumulate(even + late - least) + least)[row]
-    return np.asarray(read) if np.std(read - time) > EVEN_LEAST * period else time
+    tenth = 0.1 * even  # none is read before the one before it
+    read = (np.maximum.accumulate(even + late - tenth) + tenth)[row]
+    return np.asarray(read) if np.std(read - time) > least * period else time
 
 
 def evened_scans(reference: Reference) -> Reference:
