@@ -81,7 +81,7 @@ def legs_shown(model: Model, runs: Concatenated, looked_at: Robot | None = None)
     looked_at : Robot, optional
         Whose travel effects look at, where it is as good as the model's own and known already.
     """
-    view = _view(model, runs)
+    view = seen_by(model, runs)
     runs = runs.delayed(view.delay)
     robot = model.laid_out(runs.steps)
     path = _path(robot, runs, view, model.start_yaws, looked_at)
@@ -94,7 +94,7 @@ def predict_all(model: Model, runs: Concatenated) -> Prediction:
 
 
 def _predicted(model: Model, runs: Concatenated) -> Prediction:
-    view = _view(model, runs)
+    view = seen_by(model, runs)
     runs = runs.delayed(view.delay)
     path = _path_of(model, runs)
     return Prediction(
@@ -118,10 +118,10 @@ def path_of(model: Model, runs: Concatenated) -> DrivenPath:
 
 def _path_of(model: Model, runs: Concatenated) -> DrivenPath:
     robot = model.laid_out(runs.steps)
-    return _path(robot, runs, _view(model, runs), model.start_yaws)
+    return _path(robot, runs, seen_by(model, runs), model.start_yaws)
 
 
-def _view(model: Model, runs: Concatenated) -> View:
+def seen_by(model: Model, runs: Concatenated) -> View:
     """How the reference looks at the robot; what it has anew in each run as arrays over the legs.
 
     That can be the wandering of a heading alone: all else is one number.
