@@ -38,7 +38,13 @@ from werrimbi_odom.simulation.hidden.geometry import (
 from werrimbi_odom.simulation.hidden.mount import AskewAxle
 from werrimbi_odom.simulation.hidden.skid import LENGTH, SkidSteer
 from werrimbi_odom.simulation.hidden.tyres import LoadTransfer, TyreSquash
-from werrimbi_odom.simulation.hidden.wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift
+from werrimbi_odom.simulation.hidden.wheels import (
+    Backlash,
+    EccentricWheel,
+    OvalWheel,
+    RadiusDrift,
+    TreadBump,
+)
 
 PER_TURN = 2e5
 BRISK = free(25.0, seed=5, speed=0.7, yaw_rate=2.0, acceleration=1.2, backwards=0.4)
@@ -168,6 +174,23 @@ def test_an_oval_wheel_by_geometry(side: str) -> None:
     after = errors(recording, *round_one, law.using(amplitude=2e-3, phase=math.pi))
     assert after[1] < before[1] / 10
     assert after[0] < before[0] / 3
+
+
+@pytest.mark.parametrize("thickness", [2e-3, -1.5e-3])
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_bump_under_a_soft_tread(side: str, thickness: float) -> None:
+    """The engine's has edges as soft as the tread, and covers as much as the law's."""
+    odd = TreadBump(side, thickness, math.pi / 3, 0.9)  # type: ignore[arg-type]
+    robot = TrueRobot(
+        left_ticks_per_revolution=PER_TURN,
+        right_ticks_per_revolution=PER_TURN,
+        counters_keep_zero=True,
+    )
+    recording = record(robot, BRISK, seed=1, hidden=[odd])
+    law = find(f"{side}_tread_bump").using(height=thickness, place=-0.9)
+    before, after = errors(recording), errors(recording, law)
+    assert after[1] < before[1] / 50
+    assert after[0] < before[0] / 50
 
 
 @pytest.mark.parametrize("side", ["left", "right"])

@@ -28,6 +28,8 @@ VOCABULARY = {
     "eccentric_right_wheel": 0.0,
     "oval_left_wheel": 0.0,
     "oval_right_wheel": 0.0,
+    "left_tread_bump": 0.0,
+    "right_tread_bump": 0.0,
     "tyre_squash": 0.0,
     "load_transfer": 0.0,
     "longitudinal_slip": 0.0,
@@ -49,6 +51,7 @@ VOCABULARY = {
     "reference_delay": 0.0,
     "reference_heading_delay": 0.0,
     "reference_scale": 1.0,
+    "reference_gyro_drift": 0.0,
     "encoder_skew": 0.0,
 }
 MISTAKES = ["wheels_swapped", "left_wheel_reversed", "right_wheel_reversed", "reference_mirrored"]
@@ -95,7 +98,8 @@ def test_twins_are_mutual_and_say_what_tells_them_apart() -> None:
 
 
 @pytest.mark.parametrize(
-    "pair", ["eccentric_{}_wheel", "oval_{}_wheel", "{}_backlash", "{}_missed_ticks"]
+    "pair",
+    ["eccentric_{}_wheel", "oval_{}_wheel", "{}_tread_bump", "{}_backlash", "{}_missed_ticks"],
 )
 def test_mirror_pairs_say_the_same_of_both_sides(pair: str) -> None:
     left, right = find(pair.format("left")), find(pair.format("right"))

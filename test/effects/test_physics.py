@@ -13,7 +13,10 @@ from test.effects.tracks import RADIUS, REST, TRACK, Plan, line, plan, track, tu
 from werrimbi_odom.effects import find
 from werrimbi_odom.effects.contract.rehearsal import Rehearsal
 from werrimbi_odom.model.effect import view_of, wiring_of
+from werrimbi_odom.model.reference_measurement import shown
 from werrimbi_odom.model.reference_view import View
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.trajectory import Trajectory, trajectory
 from werrimbi_odom.model.wiring import Wiring
 
 TO_AND_FRO = plan(*line(1.0), *line(-1.0), *line(1.0), *line(-1.0))
@@ -177,6 +180,29 @@ def test_an_oval_wheel_swings_twice_a_turn_by_half_its_amplitude(side: str) -> N
     for angle, lead in ((math.pi / 4, 1e-3), (math.pi / 2, 0.0), (3 * math.pi / 4, -1e-3)):
         assert np.interp(angle, turned, gained) == pytest.approx(lead, abs=2e-5)
         assert np.interp(angle + 3 * math.pi, turned, gained) == pytest.approx(lead, abs=2e-5)
+
+
+@pytest.mark.parametrize("height", [2e-3, -2e-3])
+@pytest.mark.parametrize("side", ["left", "right"])
+def test_a_bump_is_gained_on_a_sixth_of_each_turn_and_nowhere_else(side: str, height: float) -> None:
+    """Stood on at a third of a turn: place says how far it has gone on since, at counter zero."""
+    law = find(f"{side}_tread_bump").using(height=height, place=-2 * math.pi / 3)
+    there, plain = track(plan(*line(5.0)), law, rate=500.0), track(plan(*line(5.0)), rate=500.0)
+    gained = getattr(there, side) - getattr(plain, side)
+    turned = getattr(plain, side) / RADIUS
+    sixth = math.pi / 3
+    for angle, share in ((0.0, 0.0), (1.5 * sixth, 0.0), (2 * sixth, 0.5), (2.5 * sixth, 1.0)):
+        assert np.interp(angle, turned, gained) == pytest.approx(share * height * sixth, abs=3e-5)
+        later = np.interp(angle + 6 * math.pi, turned, gained)
+        assert later == pytest.approx((3.0 + share) * height * sixth, abs=3e-5)
+    other = "right" if side == "left" else "left"
+    np.testing.assert_array_equal(getattr(there, other), getattr(plain, other))
+
+
+def test_the_lever_of_a_bump_goes_back_over_the_same_places() -> None:
+    law = find("left_tread_bump").using(height=2e-3, place=0.4)
+    there = track(plan(*line(1.3), *line(-1.3)), law)
+    assert there.end == pytest.approx((0.0, 0.0, 0.0), abs=1e-4)
 
 
 @pytest.mark.parametrize("coefficient", [0.02, -0.02])
@@ -375,3 +401,19 @@ def test_mistakes_of_wiring(mistakes: tuple[str, ...], read: tuple[float, float]
     wiring = wiring_of(tuple(find(name).using() for name in mistakes))
     assert wiring.wheels(3.0, 7.0) == read
     assert Wiring().wheels(3.0, 7.0) == (3.0, 7.0)
+
+
+def stood(*time: float) -> Trajectory:
+    """A robot that stands."""
+    rows = np.array(time)
+    return trajectory(Robot(TRACK, RADIUS, 2000.0, 2000.0), rows, 0.0 * rows, 0.0 * rows)
+
+
+def test_a_gyro_that_drifts_turns_with_the_square_of_time_standing_or_not() -> None:
+    """And two minutes at rest show what its page says, whatever the clock says."""
+    view = view_of((find("reference_gyro_drift").using(rate=2e-5),))
+    for begin in (0.0, 500.0):
+        seen = shown(stood(begin, begin + 60.0, begin + 120.0), view)
+        expected = [0.0, 1e-5 * 60.0**2, 1e-5 * 120.0**2]
+        np.testing.assert_allclose(seen.yaw, expected, atol=1e-12)
+        np.testing.assert_array_equal(seen.x, 0.0)

@@ -229,6 +229,41 @@ def test_at_one_speed_a_squashed_tyre_is_a_smaller_one() -> None:
     np.testing.assert_allclose(end_of((squash,), 0.4)[1:], end_of((smaller,), 0.4)[1:], atol=1e-12)
 
 
+def test_turning_at_one_rate_a_gyro_that_drifts_is_a_radius_that_does() -> None:
+    """Of headings alone; a line, or a turn to the other side, tells them apart."""
+    rate, spin = 1e-4, 0.8
+    drift = find("reference_gyro_drift").using(rate=rate)
+    radius = find("radius_drift").using(per_second=rate / spin)
+    times = np.linspace(0.5, 11.0, 20)
+    for way, alike in (((10.0, 0.0, spin),), True), (((5.0, 0.0, spin), (5.0, 0.0, -spin)), False):
+        there = plan((0.001, 0.0, way[0][2]), *way)
+        one, other = (
+            relative(*shown(track(there, law, rate=200.0), (law,), times[times < 9.5]))[:, 2]
+            for law in (drift, radius)
+        )
+        assert np.allclose(one, other, atol=5e-5) == alike
+
+
+def test_an_axle_off_its_centre_does_nine_tenths_of_what_a_bump_does() -> None:
+    """Their first harmonic: so a small bump is one to few drives; what is left tells them apart."""
+    way = plan(*line(9.42), *line(-9.42))
+    gone_there = track(way, rate=200.0)
+    columns = [
+        track(way, law, rate=200.0).left - gone_there.left
+        for law in (
+            find("left_tread_bump").using(height=1e-3, place=0.3),
+            find("eccentric_left_wheel").using(amplitude=1e-3, phase=0.0),
+            find("eccentric_left_wheel").using(amplitude=1e-3, phase=0.5 * math.pi),
+            find("wheel_radius_scale").using(multiplier=1.001),
+        )
+    ]
+    bump, *others = (column - column.mean() for column in columns)
+    swings = np.stack(others, axis=-1)
+    bump = bump - others[2] * (bump @ others[2]) / (others[2] @ others[2])
+    left = bump - swings @ np.linalg.lstsq(swings, bump, rcond=None)[0]
+    assert 1.0 - (left @ left) / (bump @ bump) == pytest.approx(0.8, abs=0.1)
+
+
 def test_a_thermometer_that_rises_all_the_time_is_a_clock() -> None:
     duration, raw = wheels_of(plan(*line(3.0), *turn(2.0), *line(-2.0)), 50.0)
     time = np.concatenate([[0.0], np.cumsum(duration)])

@@ -138,6 +138,7 @@ def shown(track: Track, effects: tuple[AppliedEffect, ...], at: Floats) -> tuple
         view.ahead, view.left
     )
     yaw = np.interp(seen - view.heading_delay, track.time, track.yaw) + view.yaw
+    yaw = yaw + 0.5 * view.wander * at**2
     position = view.scale * position
     return (np.conj(position), -yaw) if view.mirrored else (position, yaw)
 

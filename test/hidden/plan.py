@@ -43,7 +43,14 @@ FAMILIES = (
         "radius_by_channel",
         "tyre_squash",
     ),
-    ("eccentric_left_wheel", "eccentric_right_wheel", "oval_left_wheel", "oval_right_wheel"),
+    (
+        "eccentric_left_wheel",
+        "eccentric_right_wheel",
+        "oval_left_wheel",
+        "oval_right_wheel",
+        "left_tread_bump",
+        "right_tread_bump",
+    ),
     ("longitudinal_slip", "load_transfer"),
     ("lateral_slip",),
     ("sideways_drift", "reference_yaw_offset"),
@@ -51,7 +58,7 @@ FAMILIES = (
     ("castor_kick", "left_backlash", "right_backlash"),
     ("left_missed_ticks", "right_missed_ticks"),
     ("reference_lever_arm",),
-    ("reference_delay", "reference_heading_delay"),
+    ("reference_delay", "reference_heading_delay", "reference_gyro_drift"),
     ("encoder_skew",),
 )
 """Effects of one family are not hidden together: they have much of their signature in common."""

@@ -45,7 +45,13 @@ from werrimbi_odom.simulation.hidden.tyres import (
     RadiusFollowsTemperature,
     TyreSquash,
 )
-from werrimbi_odom.simulation.hidden.wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift
+from werrimbi_odom.simulation.hidden.wheels import (
+    Backlash,
+    EccentricWheel,
+    OvalWheel,
+    RadiusDrift,
+    TreadBump,
+)
 
 Floats = NDArray[np.float64]
 BASE, RADIUS = 0.35, 0.05
@@ -138,6 +144,32 @@ def test_an_oval_wheel_errs_twice_a_turn() -> None:
     _, heading = errors(path, law, right)
     assert plain.max() > 0.02 * RADIUS / 2 / BASE
     assert heading.max() < 3e-4
+
+
+def test_a_bump_carries_the_hub_higher_by_its_part_of_the_patch() -> None:
+    """All of it on its middle, half of it at its edges, none a patch away; its area is its own."""
+    bump = TreadBump("left", 2e-3, 1.2, 0.5, patch=0.25)
+    assert bump.higher(0.5) == bump.higher(0.5 + 4 * math.pi) == pytest.approx(2e-3)
+    assert bump.higher(0.5 + 0.6) == bump.higher(0.5 - 0.6) == pytest.approx(1e-3)
+    assert bump.higher(0.5 + 0.86) == bump.higher(0.5 + math.pi) == 0.0
+    angles = np.linspace(0.0, 2 * math.pi, 10_001)
+    area = np.mean([bump.higher(angle) for angle in angles[:-1]]) * 2 * math.pi
+    assert area == pytest.approx(2e-3 * 1.2, rel=1e-6)
+
+
+@pytest.mark.parametrize("thickness", [2e-3, -2e-3])
+def test_a_wheel_goes_farther_while_it_stands_on_its_bump(thickness: float) -> None:
+    odd = TreadBump("left", thickness, 1.2, 0.5)
+    path = drive(odd, BRISK).true_path
+    left, right = rolled(path)
+    _, plain = errors(path, left, right)
+    turned = np.diff(path.left_angle_rad)
+    middle = path.left_angle_rad[:-1] + 0.5 * turned
+    lever = np.array([odd.higher(angle) for angle in middle])
+    farther = np.concatenate([[0.0], np.cumsum(lever * turned)])
+    _, heading = errors(path, left + farther, right)
+    assert plain.max() > 5e-3
+    assert heading.max() < 1e-4
 
 
 def test_an_askew_axle_makes_a_crab() -> None:

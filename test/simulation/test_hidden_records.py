@@ -39,6 +39,7 @@ from werrimbi_odom.simulation.hidden.mount import (
     ReferenceDelay,
     ReferenceMirrored,
     ReferenceMount,
+    WarmingGyro,
 )
 from werrimbi_odom.simulation.sensors import wrap
 
@@ -92,6 +93,30 @@ def test_the_right_counter_is_read_late() -> None:
     later = np.interp(plain.t_s + 0.015, plain.t_s, plain.right_ticks)
     assert np.abs(odd.right_ticks - later)[:-1].max() < 4.0
     assert np.abs(odd.right_ticks - plain.right_ticks).max() > 20
+
+
+def test_a_gyro_that_warms_up_turns_away_faster_and_faster() -> None:
+    """Without unrest: as a chip that nears the warmth about it, to either side in a drive."""
+    plain, odd = pair(WarmingGyro(5e-4, settles=10.0, unrest=0.0))
+    np.testing.assert_array_equal(plain.reference_x_m, odd.reference_x_m)
+    np.testing.assert_array_equal(plain.left_ticks, odd.left_ticks)
+    off = np.unwrap(odd.reference_yaw_rad - plain.reference_yaw_rad)
+    t = odd.reference_t_s
+    law = 10.0 * (t - 10.0 * (1.0 - np.exp(-t / 10.0)))
+    rate = (law @ off) / (law @ law)
+    np.testing.assert_allclose(off, rate * law, atol=1e-3 * np.abs(off).max())
+    assert 2.5e-4 < abs(rate) < 7.5e-4
+
+
+def test_its_bias_walks_besides_and_another_way_in_each_drive() -> None:
+    odd = WarmingGyro(1e-4, unrest=3.0)
+    runs = [record(TrueRobot(), BRISK, seed=seed, hidden=[odd]) for seed in (1, 2)]
+    plain = [record(TrueRobot(), BRISK, seed=seed) for seed in (1, 2)]
+    ends = [
+        math.remainder(float(a.reference_yaw_rad[-1] - b.reference_yaw_rad[-1]), 2 * math.pi)
+        for a, b in zip(runs, plain, strict=True)
+    ]
+    assert abs(ends[0] - ends[1]) > 1e-3
 
 
 def test_a_marker_off_the_axle() -> None:
@@ -216,6 +241,7 @@ def test_the_catalogue_holds_the_vocabulary_of_the_contract() -> None:
         "reference_heading_delay", "encoder_skew",
         "oval_left_wheel", "oval_right_wheel", "radius_by_channel", "tyre_squash",
         "load_transfer", "anisotropic_floor",
+        "left_tread_bump", "right_tread_bump", "reference_gyro_drift",
     }  # fmt: skip
     assert {entry.name for entry in CATALOGUE if entry.kind == "mistake"} == {
         "wheels_swapped", "left_wheel_reversed", "right_wheel_reversed", "reference_mirrored",

@@ -12,8 +12,9 @@ import math
 import numpy as np
 
 from werrimbi_odom.model.motion import Number, sinc
+from werrimbi_odom.model.pose import wrap, wrap_all
 
-__all__ = ["cos", "exp", "limited", "saturated", "share", "sin", "sinc"]
+__all__ = ["cos", "exp", "limited", "saturated", "share", "sin", "sinc", "within_half_a_turn"]
 
 
 def cos(angle: Number) -> Number:
@@ -56,3 +57,8 @@ def share(part: Number, whole: Number) -> Number:
     if isinstance(part, np.ndarray):
         return np.divide(part, whole, out=np.zeros_like(part), where=whole != 0.0)
     return part / whole if whole != 0.0 else 0.0
+
+
+def within_half_a_turn(angle: Number) -> Number:
+    """The same direction between -pi and pi [rad]."""
+    return wrap_all(angle) if isinstance(angle, np.ndarray) else wrap(angle)

@@ -18,12 +18,14 @@ from werrimbi_odom.effects.oval_wheel import oval_left_wheel, oval_right_wheel
 from werrimbi_odom.effects.radius_by_channel import radius_by_channel
 from werrimbi_odom.effects.radius_drift import radius_drift
 from werrimbi_odom.effects.reference_clock import reference_delay, reference_heading_delay
+from werrimbi_odom.effects.reference_gyro_drift import reference_gyro_drift
 from werrimbi_odom.effects.reference_mirrored import reference_mirrored
 from werrimbi_odom.effects.reference_mount import reference_lever_arm, reference_yaw_offset
 from werrimbi_odom.effects.reference_scale import reference_scale
 from werrimbi_odom.effects.sideways_drift import sideways_drift
 from werrimbi_odom.effects.skid_steer import skid_steer
 from werrimbi_odom.effects.track_width import track_width
+from werrimbi_odom.effects.tread_bump import left_tread_bump, right_tread_bump
 from werrimbi_odom.effects.turn_dependent_track import turn_dependent_track
 from werrimbi_odom.effects.tyre_squash import tyre_squash
 from werrimbi_odom.effects.unequal_wheel_radii import unequal_wheel_radii
@@ -43,6 +45,8 @@ LIBRARY: tuple[Effect, ...] = (
     eccentric_right_wheel,
     oval_left_wheel,
     oval_right_wheel,
+    left_tread_bump,
+    right_tread_bump,
     tyre_squash,
     load_transfer,
     longitudinal_slip,
@@ -64,6 +68,7 @@ LIBRARY: tuple[Effect, ...] = (
     reference_delay,
     reference_heading_delay,
     reference_scale,
+    reference_gyro_drift,
     encoder_skew,
     wheels_swapped,
     left_wheel_reversed,

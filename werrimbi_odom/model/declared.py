@@ -130,9 +130,11 @@ DRAWINGS: Mapping[str, int] = {
     "squash": 0,
     "swapped": 0,
     "track": 0,
+    "tread_bump": 1,
     "two_bases": 0,
     "unequal": 0,
     "wrong_sign": 1,
+    "wandering_bias": 0,
     "yaw_offset": 0,
 }
 """Drawings that the reports have, and how many labels each asks for: a side, or two signals."""

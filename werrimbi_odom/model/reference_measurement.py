@@ -44,6 +44,7 @@ def shown(driven: Trajectory, view: View) -> Path:
         return axle
     seen = delayed(axle, view.delay)
     yaw = delayed(axle, view.delay + view.heading_delay).yaw + view.yaw
+    yaw = yaw + view.drifted(axle.time - axle.time[:1])
     dx, dy = _turned(view.ahead, view.left, seen.yaw)
     point = Path(driven.time, seen.x + dx, seen.y + dy, yaw, carried(seen.covariance, dx, dy))
     point = _scaled(point, view.scale)
@@ -53,7 +54,8 @@ def shown(driven: Trajectory, view: View) -> Path:
 def axle_of(measured: Pose, view: View) -> Pose:
     """Where the axle's midpoint is, in the robot's frame, when the reference shows a pose.
 
-    Delays are left out: nothing is known of what was before.
+    Delays are left out: nothing is known of what was before. So is a bias that wanders, for the
+    drive begins here.
     """
     x, y, yaw = measured
     if view.mirrored:

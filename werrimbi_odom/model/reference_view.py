@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 
 class View(NamedTuple):
@@ -24,3 +24,10 @@ class View(NamedTuple):
     """Its frame is left-handed."""
     scale: float = 1.0
     """What it shows over what was: of ways, or where headings alone are measured, of turns."""
+    wander: float = 0.0
+    """Its heading is a gyro's, whose bias grows by this from zero at the drive's start
+    [rad/s^2]."""
+
+    def drifted(self, since: Any) -> Any:
+        """How far its heading is off, so long after the drive's start [s], an array or not."""
+        return 0.5 * self.wander * since * since

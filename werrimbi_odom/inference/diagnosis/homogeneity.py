@@ -67,8 +67,9 @@ def lasting_effect(runs: Concatenated, fit: Fitted, name: str) -> float:
         effect, _, parameter = whose[column]
         if effect == name and not applied.effect.parameters[parameter].tries:
             null = applied.effect.parameters[parameter].null
+            is_phase = parameter in (applied.effect.quadrature or ())[1:]
             own.append(column)
-            away.append(0.0 if run >= 0 else model.value(knob) - null)
+            away.append(0.0 if is_phase and run >= 0 else model.value(knob, max(run, 0)) - null)
     mine = [effect == name for effect, *_ in whose]
     # What these drives do not determine was not turned, and explains nothing of the effect.
     others = nuisance(flat @ fit.moves[:, ~fit.moves[mine].any(axis=0)])

@@ -12,7 +12,13 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.knobs import Model
-from werrimbi_odom.inference.fitting.prediction import anchors, headings_of, path_of, right_handed
+from werrimbi_odom.inference.fitting.prediction import (
+    anchors,
+    headings_of,
+    path_of,
+    right_handed,
+    seen_by,
+)
 from werrimbi_odom.inference.rules import (
     CURVE_KNOTS,
     FLOOR_CELL,
@@ -22,7 +28,6 @@ from werrimbi_odom.inference.rules import (
     SELDOM_BEYOND,
 )
 from werrimbi_odom.model.drive import Span
-from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats
 
 CONSTANT = "constant"
@@ -63,7 +68,7 @@ def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
     robot = model.laid_out(runs.steps)
     drive = runs.drive(robot)
     path = path_of(model, runs)
-    view = view_of(robot.effects)
+    view = seen_by(model, runs)
     heading = headings_of(path, runs, view, model.start_yaws)
 
     def own(name: str, unit: str, left: Floats, right: Floats, *fields: str) -> Variable:

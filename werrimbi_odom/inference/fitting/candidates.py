@@ -18,70 +18,22 @@ from typing import NamedTuple
 
 import numpy as np
 
+from werrimbi_odom.inference.fitting.candidate import Candidate as Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED as CALIBRATED
 from werrimbi_odom.inference.fitting.knobs import STEP, Knob, Model, knobs_of
+from werrimbi_odom.inference.fitting.placed import best_placed
 from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
 from werrimbi_odom.model.effect import AppliedEffect, Effect
-from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.pose import Floats, wrap_all
 
 BESIDE_POSITIONS = ("reference_heading_delay",)
 """Effects that are of headings against positions: of headings alone they are another effect."""
 
 OF_THE_MEASUREMENT = ("reference_scale",)
 """Effects that all three multipliers together do as well: never tried beside them."""
-
-
-@dataclass(frozen=True, slots=True)
-class Candidate:
-    """An effect at null, with values for its shape."""
-
-    effect: Effect
-    shape: Mapping[str, float]
-    """Values of parameters that do nothing while the others are null (a threshold, a length)."""
-    shared: tuple[str, ...] = ()
-    """Parameters that each run could have anew, taken to be the same in all of them."""
-
-    @property
-    def name(self) -> str:
-        """Of the effect."""
-        return self.effect.name
-
-    @property
-    def coordinates(self) -> tuple[Mapping[str, float], ...]:
-        """Directions from null, as values of the effect's parameters one usual size away."""
-        null = self.effect.nulls | dict(self.shape)
-        if self.effect.quadrature is not None:
-            amplitude, phase = self.effect.quadrature
-            size = STEP * self.effect.parameters[amplitude].scale
-            return tuple(null | {amplitude: size, phase: angle} for angle in (0.0, 0.5 * math.pi))
-        return tuple(
-            null | {name: null[name] + STEP * item.scale}
-            for name, item in self.effect.parameters.items()
-            if not item.tries and not item.as_base
-        )
-
-    @property
-    def per_run(self) -> bool:
-        """Whether each run has values of its own."""
-        return any(
-            item.per_run and name not in self.shared
-            for name, item in self.effect.parameters.items()
-        )
-
-    def with_value(self, coordinate: Mapping[str, float], factor: float) -> AppliedEffect:
-        """The effect `factor` times along a coordinate."""
-        null = self.effect.nulls | dict(self.shape)
-        values = {}
-        for name, item in self.effect.parameters.items():
-            if self.effect.quadrature is not None and name == self.effect.quadrature[1]:
-                values[name] = coordinate[name]
-                continue
-            value = null[name] + factor * (coordinate[name] - null[name])
-            values[name] = min(max(value, item.bounds[0]), item.bounds[1])
-        return AppliedEffect(self.effect, values)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +46,8 @@ class Score:
     degrees: int
     coefficients: Floats
     """How far along its coordinates; (coordinates,) or (runs, coordinates)."""
+    places: Floats | None = None
+    """Of what lies in one place round a wheel, where: (1,) or (runs,) [rad]."""
 
     @property
     def excess(self) -> float:
@@ -137,7 +91,11 @@ def candidates(
             continue
         if not asked and any(item.as_base for item in effect.parameters.values()):
             continue
-        shapes = {name: item.tries for name, item in effect.parameters.items() if item.tries}
+        shapes = {
+            name: item.tries
+            for name, item in effect.parameters.items()
+            if item.tries and not item.per_run
+        }
         own = tuple(name for name, item in effect.parameters.items() if item.per_run)
         for values in product(*shapes.values()):
             shape = dict(zip(shapes, values, strict=True))
@@ -166,7 +124,7 @@ def signatures(
     prediction = predict_all(point.model, runs)
     columns, owners = [], []
     for number, candidate in enumerate(tried):
-        for coordinate in candidate.coordinates:
+        for coordinate in candidate.round_the_wheel or candidate.coordinates:
             columns.append(
                 runs.of_model(
                     point.model,
@@ -215,6 +173,9 @@ def scores(
     rest, found = signatures(runs, point, knobs, tried)
     results = []
     for candidate, flat, free in found:
+        if candidate.place is not None:
+            results += _scores_of_places(candidate, len(runs.runs), free, rest)
+            continue
         test = score_test(flat, free, rest)
         if test is None:
             continue
@@ -223,6 +184,18 @@ def scores(
             solution = solution.reshape(len(runs.runs), -1)
         results.append(Score(candidate, test.gain, test.degrees, solution))
     return tuple(results)
+
+
+def _scores_of_places(
+    candidate: Candidate, runs: int, free: Floats, rest: Floats
+) -> Iterator[Score]:
+    """Of what lies in one place round a wheel: the best bump, and the best flat."""
+    assert candidate.place is not None
+    tries = np.array(candidate.effect.parameters[candidate.place].tries)
+    blocks = runs if candidate.per_run else 1
+    for found in best_placed(tries, free, rest, blocks):
+        size = np.array([found.size])
+        yield Score(candidate, found.gain, 1 + blocks, size, found.places)
 
 
 def _slope(
@@ -263,10 +236,20 @@ def put_in(model: Model, score: Score) -> Model:
         moving = [
             name for name, item in effect.parameters.items() if not item.tries and not item.as_base
         ]
-        for name, coefficient in zip(moving, np.ravel(score.coefficients).tolist(), strict=False):
+        anew = candidate.per_run and score.places is None
+        for name, sizes in zip(moving, np.atleast_2d(score.coefficients).T, strict=False):
             item = effect.parameters[name]
-            value = start[name] + coefficient * STEP * item.scale
-            start[name] = float(np.clip(value, *item.bounds))
+            values = np.clip(start[name] + sizes * STEP * item.scale, *item.bounds)
+            start[name] = float(np.median(values))
+            if anew:
+                for mine, value in zip(own, values.tolist(), strict=True):
+                    mine[f"{effect.name}.{name}"] = value
+        if candidate.place is not None and score.places is not None:
+            places = wrap_all(score.places)
+            start[candidate.place] = float(places[0])
+            if candidate.per_run:
+                for mine, place in zip(own, places.tolist(), strict=True):
+                    mine[f"{effect.name}.{candidate.place}"] = place
     robot = replace(model.robot, effects=(*model.robot.effects, AppliedEffect(effect, start)))
     return Model(robot, tuple(own))
 

@@ -57,8 +57,9 @@ def predict_joined(model: Model, runs: Concatenated) -> Prediction:
 def joins(model: Model) -> bool:
     """Whether a leg is what its parts are: no effect that may look at where its leg began."""
     own = any(name not in NUISANCES for mine in model.own for name in mine)
-    late = view_of(model.robot.effects).heading_delay != 0.0
-    return not (own or acts(model.robot) or late or model.drifts.any())
+    view = view_of(model.robot.effects)
+    timed = view.heading_delay != 0.0 or view.wander != 0.0
+    return not (own or acts(model.robot) or timed or model.drifts.any())
 
 
 def _sums(values: Floats) -> Floats:

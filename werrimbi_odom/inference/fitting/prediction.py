@@ -81,7 +81,7 @@ def legs_shown(model: Model, runs: Concatenated, looked_at: Robot | None = None)
     looked_at : Robot, optional
         Whose travel effects look at, where it is as good as the model's own and known already.
     """
-    view = view_of(model.robot.effects)
+    view = seen_by(model, runs)
     runs = runs.delayed(view.delay)
     robot = model.laid_out(runs.steps)
     path = _path(robot, runs, view, model.start_yaws, looked_at)
@@ -94,7 +94,7 @@ def predict_all(model: Model, runs: Concatenated) -> Prediction:
 
 
 def _predicted(model: Model, runs: Concatenated) -> Prediction:
-    view = view_of(model.robot.effects)
+    view = seen_by(model, runs)
     runs = runs.delayed(view.delay)
     path = _path_of(model, runs)
     return Prediction(
@@ -118,7 +118,15 @@ def path_of(model: Model, runs: Concatenated) -> DrivenPath:
 
 def _path_of(model: Model, runs: Concatenated) -> DrivenPath:
     robot = model.laid_out(runs.steps)
-    return _path(robot, runs, view_of(robot.effects), model.start_yaws)
+    return _path(robot, runs, seen_by(model, runs), model.start_yaws)
+
+
+def seen_by(model: Model, runs: Concatenated) -> View:
+    """How the reference looks at the robot; what it has anew in each run as arrays over the legs.
+
+    That can be the wandering of a heading alone: all else is one number.
+    """
+    return view_of(model.laid_out(runs.legs).effects)
 
 
 def headings_of(
@@ -130,6 +138,8 @@ def headings_of(
     path is followed from the run's start.
     """
     measured = right_handed(runs.start, view)[:, 2] - view.yaw
+    if np.any(view.wander):
+        measured = measured - view.drifted(_since_start(runs, runs.begin))
     for index, given in enumerate(start_yaws):
         if given is not None:
             measured[runs.legs[index]] = given - view.yaw
@@ -222,6 +232,9 @@ def _shown(path: DrivenPath, runs: Concatenated, view: View, drifts: Floats) -> 
     if view.heading_delay != 0.0:
         first += _late(path, runs, begin, view.heading_delay)
         last += _late(path, runs, end, view.heading_delay)
+    if np.any(view.wander):
+        first += view.drifted(_since_start(runs, begin))
+        last += view.drifted(_since_start(runs, end))
     shown = np.exp(-1j * first) * (moved + (np.exp(1j * turn) - 1.0) * point)
     turned = turn + last - first
     if runs.headings_alone:
@@ -230,6 +243,15 @@ def _shown(path: DrivenPath, runs: Concatenated, view: View, drifts: Floats) -> 
         shown = view.scale * shown
     drift = drifts[runs.run_of_leg] * runs.duration
     return np.stack([shown.real, shown.imag, turned + drift], axis=-1)
+
+
+def _since_start(runs: Concatenated, nodes: NDArray[np.intp]) -> Floats:
+    """Time at each leg's node since its drive began, shape (m,) [s]."""
+    found = np.empty(runs.count)
+    for index, run in enumerate(runs.runs):
+        own = slice(runs.legs[index], runs.legs[index + 1])
+        found[own] = run.time[nodes[own] - runs.steps[index]] - run.counters.time[0]
+    return found
 
 
 def _late(path: DrivenPath, runs: Concatenated, nodes: NDArray[np.intp], delay: float) -> Floats:

@@ -12,7 +12,13 @@ from dataclasses import replace
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import ReferenceKind
-from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate, put_in, scores
+from werrimbi_odom.inference.fitting.candidates import (
+    CALIBRATED,
+    Candidate,
+    Score,
+    put_in,
+    scores,
+)
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
@@ -87,13 +93,24 @@ def _learnt(runs: Concatenated, point: Point, applied: AppliedEffect) -> Model:
     others = tuple(item for item in robot.effects if item is not applied)
     bare = replace(point, model=replace(point.model, robot=replace(robot, effects=others)))
     candidate = Candidate(applied.effect, {})
-    score = scores(runs, bare, CALIBRATION, [candidate])
-    if not score:
+    found = scores(runs, bare, CALIBRATION, [candidate])
+    # Of a bump and a flat, which are each the other to the first order, what the robot has.
+    score = next((each for each in found if _of_sign(each, applied)), None)
+    if score is None:
         return bare.model
-    model = put_in(bare.model, score[0])
+    model = put_in(bare.model, score)
     known = {
         f"{applied.name}.{name}": value
         for name, value in applied.values.items()
         if name not in applied.unknown
     }
     return Model(changed(model.robot, known), model.own)
+
+
+def _of_sign(score: Score, applied: AppliedEffect) -> bool:
+    if score.places is None:
+        return True
+    sizes = [
+        applied.values[name] for name, item in applied.effect.parameters.items() if not item.tries
+    ]
+    return all(size * score.coefficients[0] >= 0.0 for size in sizes)

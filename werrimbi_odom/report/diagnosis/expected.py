@@ -37,10 +37,12 @@ def expected_words(name: str, values: Values, robot: Robot) -> str:
 
 
 def _needed(name: str, values: Values) -> list[float]:
-    """All but the phase of what swings with a wheel: a ruler shows its amplitude."""
-    quadrature = find(name).quadrature
-    phase = None if quadrature is None else quadrature[1]
-    return [value for key, value in values.items() if key != phase]
+    """All but where on a wheel it is: a ruler shows how large it is."""
+    effect = find(name)
+    phase = None if effect.quadrature is None else effect.quadrature[1]
+    items = effect.parameters
+    places = [key for key, item in items.items() if item.per_run and item.tries]
+    return [value for key, value in values.items() if key not in (phase, *places)]
 
 
 def _length(metres: float) -> str:
@@ -148,6 +150,10 @@ def _grain(values: Values, robot: Robot) -> str:
     )
 
 
+def _bump(height: float) -> str:
+    return f"{_length(height)} {'less' if height > 0.0 else 'more'} there, on a sixth of the turn"
+
+
 def _missed(values: Values, robot: Robot) -> str:
     speed = f"above {values['above']:.2f} m/s"
     return f"{100.0 * values['fraction']:.2g} turns too few of a hundred {speed}"
@@ -172,6 +178,8 @@ _EXPECTED: dict[str, Callable[[Values, Robot], str]] = {
     "eccentric_right_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
     "oval_left_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
     "oval_right_wheel": lambda values, robot: _length(2.0 * values["amplitude"]),
+    "left_tread_bump": lambda values, robot: _bump(values["height"]),
+    "right_tread_bump": lambda values, robot: _bump(values["height"]),
     "radius_by_channel": _by_channel,
     "tyre_squash": _squash,
     "load_transfer": _transfer,

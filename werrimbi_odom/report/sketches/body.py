@@ -65,41 +65,6 @@ def _radius_scale() -> Parts:
     ]
 
 
-def _eccentric(side: str) -> Parts:
-    colour = BLUE if side == "left" else ORANGE
-
-    return [
-        floor(125, 145),
-        circle(80, 85, 40, colour=colour),
-        circle(80, 85, 3, colour=GREY, fill=GREY),
-        circle(93, 75, 4, colour=INK, fill=INK),
-        line((80, 85), (93, 75), colour=INK),
-        words(76, 74, "axle", anchor="end"),
-        arc(80, 85, 50, 150, 100, colour=GREY, head=True),
-        line((165, 85), (315, 85), colour=GREY),
-        wave(165, 85, 150, 24, colour=colour),
-        words(240, 130, "turns of the wheel", colour=GREY),
-    ]
-
-
-def _oval(side: str) -> Parts:
-    colour = BLUE if side == "left" else ORANGE
-    shape = [
-        (80 + 46 * math.cos(at) + 4 * math.sin(at), 84 + 36 * math.sin(at) + 4 * math.cos(at))
-        for at in (math.tau * step / 48 for step in range(49))
-    ]
-    return [
-        floor(125, 145),
-        line(*shape, colour=colour),
-        circle(80, 84, 41, colour=GREY, dash=DASH),
-        circle(80, 84, 4, colour=INK, fill=INK),
-        arc(80, 84, 54, 150, 100, colour=GREY, head=True),
-        line((165, 85), (315, 85), colour=GREY),
-        wave(165, 85, 150, 20, colour=colour, turns=4.0),
-        words(240, 130, "turns of the wheel", colour=GREY),
-    ]
-
-
 def _squash() -> Parts:
     return [
         floor(120),
@@ -273,8 +238,6 @@ DRAWINGS: Mapping[str, Callable[..., Parts]] = {
     "track": _track_width,
     "unequal": _unequal_radii,
     "radius": _radius_scale,
-    "eccentric": _eccentric,
-    "oval": _oval,
     "squash": _squash,
     "load": _load,
     "by_channel": _by_channel,

@@ -119,6 +119,21 @@ def _late(first: str, second: str) -> Parts:
     ]
 
 
+def _wandering_bias() -> Parts:
+    times = [x / 20.0 for x in range(21)]
+    true = [(30 + 230 * at, 112 - 26 * at) for at in times]
+    shown = [(30 + 230 * at, 112 - 26 * at - 52 * at * at) for at in times]
+    return [
+        arrow((30, 125), (318, 125), colour=GREY),
+        words(318, 116, "time", colour=GREY, anchor="end"),
+        line(*true, colour=BLUE, width=2.5),
+        words(268, 90, "heading", colour=BLUE, anchor="start"),
+        line(*shown, colour=ORANGE, width=2.5),
+        words(268, 38, "the gyro's", colour=ORANGE, anchor="start"),
+        arrow((255, 80), (255, 42), colour=GREY, both=True),
+    ]
+
+
 def _swapped() -> Parts:
     return [
         robot(90, 80, left=BLUE, right=ORANGE),
@@ -150,6 +165,7 @@ DRAWINGS: Mapping[str, Callable[..., Parts]] = {
     "mirrored": _mirrored,
     "scale": _scale,
     "late": _late,
+    "wandering_bias": _wandering_bias,
     "swapped": _swapped,
     "wrong_sign": _reversed,
 }

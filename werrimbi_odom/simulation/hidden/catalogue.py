@@ -17,7 +17,7 @@ from .creep import CastorKick, LateralSlip, LongitudinalSlip, TurnDependentTrack
 from .floor import CablePull, FloorSlope, GrainedFloor, SlipperySpot
 from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
 from .knocks import Knock, ReferenceJump
-from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount
+from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount, WarmingGyro
 from .outside import BaseByPayload, OneTyreBackwards, OneTyreByPressure
 from .peculiarity import Peculiarity
 from .skid import skid_steer
@@ -27,7 +27,7 @@ from .tyres import (
     RadiusFollowsTemperature,
     TyreSquash,
 )
-from .wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift, Side
+from .wheels import Backlash, EccentricWheel, OvalWheel, RadiusDrift, Side, TreadBump
 
 Rng = np.random.Generator
 Make = Callable[[float, Rng], Peculiarity]
@@ -125,6 +125,11 @@ def _either(rng: Rng) -> bool:
     return bool(rng.integers(2))
 
 
+def _tread_bump(side: Side, thickness: float, rng: Rng) -> TreadBump:
+    """It goes round the wheel by 30 to 90 degrees."""
+    return TreadBump(side, thickness, float(rng.uniform(0.5, 1.6)), _anywhere(rng))
+
+
 def _lever_arm(length: float, rng: Rng) -> ReferenceMount:
     direction = _anywhere(rng)
     return ReferenceMount(x=length * math.cos(direction), y=length * math.sin(direction))
@@ -218,6 +223,12 @@ CATALOGUE: tuple[Entry, ...] = (
             "loss of a radius under half the robot's weight", signed=False),
     Entry("anisotropic_floor", lambda s, rng: GrainedFloor(s, _anywhere(rng)), "1", 0.003, 0.02,
             "way gained along the floor's grain, and lost across", signed=False),
+    Entry("left_tread_bump", lambda s, rng: _tread_bump("left", s, rng), "m", 6e-4, 2.5e-3,
+            "thickness of a bump on the left tread, or depth of a flat"),
+    Entry("right_tread_bump", lambda s, rng: _tread_bump("right", s, rng), "m", 6e-4, 2.5e-3,
+            "thickness of a bump on the right tread, or depth of a flat"),
+    Entry("reference_gyro_drift", lambda s, rng: WarmingGyro(s), "rad/s^2", 1e-5, 1e-4,
+            "growth of the bias of the reference's heading", signed=False),
     _mistake("wheels_swapped", lambda rng: WheelsSwapped(), "left and right exchanged"),
     _mistake("left_wheel_reversed", lambda rng: WheelReversed("left"),
              "left counter with the wrong sign"),

@@ -6,9 +6,13 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
+import numpy as np
+
 from ..chassis import Chassis
 from ..engine import Pose
-from ..sensors import ReferenceSensor
+from ..recording import Recording
+from ..robot import TrueRobot
+from ..sensors import ReferenceSensor, wrap
 from .peculiarity import Peculiarity
 
 
@@ -65,6 +69,40 @@ class ReferenceDelay(Peculiarity):
             delay=sensor.delay + self.delay,
             heading_delay=sensor.heading_delay + self.heading_delay,
         )
+
+
+@dataclass(frozen=True)
+class WarmingGyro(Peculiarity):
+    """The reference's heading is a gyro's, whose chip warms up or cools in each drive anew.
+
+    Its bias goes with its temperature, which nears that of its surroundings; as the drive begins
+    its driver has just taken the bias off.
+
+    Parameters
+    ----------
+    rate : float
+        By which the bias grows or falls at first, on average over drives [rad/s^2].
+    settles : float
+        Time in which the chip has done all but 1/e of its change of temperature [s].
+    unrest : float
+        Random walk of the bias beside, over a second [rad/s]; as a share of what it drifts in one.
+    """
+
+    rate: float
+    settles: float = 200.0
+    unrest: float = 0.5
+
+    def recording(
+        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
+    ) -> Recording:
+        """Turn what was measured by the integral of the bias."""
+        rate = self.rate * float(rng.choice([-1.0, 1.0]) * rng.uniform(0.5, 1.5))
+        time = recording.reference_t_s
+        steps = np.diff(time, prepend=0.0)
+        walked = np.cumsum(rng.standard_normal(time.size) * np.sqrt(steps)) * self.unrest
+        bias = rate * (self.settles * (1.0 - np.exp(-time / self.settles)) + walked)
+        off = np.cumsum(0.5 * (bias + np.concatenate(([0.0], bias[:-1]))) * steps)
+        return replace(recording, reference_yaw_rad=wrap(recording.reference_yaw_rad + off))
 
 
 @dataclass(frozen=True)

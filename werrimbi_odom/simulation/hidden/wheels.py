@@ -4,13 +4,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
 from ..chassis import Chassis, WheelPlan
-from ..engine import Engine, Reshaper, Stride
+from ..engine import Engine, Reshaper, Shift, Stride
 from .peculiarity import Peculiarity
 
 Side = Literal["left", "right"]
@@ -64,6 +65,61 @@ class OvalWheel(Peculiarity):
         wheel: WheelPlan = getattr(chassis, self.side)
         oval = replace(wheel, ovality=self.amplitude / wheel.radius)
         return with_wheel(chassis, self.side, oval)
+
+
+@dataclass(frozen=True)
+class TreadBump(Peculiarity):
+    """Something on one part of the tread, or worn off it.
+
+    A wheel goes, for a small turn, as far as its hub is high. A soft tread stands on a patch, and
+    the hub is higher by as much of the bump as carries it: the pressure of the patch is that of a
+    parabola, most in its middle.
+
+    Parameters
+    ----------
+    side : "left" or "right"
+    thickness : float
+        Of the bump [m]; negative: how deep the flat is.
+    around : float
+        Angle of the wheel that it covers [rad].
+    at : float
+        Angle of the wheel at which it stands on its middle [rad]; as of `EccentricWheel.phase`.
+    patch : float
+        Half the angle of the wheel on which it stands [rad].
+    """
+
+    side: Side
+    thickness: float
+    around: float
+    at: float
+    patch: float = 0.25
+
+    def higher(self, angle: float) -> float:
+        """How much higher the hub stands when the wheel has turned to an angle [m]."""
+        off = math.remainder(angle - self.at, 2.0 * math.pi)
+        ends = ((off + side * 0.5 * self.around) / self.patch for side in (1.0, -1.0))
+        ahead, behind = (min(max(end, -1.0), 1.0) for end in ends)
+        return self.thickness * 0.25 * (3.0 * (ahead - behind) - (ahead**3 - behind**3))
+
+    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
+        """Move the robot by what the wheel goes farther while its hub is higher.
+
+        A hard wheel of the engine that grows and shrinks within a turn leaves the floor and loses
+        a sixth of what the bump does, at any speed; a soft one stays on it.
+        """
+        wheel: WheelPlan = getattr(chassis, self.side)
+        base = chassis.left.y - chassis.right.y
+        before: float | None = None
+
+        def reshape(engine: Engine, stride: Stride) -> None:
+            nonlocal before
+            angle = engine.wheel_angles[self.side == "right"]
+            turned = 0.0 if before is None else angle - before
+            farther = self.higher(angle - 0.5 * turned) * turned
+            before = angle
+            engine.move((Shift(0.5 * farther, 0.0, -np.sign(wheel.y) * farther / base),))
+
+        return reshape
 
 
 @dataclass(frozen=True)
