@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 
 from werrimbi_odom.api.drives import Options, read_robot, read_run
+from werrimbi_odom.api.result import Result
 from werrimbi_odom.api.verbs import add, diagnose
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag_writing import BagWriter
@@ -32,6 +33,8 @@ from werrimbi_odom.files.run_checks import refuse_unjudgeable
 
 MESSAGES, ASKED, FOUND, BETTER = "messages", "asked.json", "found.json", "better.yaml"
 """Files of the folder."""
+OF_NOW = "\n\nThe younger half of these drives alone:\n"
+"""Between what all of them say and what that half does, where the robot became another one."""
 
 
 def found_in(folder: Path) -> dict[str, Any]:
@@ -47,14 +50,18 @@ def found_in(folder: Path) -> dict[str, Any]:
         run = read_run(_bag(folder), robot, **asked["topics"])
         refuse_unjudgeable(run)
         drives = halves(run)
-        result = diagnose(robot, drives, **options)
+        whole = diagnose(robot, drives, **options)
+        result, drives = of_now(whole, robot, drives, options)
     except InputError as error:
         return {"error": str(error)}
-    told = result.to_dict()
+    told, changes = result.to_dict(), whole.to_dict()["changes"]
+    said = [*(each["words"] for each in changes), getattr(result.document().words[0], "text", "")]
+    words = [each.summary().partition("\n\n")[0] for each in (whole, result)]
     found: dict[str, Any] = {
-        "headline": getattr(result.document().words[0], "text", ""),
-        "words": result.summary().partition("\n\n")[0],
-        **{key: told[key] for key in ("verdict", "effect", "rivals", "next_manoeuvre", "changes")},
+        "headline": " ".join(said),
+        "words": words[0] if result is whole else OF_NOW.join(words),
+        **{key: told[key] for key in ("verdict", "effect", "rivals", "next_manoeuvre")},
+        "changes": changes,
         "added": [],
         "refused": "",
     }
@@ -66,6 +73,22 @@ def found_in(folder: Path) -> dict[str, Any]:
         except InputError as error:
             found["refused"] = str(error)
     return found
+
+
+def of_now(
+    whole: Result[Any], robot: Any, drives: list[Run], options: Options
+) -> tuple[Result[Any], list[Run]]:
+    """What the robot is now, and the drives that say so.
+
+    Where something set in, all of the drives are those of two robots, and no effect explains them;
+    the younger half is of one as soon as it is as old.
+    """
+    told = whole.to_dict()
+    if told["verdict"] == "unknown" or told["changes"]:
+        now = diagnose(robot, drives[1:], **options)
+        if now.to_dict()["verdict"] in ("named", "ambiguous"):
+            return now, drives[1:]
+    return whole, drives
 
 
 def halves(run: Run) -> list[Run]:

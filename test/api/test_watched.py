@@ -1,0 +1,45 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What compare_node's looks say of a robot that became another one while it was watched."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+import werrimbi_odom as wo
+from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.api.watched import of_now
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.simulation.robot import TrueRobot
+from werrimbi_odom.simulation.robot_file import write_robot_file
+
+SOUND = WhiteNoiseRobot(0.35, 0.05, 0.05, 4.0e-4, 5.8e-4)
+WIDER = replace(SOUND, separation=SOUND.separation * 1.02)
+
+
+def driven(robot: WhiteNoiseRobot, name: str, seed: int, seconds: float) -> Run:
+    rng = np.random.default_rng(seed)
+    return replace(drive(robot, wandering(rng, seconds), rng), name=name, path=Path(name))
+
+
+def test_what_set_in_is_told_by_the_younger_half_alone(tmp_path: Path) -> None:
+    """All of it is unknown, or a mean of two robots."""
+    write_robot_file(TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4), tmp_path / "r")
+    file = wo.read_robot(tmp_path / "r")
+    drives = [driven(SOUND, "older_half", 1, 150.0), driven(WIDER, "younger_half", 2, 150.0)]
+    whole = wo.diagnose(file, drives)
+    assert whole.to_dict()["changes"], "else there is nothing to be told"
+    now, of = of_now(whole, file, drives, {})
+    assert now.to_dict()["effect"] == "track_width"
+    assert [each.name for each in of] == ["younger_half"]
+
+
+def test_a_robot_that_is_as_it_was_is_told_by_all_of_its_drives(tmp_path: Path) -> None:
+    write_robot_file(TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4), tmp_path / "r")
+    file = wo.read_robot(tmp_path / "r")
+    drives = [driven(WIDER, "older_half", 3, 100.0), driven(WIDER, "younger_half", 4, 100.0)]
+    whole = wo.diagnose(file, drives)
+    assert of_now(whole, file, drives, {}) == (whole, drives)
