@@ -18,8 +18,10 @@ from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.bag_contents import contents_of
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.comparison.measured_path_figure import path_figure
 from werrimbi_odom.simulation import rooms
 from werrimbi_odom.simulation.engine import Pose, TruePath
 from werrimbi_odom.simulation.lidar import Lidar, Room, Sweeps, scanned
@@ -190,6 +192,11 @@ def test_a_leg_never_spans_a_cut(tmp_path: Path, ros: Any, robot: Any) -> None:
     spans = (cut.measured.time[:-1] <= begin) & (cut.measured.time[1:] >= end)
     assert spans.sum() == 1
     assert cut.gap[spans].all()
+    compared = compare([run], Robot(BASE, WHEEL, WHEEL, COUNTS, 2.0 * COUNTS))
+    assert np.isnan(compared.runs[0].end_error_m), "axes begin anew after the cut"
+    assert np.isnan(compared.runs[0].end_error_rad)
+    measured = next(trace for trace in path_figure(compared).data if trace.name == "measured")
+    assert np.isnan(np.asarray(measured.x, dtype=float)).sum() == 1, "drawn in two pieces"
 
 
 def test_a_gyros_headings_are_laid_upon_each_piece(tmp_path: Path, ros: Any, robot: Any) -> None:

@@ -84,7 +84,8 @@ class RunFigures:
     """Travel of the axle's midpoint, both directions counted."""
     duration_s: float
     end_error_m: float
-    """At the last reference pose, dead reckoning having begun at the first."""
+    """At the last reference pose, dead reckoning having begun at the first; NaN where the path of
+    a reference with axes of its own is in pieces."""
     end_error_rad: float
     """Measured minus predicted."""
     rmse_path_m: float
@@ -229,8 +230,10 @@ def _figures_of(
 
 def _run_figures(run: Run, path: Residual, legs: LegFigures, robot: Robot) -> RunFigures:
     off = np.abs(path.measured - path.predicted)
-    known = np.flatnonzero(np.isfinite(off))
     turned = np.flatnonzero(np.isfinite(path.measured_yaw))
+    if run.reference is not None and run.reference.own_axes and run.taken_out:
+        off, turned = np.full_like(off, np.nan), turned[:0]  # each piece has axes of its own
+    known = np.flatnonzero(np.isfinite(off))
     last = int(turned[-1]) if turned.size > 1 else 0
     travel = 0.5 * (
         np.diff(run.ticks.left.astype(np.float64)) * robot.left_tick

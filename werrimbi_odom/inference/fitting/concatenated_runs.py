@@ -113,6 +113,22 @@ class Concatenated:
         return any(run.measured.own_axes for run in self.runs)
 
     @property
+    def shares(self) -> Floats | None:
+        """Variances of place and heading that scans state at each leg's end, (m, 2).
+
+        Over the largest that is usual in a drive, which counts for all (`with_stated_noise`). None
+        where it is not stated of all.
+        """
+        found = []
+        for name in ("sigma_xy", "sigma_yaw"):
+            stated = [getattr(run.measured, name) for run in self.runs]
+            usual = [getattr(run, name) for run in self.runs]
+            if any(sigma is None for sigma in stated):
+                return None
+            found.append(np.concatenate([sigma[1:] for sigma in stated]) / max(usual))
+        return np.stack(found, axis=-1) ** 2
+
+    @property
     def run_of_step(self) -> NDArray[np.intp]:
         """Index of the run of each step, shape (n,)."""
         return np.repeat(np.arange(len(self.runs)), np.diff(self.steps))

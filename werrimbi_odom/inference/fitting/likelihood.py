@@ -183,7 +183,7 @@ def innovations(
             begun[runs.legs[index]] = given
             start[runs.legs[index], 2] = np.nan
     noise = wheel_part(prediction, runs, variances.left, variances.right)
-    reading = _reading(robot, variances, runs, prediction, adds_up=kind == "incremental")
+    reading = _reading(robot, variances, runs, prediction, kind)
     if kind == "incremental":
         noise[..., 2, 2] += variances.yaw[:, None] * runs.intervals
     legs = Legs(prediction.relative, noise, start, finish, reading, begins, skip, begun, stretch)
@@ -266,14 +266,20 @@ def paces(speed: Floats, turn_rate: Floats) -> Floats:
 
 
 def _reading(
-    robot: Robot, variances: Variances, runs: Concatenated, prediction: Prediction, *, adds_up: bool
+    robot: Robot,
+    variances: Variances,
+    runs: Concatenated,
+    prediction: Prediction,
+    kind: ReferenceKind,
 ) -> Floats:
     """Covariance of a measured pose, and of the counters' reading with it; (g, 1 or m, 3, 3)."""
     stamps = runs.stamps_err
     reading = np.zeros((variances.left.size, runs.count if stamps else 1, 3, 3))
-    reading[..., 0, 0] = reading[..., 1, 1] = variances.xy[:, None]
-    if not adds_up:
-        reading[..., 2, 2] = variances.yaw[:, None]
+    shares = runs.known("shares", lambda runs: runs.shares) if kind == "absolute" else None
+    place, heading = (1.0, 1.0) if shares is None else shares.T
+    reading[..., 0, 0] = reading[..., 1, 1] = variances.xy[:, None] * place
+    if kind != "incremental":
+        reading[..., 2, 2] = variances.yaw[:, None] * heading
     if stamps:
         pace = paces(prediction.along / runs.duration, prediction.turn / runs.duration)
         late = variances.stamp[:, None, None] * pace

@@ -19,6 +19,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -402,12 +403,15 @@ def _gaps_between(record: Record, rows: NDArray[np.intp]) -> NDArray[np.bool_]:
 
 
 def _poses(reference: Reference, rows: NDArray[np.intp]) -> Reference:
-    columns = [reference.time, reference.x, reference.y, reference.yaw]
+    columns: list[Any] = [reference.time, reference.x, reference.y, reference.yaw]
     if rows.size < reference.time.size:
         columns = [part[rows] for part in columns]
     gyro = reference.gyro
     if gyro is not None:
         gyro = gyro._replace(turned=gyro.turned[rows])
+    if reference.own_axes:  # each match says how good it is; a localiser tells how far off in all
+        for sigma in (reference.sigma_xy, reference.sigma_yaw):
+            columns.append(None if sigma is None else sigma[rows])
     return Reference(*columns, own_axes=reference.own_axes, gyro=gyro)
 
 

@@ -77,7 +77,10 @@ def _paths(
 ) -> None:
     path = comparison.paths[index]
     name = escaped(comparison.runs[index].run.name)
-    measured = path.measured[along_path(path.measured, most)]
+    rows = along_path(path.measured, most)
+    after = [end for _, end in comparison.runs[index].run.taken_out]
+    pieces = np.searchsorted(path.time[rows], after)  # nothing is drawn across a cut
+    measured = np.insert(path.measured[rows], pieces, np.nan)
     add_path(
         figure,
         small(measured.real),

@@ -144,11 +144,16 @@ def _fall(told: Told, sides: Sides) -> list[str]:
                 "it was found in: look what is different."
             ]
         return [f"What it costs: little so far; {both}, a difference that chance makes."]
+    told_before, told_after = (error_words(each, sides.unit) for each in (before, after))
+    if told_before == told_after:
+        return [
+            f"What it costs: hardly anything {where}; the {_of(sides)} error there is "
+            f"{told_before} with it and without."
+        ]
     part = math.sqrt(before**2 - after**2)
     return [
         f"What it costs: {error_words(part, sides.unit)} {_each(told)}; {where} the {_of(sides)} "
-        f"error falls from {error_words(before, sides.unit)} to "
-        f"{error_words(after, sides.unit)} when it is put in."
+        f"error falls from {told_before} to {told_after} when it is put in."
     ]
 
 
@@ -177,11 +182,11 @@ def whole(told: Told) -> list[str]:
     sides = diagnosis.holdout
     if len(diagnosis.found) < 2 or not math.isfinite(sides.before):
         return []
-    return [
-        f"With all of them put in, the {_of(sides)} error on {judged(told)} "
-        f"{'falls' if sides.after < sides.before else 'goes'} from "
-        f"{error_words(sides.before, sides.unit)} to {error_words(sides.after, sides.unit)}."
-    ]
+    before, after = (error_words(each, sides.unit) for each in (sides.before, sides.after))
+    goes = f"{'falls' if sides.after < sides.before else 'goes'} from {before} to {after}"
+    if before == after:
+        goes = f"stays at {before}"
+    return [f"With all of them put in, the {_of(sides)} error on {judged(told)} {goes}."]
 
 
 def without_events(told: Told) -> list[str]:

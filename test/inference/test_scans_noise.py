@@ -1,0 +1,62 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Each pose by scans counts as much as its match is good for, in a hall as in a small room."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.fitting.fit import start_point
+from werrimbi_odom.inference.fitting.likelihood import innovations
+from werrimbi_odom.inference.fitting.prediction import predict_all
+from werrimbi_odom.inference.legs.cutting import match, with_stated_noise
+
+TRUE = WhiteNoiseRobot()
+NEAR, FAR = (1e-3, 1e-3), (6e-3, 4e-3)
+
+
+def scanned(seed: int, stated: bool = True) -> Run:
+    """A drive that begins in a small room and ends in a hall; each pose errs as it states."""
+    random = np.random.default_rng(seed)
+    run = drive(TRUE, wandering(random, 60.0), random, sigma_xy=0.0, sigma_yaw=0.0, every=5)
+    seen = run.reference
+    assert seen is not None
+    hall = seen.time > np.median(seen.time)
+    xy, yaw = (np.where(hall, far, near) for near, far in zip(NEAR, FAR, strict=True))
+    noise = random.standard_normal((3, seen.time.size)) * (xy, xy, yaw)
+    columns = {
+        name: getattr(seen, name) + part
+        for name, part in zip(("x", "y", "yaw"), noise, strict=True)
+    }
+    sigmas = {"sigma_xy": xy, "sigma_yaw": yaw} if stated else {}
+    return replace(
+        run, name=f"run_{seed}", reference=replace(seen, own_axes=True, **columns, **sigmas)
+    )
+
+
+def test_innovations_are_white_in_every_part_of_a_drive() -> None:
+    """With one noise for all poses those of the small room were a fifth of what they should be."""
+    robot = TRUE.entered()
+    laid = concatenated([match(scanned(seed), robot, leg=0.25) for seed in range(4)])
+    options = with_stated_noise(EvaluationOptions(reference_kind="absolute"), laid.runs)
+    point = start_point(laid, robot, options)
+    variances = replace(point.variances, stamp=np.array([1e-12]))
+    found = innovations(robot, laid, predict_all(point.model, laid), variances, "absolute")
+    white, shares = found.whitened(), laid.shares
+    assert shares is not None
+    for part in (shares[:, 0] < 0.1, shares[:, 0] > 0.9):
+        assert part.sum() > 100
+        assert np.sqrt(np.mean(white[part] ** 2)) == pytest.approx(1.0, abs=0.15)
+
+
+def test_where_not_all_state_it_one_noise_counts() -> None:
+    robot = TRUE.entered()
+    runs = [match(scanned(seed, stated=seed > 0), robot, leg=0.25) for seed in range(2)]
+    assert concatenated(runs).shares is None
