@@ -171,7 +171,7 @@ def scores(
 ) -> tuple[Score, ...]:
     """Score of each candidate beside what `knobs` can turn; those without any effect left out."""
     rest, found = signatures(runs, point, knobs, tried)
-    results = []
+    results: list[Score] = []
     for candidate, flat, free in found:
         if candidate.place is not None:
             results += _scores_of_places(candidate, len(runs.runs), free, rest)
