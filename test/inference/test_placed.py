@@ -27,6 +27,8 @@ from werrimbi_odom.inference.fitting.run_phases import at_home
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.adding.words import words_of
+from werrimbi_odom.report.terminal import as_text
 
 PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
 PLACES = (0.3, 1.9, -2.0, 3.0)
@@ -105,6 +107,7 @@ def test_a_bump_and_a_flat_are_found_where_they_are(height: float) -> None:
     assert places is not None
     assert all(apart(a, b) < 0.15 for a, b in zip(places, PLACES, strict=False))
     assert found.robot.effects[0].unknown == ("place",)
+    assert "the node does not, and leaves the effect out" in as_text(words_of(found))
 
 
 @pytest.mark.parametrize("height", [1.5e-3, -1.5e-3])
@@ -150,6 +153,18 @@ def test_it_is_named_and_lasts() -> None:
     laid = concatenated(match_finely(runs, PLAIN, 1.0, None))
     best = search_round(laid, first_fit(laid, PLAIN), [find("reference_gyro_drift")], PLAIN)
     assert lasting_effect(laid, best.tried[0]) < SURE
+
+
+def test_a_rate_of_each_drive_is_not_written_and_no_node_is_said_to_learn_it() -> None:
+    runs = drifting()
+    found = add_effects([find("reference_gyro_drift")], runs[:3], PLAIN, holdout=runs[3:])
+    assert found.robot.effects[0].unknown == ("rate",)
+    rates = found.parameters["rate"].of_runs
+    np.testing.assert_allclose(rates, RATES[:3], atol=1e-5)
+    assert found.holdout.sides.after < 0.5 * found.holdout.sides.before
+    told = as_text(words_of(found))
+    assert "find it anew in each drive" in told
+    assert "the node" not in told
 
 
 def test_the_prediction_turns_with_it_leg_by_leg() -> None:
