@@ -221,3 +221,16 @@ def test_words_and_units_must_be_there(bad: Effect, told: str) -> None:
 def test_units_are_written_as_usual(name: str) -> None:
     creep = replace(GOOD.parameters["creep"], unit=name)
     check_effect(replace(GOOD, parameters={"creep": creep}))
+
+
+def test_a_place_that_each_drive_has_anew_goes_with_one_size() -> None:
+    """Its score is of one size; with another one beside it nobody would look for the place."""
+    place = replace(find("left_tread_bump").parameters["place"])
+
+    def two_sizes(travel: Any, drive: Any, one: float, other: float, place: float) -> Any:
+        return travel
+
+    two_sizes.__doc__ = PAGE
+    effect = wheel_effect(one=AMOUNT, other=AMOUNT, place=place)(two_sizes)
+    with pytest.raises(AssertionError, match=r"parameter place: .*one size, and there are 2"):
+        check_effect(effect)

@@ -184,7 +184,9 @@ def test_an_oval_wheel_swings_twice_a_turn_by_half_its_amplitude(side: str) -> N
 
 @pytest.mark.parametrize("height", [2e-3, -2e-3])
 @pytest.mark.parametrize("side", ["left", "right"])
-def test_a_bump_is_gained_on_a_sixth_of_each_turn_and_nowhere_else(side: str, height: float) -> None:
+def test_a_bump_is_gained_on_a_sixth_of_each_turn_and_nowhere_else(
+    side: str, height: float
+) -> None:
     """Stood on at a third of a turn: place says how far it has gone on since, at counter zero."""
     law = find(f"{side}_tread_bump").using(height=height, place=-2 * math.pi / 3)
     there, plain = track(plan(*line(5.0)), law, rate=500.0), track(plan(*line(5.0)), rate=500.0)

@@ -143,7 +143,8 @@ def as_json(effect: Effect) -> dict[str, Any]:
 
 def anew(item: Parameter) -> str:
     """That a parameter is another one in each run, where it is."""
-    return ", anew in each run unless counters keep their zero" if item.per_run else ""
+    kept = " unless counters keep their zero" if item.unit == "rad" else ""
+    return f", anew in each run{kept}" if item.per_run else ""
 
 
 def _in_unit(unit: str) -> str:

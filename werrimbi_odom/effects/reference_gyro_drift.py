@@ -12,7 +12,7 @@ from werrimbi_odom.model.reference_view import View
     sketch=Sketch(
         "wandering_bias",
         "the reference's heading leaves the true one, faster and faster",
-        "the gyro's bias wanders, and its heading leaves the true one",
+        "the gyro's heading leaves the true one",
     ),
     rate=Parameter(
         "rad/s^2",

@@ -66,8 +66,16 @@ def _has_words(effect: Effect) -> None:
         )
     if effect.twins:
         demand("Twins" in page.sections, effect, law, "it names twins; say what separates them")
+    sizes = [item for item in effect.parameters.values() if not item.tries]
     for name, item in effect.parameters.items():
         where = f"parameter {name}"
+        demand(
+            not (item.tries and item.per_run) or len(sizes) == 1,
+            effect,
+            law,
+            f"{where}: a place that each drive has anew (tries and per_run) goes with one size, "
+            f"and there are {len(sizes)}",
+        )
         demand(bool(item.says.strip()), effect, law, f"{where} must say what it is")
         demand(
             item.unit == "" or _UNIT.fullmatch(item.unit) is not None,

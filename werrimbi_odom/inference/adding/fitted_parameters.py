@@ -85,10 +85,11 @@ def parameters_of(effect: Effect, fit: Fitted, given: Robot) -> dict[str, Fitted
 
 def _remark(value: float, std: float, knob: Knob, effect: Effect) -> Remark:
     name = knob.name.rpartition(".")[2]
-    is_phase = effect.quadrature is not None and name == effect.quadrature[1]
+    # What each drive could have anew is where on a wheel something is, and goes all the way round.
+    is_place = effect.parameters[name].per_run and effect.parameters[name].unit == "rad"
     if not is_determined(effect.parameters[name], value, std):
         return "undetermined"
-    return "bound" if not is_phase and _at_bound(value, effect.parameters[name]) else "fitted"
+    return "bound" if not is_place and _at_bound(value, effect.parameters[name]) else "fitted"
 
 
 def _at_bound(value: float, item: Parameter) -> bool:

@@ -46,9 +46,11 @@ class Candidate:
     @property
     def place(self) -> str | None:
         """Parameter that is a place round the wheel, not known yet: each run may have its own."""
-        for name, item in self.effect.parameters.items():
-            if item.per_run and item.tries and name not in self.shape:
-                return name
+        items = self.effect.parameters
+        if sum(not item.tries for item in items.values()) == 1:
+            for name, item in items.items():
+                if item.per_run and item.tries and name not in self.shape:
+                    return name
         return None
 
     @property

@@ -171,7 +171,7 @@ def scores(
 ) -> tuple[Score, ...]:
     """Score of each candidate beside what `knobs` can turn; those without any effect left out."""
     rest, found = signatures(runs, point, knobs, tried)
-    results = []
+    results: list[Score] = []
     for candidate, flat, free in found:
         if candidate.place is not None:
             results += _scores_of_places(candidate, len(runs.runs), free, rest)
@@ -209,8 +209,11 @@ def _slope(
     poses: list[Floats] = []
     for factor in (1.0, -1.0):
         applied = candidate.with_value(coordinate, factor)
-        if factor < 0.0 and applied.values == candidate.with_value(coordinate, 0.0).values:
-            return np.asarray(poses[0] - prediction.relative)  # a bound: one side alone
+        # One side alone at a bound; and of a law that is a line in its size, at many places.
+        one_sided = candidate.place is not None
+        one_sided |= applied.values == candidate.with_value(coordinate, 0.0).values
+        if factor < 0.0 and one_sided:
+            return np.asarray(poses[0] - prediction.relative)
         robot = replace(model.robot, effects=(*model.robot.effects, applied))
         poses.append(legs_shown(replace(model, robot=robot), runs))
     return np.asarray(0.5 * (poses[0] - poses[1]))

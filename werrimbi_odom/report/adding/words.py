@@ -82,6 +82,13 @@ def remark_told(item: FittedParameter) -> str:
         return "; THESE DRIVES DO NOT DETERMINE IT"
     if item.remark == "bound":
         return "; AT THE LIMIT OF WHAT IS PHYSICALLY POSSIBLE"
+    if item.remark == "per run" and item.declared.tries:
+        return (
+            "; not written: compare, diagnose and add find it anew in each drive, by its "
+            "reference; the node does not, and leaves the effect out"
+        )
+    if item.remark == "per run" and item.declared.unit != "rad":
+        return "; not written: compare, diagnose and add find it anew in each drive"
     if item.remark == "per run":
         return "; not written: the node learns it anew in each drive"
     return ""

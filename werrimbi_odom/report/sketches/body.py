@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 
 from werrimbi_odom.report.sketches.parts import (
@@ -22,7 +21,6 @@ from werrimbi_odom.report.sketches.parts import (
     line,
     oblong,
     robot,
-    wave,
     words,
 )
 

@@ -65,14 +65,14 @@ def _tread_bump(side: str) -> Parts:
         (80 + size * math.sin(at - 0.7), 86 - size * math.cos(at - 0.7))
         for at, size in zip(_ROUND, radii, strict=True)
     ]
-    jumps = [(165, 100), (185, 97), (195, 68), (235, 84), (255, 90), (265, 61), (315, 80)]
+    jumps = [(165, 108), (195, 108), (207, 82), (262, 82), (274, 56), (315, 56)]
     return [
         floor(122, 145),
         line(*tread, colour=colour),
         circle(80, 86, 36, colour=GREY, dash=DASH),
         circle(80, 86, 4, colour=INK, fill=INK),
         arc(80, 86, 54, 60, 10, colour=GREY, head=True),
-        line((165, 85), (315, 85), colour=GREY),
+        line((165, 108), (315, 108), colour=GREY),
         line(*jumps, colour=colour),
         words(240, 130, "turns of the wheel", colour=GREY),
     ]
