@@ -23,7 +23,7 @@ from werrimbi_odom.model.pose import Pose
 from werrimbi_odom.model.trajectory import trajectory
 from werrimbi_odom.ros.compare_legs import Both, LegCutter, LegError
 from werrimbi_odom.ros.compare_track import OdometryTrack, Reading
-from werrimbi_odom.ros.compare_window import Window
+from werrimbi_odom.ros.compare_window import LASTS, Window
 
 TRUE = WhiteNoiseRobot()
 SIGMA_XY, SIGMA_YAW = 1e-3, 2e-3
@@ -182,9 +182,30 @@ def test_a_constant_covariance_is_said_to_be_no_covariance_of_a_path() -> None:
 
 def test_one_jump_of_the_reference_is_told_from_a_covariance_that_is_wrong() -> None:
     window = Window(20)
-    for deviation in [3.0] * 19 + [5_000.0]:
+    for deviation in [3.0] * 19 + [5_000.0] + [3.0] * (LASTS - 1):
         window.take(deviation, True)
     assert "one leg makes 99% of it" in window.verdict()[1]
+
+
+def test_a_day_of_honest_legs_is_no_alarm() -> None:
+    """Windows overlap: one alone is outside by chance once in 24,000 legs, and five times here."""
+    legs, alarms, before = 60_000, 0, True
+    window = Window(20)
+    for deviation in np.random.default_rng(1801).chisquare(3, legs).tolist():
+        window.take(deviation, True)
+        quiet, before = before, window._outside < LASTS
+        alarms += quiet and not before
+    assert alarms == 0
+
+
+def test_it_is_said_once_it_has_lasted() -> None:
+    window = Window(20)
+    for deviation in [3.0] * 20 + [200.0] * (LASTS - 1):
+        window.take(deviation, True)
+    assert window.verdict()[0]
+    assert "may be too small, more legs will tell" in window.verdict()[1]
+    window.take(3.0, True)
+    assert not window.verdict()[0]
 
 
 def test_nothing_is_said_of_the_first_few_legs() -> None:

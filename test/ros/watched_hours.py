@@ -116,12 +116,13 @@ def wanderings(seed: int, file: RobotFile, sets_in: float, hidden: str) -> Itera
     begun, counted, there = 0.0, np.zeros(2), Pose()
     sound = True
     while True:
-        if sound and begun >= sets_in:
+        if sound and begun >= sets_in - 1.0:
             effect, _, strength = hidden.partition("=")
             size = ON_PAPER[effect]
             robot = replace(robot, **{size: getattr(robot, size) * float(strength)})
             sound = False
-        speeds = wandering(rng, 900.0, RATES[0])
+        left = sets_in - begun
+        speeds = wandering(rng, left if 1.0 < left < 900.0 else 900.0, RATES[0])
         every = RATES[0] // RATES[1]
         run = drive(robot, speeds, rng, sigma_xy=0.0, sigma_yaw=0.0, every=every, hertz=RATES[0])
         ticks, exact = run.ticks, run.reference

@@ -14,6 +14,9 @@ FREEDOM = 3
 """Degrees of freedom of a leg: x, y, yaw."""
 LEAST = 5
 """Legs before anything is said."""
+LASTS = 5
+"""Windows in a row that must be outside before it is said: of an honest covariance that is one in
+260,000 legs, a week of driving, where a single window is once in 24,000, a day's (simulated)."""
 
 _ONE_LEG = 0.7  # share of a window's NEES from which on one leg is said to be the cause
 
@@ -30,6 +33,8 @@ class Window:
     def __init__(self, size: int) -> None:
         self._deviations: deque[float] = deque(maxlen=size)
         self._grew: deque[bool] = deque(maxlen=size)
+        self._outside = 0
+        """Windows in a row whose NEES is not honest."""
 
     def take(self, deviation: float, grows: bool) -> None:
         """Take a leg; where the covariance did not grow its deviation means nothing."""
@@ -37,6 +42,9 @@ class Window:
         self._grew.append(grows)
         if grows:
             self._deviations.append(deviation)
+            low, high = honest_bounds(FREEDOM * self.count)
+            honest = self.count < LEAST or low <= self.nees <= high
+            self._outside = 0 if honest else self._outside + 1
 
     @property
     def count(self) -> int:
@@ -75,7 +83,7 @@ class Window:
             f"NEES {self.nees:.2f} over {self.count} legs, honest between {low:.2f} and "
             f"{high:.2f}; {self.coverage:.0%} of legs inside their 95 % ellipsoid"
         )
-        if self.count < LEAST or low <= self.nees <= high:
+        if self._outside < LASTS:
             within = self.bounds()
             if within[0] <= self.nees <= within[1]:
                 return True, f"the covariance is honest: {words}"
