@@ -17,7 +17,7 @@ GRAVITY = 9.81
 """[m/s^2]"""
 
 SIXTH = math.pi / 3.0
-"""Of a turn [rad]: for that the library tells how high a bump is. Drives hold height times width."""
+"""Of a turn [rad]: for that the library tells how high a bump is. Drives hold height by width."""
 
 _VALUES: dict[str, Callable[[Given], dict[str, float]]] = {
     "track_width": lambda it: {"multiplier": it["multiplier"]},
