@@ -16,6 +16,9 @@ Given = Mapping[str, Any]
 GRAVITY = 9.81
 """[m/s^2]"""
 
+SIXTH = math.pi / 3.0
+"""Of a turn [rad]: for that the library tells how high a bump is. Drives hold height by width."""
+
 _VALUES: dict[str, Callable[[Given], dict[str, float]]] = {
     "track_width": lambda it: {"multiplier": it["multiplier"]},
     "unequal_wheel_radii": lambda it: {"ratio": it["ratio"]},
@@ -52,6 +55,8 @@ _VALUES: dict[str, Callable[[Given], dict[str, float]]] = {
     "encoder_skew": lambda it: {"delay": it["delay"]},
     "oval_left_wheel": lambda it: {"amplitude": it["amplitude"]},
     "oval_right_wheel": lambda it: {"amplitude": it["amplitude"]},
+    "left_tread_bump": lambda it: {"height": it["thickness"] * it["around"] / SIXTH},
+    "right_tread_bump": lambda it: {"height": it["thickness"] * it["around"] / SIXTH},
     "radius_by_channel": lambda it: {
         "temperature": it.get("expansion", 0.0),
         "payload": -it.get("yielding", 0.0),
@@ -148,7 +153,12 @@ def noises_of(truth: Given, said: Collection[str] = ()) -> dict[str, float]:
 
 _EXCHANGING = {"wheels_swapped", "reference_mirrored"}
 
-GIVES_WAY = ("left_backlash.travel", "right_backlash.travel")
+GIVES_WAY = (
+    "left_backlash.travel",
+    "right_backlash.travel",
+    "left_tread_bump.height",
+    "right_tread_bump.height",
+)
 """The engine's stops of a play are springs: of a play of 1, 2 or 5 mm the robot feels 0.22 mm more
 while it drives steadily, and less of that while it brakes. So the true one is not known to within
-what a fit states."""
+what a fit states. Nor is the height of a bump that does not go a sixth of the way round."""

@@ -52,8 +52,9 @@ def left_tread_bump(
     Tape or a patch on the tread, something that stuck to it, a flat from braking hard or from
     standing. While the wheel rolls on it, its hub stands higher and goes farther for the same
     angle; the radius of the robot file is that of the rest of the tread. A narrow high bump and a
-    wide low one do the same to drives, so the height is told for a width of a sixth of a turn. The
-    place belongs to the counter; where that starts anywhere, each drive has a place of its own.
+    wide low one do the same to drives, so the height is told for a width of a sixth of a turn; of
+    one that covers 30 to 90 degrees it is then out by up to a sixth, whatever is stated. The place
+    belongs to the counter; where that starts anywhere, each drive has a place of its own.
 
     Formula    left += height * angle that the left wheel turns while it stands on it    [m]
                (that is from -30 to 30 degrees of its angle + place, in each turn)
@@ -86,8 +87,9 @@ def right_tread_bump(
     Tape or a patch on the tread, something that stuck to it, a flat from braking hard or from
     standing. While the wheel rolls on it, its hub stands higher and goes farther for the same
     angle; the radius of the robot file is that of the rest of the tread. A narrow high bump and a
-    wide low one do the same to drives, so the height is told for a width of a sixth of a turn. The
-    place belongs to the counter; where that starts anywhere, each drive has a place of its own.
+    wide low one do the same to drives, so the height is told for a width of a sixth of a turn; of
+    one that covers 30 to 90 degrees it is then out by up to a sixth, whatever is stated. The place
+    belongs to the counter; where that starts anywhere, each drive has a place of its own.
 
     Formula    right += height * angle that the right wheel turns while it stands on it    [m]
                (that is from -30 to 30 degrees of its angle + place, in each turn)

@@ -105,7 +105,7 @@ class TreadBump(Peculiarity):
         """Move the robot by what the wheel goes farther while its hub is higher.
 
         A hard wheel of the engine that grows and shrinks within a turn leaves the floor and loses
-        a sixth of what the bump does, at any speed; a soft one stays on it.
+        a quarter to a half of what the bump does; a soft one stays on it.
         """
         wheel: WheelPlan = getattr(chassis, self.side)
         base = chassis.left.y - chassis.right.y
