@@ -5,12 +5,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 import numpy as np
 
-from test.inference.test_homogeneity import ROBOT, driven, nothing
-from werrimbi_odom.inference.diagnosis.search import first_fit
+from test.inference.test_homogeneity import ROBOT, driven, late, nothing
+from werrimbi_odom.effects import LIBRARY
+from werrimbi_odom.inference.chances import chi2_above, fisher_above
+from werrimbi_odom.inference.diagnosis.chance import chance_by_parts, chance_of_size
+from werrimbi_odom.inference.diagnosis.homogeneity import lasting_effect
+from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, value_of
 from werrimbi_odom.inference.fitting.parts import parts_of, parts_of_innovations, widening
@@ -50,6 +56,31 @@ def test_sizes_are_known_as_well_as_the_parts_agree_on_them() -> None:
     by_parts, by_noise = zip(*map(deviations, fits), strict=True)
     assert rms(list(by_noise)) > 1.5
     assert rms(list(by_parts)) < 1.2
+
+
+def test_where_parts_disagree_a_size_is_as_sure_as_they_are() -> None:
+    importance = 30.0
+    sound, shrinking = calibrated(100, nothing), calibrated(200, nothing, 0.05)
+    assert set(sound.doubts.values()) == {1.0}
+    assert shrinking.doubts["wheel_radius_scale"] > 4.0
+    for fit in (sound, shrinking):
+        weighed = replace(fit, importance=dict.fromkeys(CALIBRATED, importance))
+        for name in CALIBRATED:
+            by_noise, by_parts = chi2_above(importance, 1), fisher_above(importance, 1, 27)
+            apart = fit.doubts[name] > 1.0
+            assert chance_of_size(weighed, name) == (by_parts if apart else by_noise)
+
+
+def test_an_effect_that_parts_disagree_on_counts_all_that_was_tried() -> None:
+    laid = concatenated(match_finely([late(0, 0.1)], ROBOT, 0.25, None))
+    delay = [effect for effect in LIBRARY if effect.name == "reference_delay"]
+    (fit,) = search_round(laid, first_fit(laid, ROBOT), delay, ROBOT).tried
+    mine = np.array([knob.name == "reference_delay.delay" for knob, _ in fit.design.columns])
+    alone = lasting_effect(laid, fit, "reference_delay")
+    for apart in (False, True):
+        told = replace(fit, widening=np.where(mine & apart, 1.5, 1.0))
+        chance = chance_by_parts(laid, told, "reference_delay", 60)
+        assert chance == (60.0 if apart else 1.0) * alone > 0.0
 
 
 def test_legs_without_data_are_no_part() -> None:

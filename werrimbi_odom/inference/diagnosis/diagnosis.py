@@ -20,11 +20,12 @@ from dataclasses import replace
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.diagnosis.chance import chance, chance_by_parts
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.diagnosis.held_law import misfit_of_found, misfit_of_held_law
 from werrimbi_odom.inference.diagnosis.holdout import Judge, begin
-from werrimbi_odom.inference.diagnosis.homogeneity import lasting, lasting_effect
+from werrimbi_odom.inference.diagnosis.homogeneity import lasting
 from werrimbi_odom.inference.diagnosis.in_place_of_held import rivals_of_held
 from werrimbi_odom.inference.diagnosis.search import (
     Instead,
@@ -36,7 +37,7 @@ from werrimbi_odom.inference.diagnosis.search import (
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.support import Support, askable, support_of
-from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, chance, told
+from werrimbi_odom.inference.diagnosis.verdict import Diagnosis, Ranked, Verdict, told
 from werrimbi_odom.inference.diagnosis.without_events import events_beside, fitted_without_events
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import Score
@@ -155,7 +156,7 @@ def _best(this: Round, runs: Concatenated) -> Fitted | None:
     before = this.before.cost + this.before.needless + this.before.price * fit.scatter
     if fit.total >= before or chance(fit, this.before, this.number) >= SURE:
         return None
-    return fit if lasting_effect(runs, fit, fit.names[-1]) < SURE else None
+    return fit if chance_by_parts(runs, fit, fit.names[-1], this.number) < SURE else None
 
 
 def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) -> Dependence | None:

@@ -84,6 +84,8 @@ class Fitted:
     than the noise makes."""
     widening: Floats
     """By how much that widened the standard deviation of each, (p,)."""
+    doubts: dict[str, float]
+    """By how much it widened the variance of each calibration effect."""
     moves: Floats
     """Of the design's columns, for a unit of each number that was free; (p, q)."""
     design: Design
@@ -180,6 +182,7 @@ def fitted(
         importance,
         covariance,
         wide,
+        doubt,
         ways.matrix,
         design,
         ways.held,

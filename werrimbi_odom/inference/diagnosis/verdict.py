@@ -13,14 +13,14 @@ import numpy as np
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import name_of_base, sizes_of, std_as_effect
-from werrimbi_odom.inference.chances import chi2_above, fisher_above, in_any_of
+from werrimbi_odom.inference.chances import chi2_above, in_any_of
 from werrimbi_odom.inference.comparison.another_drive import of_another_drive
 from werrimbi_odom.inference.comparison.judged_legs import far_above_noise
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, remarks_on
+from werrimbi_odom.inference.diagnosis.chance import chance, chance_by_parts, chance_of_size
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.held_law import Misfit
 from werrimbi_odom.inference.diagnosis.holdout import Begun, Errors, Judge
-from werrimbi_odom.inference.diagnosis.homogeneity import lasting_effect
 from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import (
@@ -129,16 +129,6 @@ class Diagnosis:
         return next((effect for effect in known if effect.name == name), None) or find(name)
 
 
-def chance(fit: Fitted, before: Fitted, tried: int) -> float:
-    """How often chance would lower the cost as much, all that was tried counted.
-
-    By a likelihood ratio; where the noise is what few data scatter by themselves, by Fisher's F.
-    """
-    gain = (before.cost + before.needless - fit.cost - fit.needless) / fit.scatter
-    numbers = max(round((fit.price - before.price) / fit.price_of_one), 1)
-    return in_any_of(max(tried, 1), fisher_above(gain / numbers, numbers, fit.spare))
-
-
 def told(
     begun: Begun,
     given: Robot,
@@ -221,7 +211,7 @@ def told(
 def _is_news(name: str, final: Fitted, tried: int) -> bool:
     """Whether a size is a finding: worth its price twice, and as sure as any effect must be."""
     worth = final.importance[name]
-    certain = in_any_of(tried, chi2_above(worth, 1)) < SURE
+    certain = in_any_of(tried, chance_of_size(final, name)) < SURE
     return certain and worth > CALIBRATION_WORTH * final.price_of_one
 
 
@@ -280,12 +270,12 @@ def _ranking(
             if name not in ranked or taken:
                 p_value = chance(fit, this.before, this.number)
                 if taken:
-                    p_value = max(p_value, lasting_effect(laid, final, name))
+                    p_value = max(p_value, chance_by_parts(laid, final, name, this.number))
                 ranked[name] = _worth(name, p_value, before, judge.of(fit.point.model))
     calibrated = judge.of(rounds[0].before.point.model)
     for name in CALIBRATED:
         importance = final.importance.get(name, 0.0)
-        p_value = in_any_of(rounds[0].number, chi2_above(importance, 1))
+        p_value = in_any_of(rounds[0].number, chance_of_size(final, name))
         untried = Ranked(name, p_value, None, None)
         worth = _worth(name, p_value, mended, calibrated) if importance else untried
         base = name_of_base(final.point.model.robot)
