@@ -126,11 +126,12 @@ def test_live_is_what_werrimbi_odom_says_of_the_record(
 
 
 def test_a_parameter_of_an_effect_may_change_on_the_way(launch: Any, robot: dict[str, Any]) -> None:
-    names = ["lateral_slip", "eccentric_left_wheel"]
+    names = ["lateral_slip", "eccentric_left_wheel", "left_tread_bump"]
     held = {"effects": names, "eccentric_left_wheel.amplitude": AMPLITUDE}
     node = launch(robot | held)
     found_each_other(node)
     assert "eccentric_left_wheel: not applied while the phase is unknown" in node.stderr()
+    assert "left_tread_bump: not applied while its place is unknown" in node.stderr()
     ticks = drive(10.0)
     first, second = Ticks(*(c[:100] for c in ticks)), Ticks(*(c[100:] for c in ticks))
     play(node, first)

@@ -177,14 +177,21 @@ class Learning(NoLearning):
 def learning_of(wiring: inputs.Wiring, robot: Robot) -> NoLearning:
     """What the robot file asks for, where there is anything to learn."""
     topic, log = str(wiring.values["learn_from_topic"]), wiring.node.get_logger()
-    unknown = [applied.name for applied in robot.effects if applied.unknown]
-    if topic and learnable(robot):
+    learnt = [applied.name for applied in learnable(robot)]
+    others = {
+        applied.name: ", ".join(applied.unknown)
+        for applied in robot.effects
+        if applied.unknown and applied.name not in learnt and applied.effect.stage != "reference"
+    }
+    for name, numbers in others.items():
+        log.warning(f"{name}: not applied while its {numbers} is unknown; set it in the robot file")
+    if topic and learnt:
         return Learning(wiring, robot, topic, str(wiring.values["learn_from_type"]))
     if topic:
         log.info(f"nothing to learn from {topic}: no effect has an unknown phase")
-    elif unknown:
+    elif learnt:
         log.warning(
-            f"{', '.join(unknown)}: not applied while the phase is unknown; set it, or give "
+            f"{', '.join(learnt)}: not applied while the phase is unknown; set it, or give "
             "learn_from_topic a measured heading to learn it from"
         )
     return NoLearning()
