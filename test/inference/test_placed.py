@@ -152,7 +152,7 @@ def test_it_is_named_and_lasts() -> None:
     assert (told.verdict, told.found) == ("named", ("reference_gyro_drift",))
     laid = concatenated(match_finely(runs, PLAIN, 1.0, None))
     best = search_round(laid, first_fit(laid, PLAIN), [find("reference_gyro_drift")], PLAIN)
-    assert lasting_effect(laid, best.tried[0]) < SURE
+    assert lasting_effect(laid, best.tried[0], "reference_gyro_drift") < SURE
 
 
 def test_a_rate_of_each_drive_is_not_written_and_no_node_is_said_to_learn_it() -> None:

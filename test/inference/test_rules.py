@@ -88,6 +88,7 @@ ELSEWHERE = {
     "fitting/noise.py": {
         "_LOWEST": "where the search of a variance ends",
     },
+    "fitting/placed.py": {"FINE": "a grid", "_ROUNDS": "rounds of a fit"},
     "fitting/prediction.py": {"_BLOCK": "size of a block"},
     "fitting/concatenated_runs.py": {
         "MODELS": "size of a cache",
