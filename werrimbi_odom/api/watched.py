@@ -54,7 +54,8 @@ def found_in(folder: Path) -> dict[str, Any]:
         result, drives = of_now(whole, robot, drives, options)
     except InputError as error:
         return {"error": str(error)}
-    told, changes = result.to_dict(), whole.to_dict()["changes"]
+    of_whole = whole.to_dict()
+    told, changes = of_whole if result is whole else result.to_dict(), of_whole["changes"]
     said = [*(each["words"] for each in changes), getattr(result.document().words[0], "text", "")]
     words = [each.summary().partition("\n\n")[0] for each in (whole, result)]
     found: dict[str, Any] = {

@@ -60,7 +60,7 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
 
 
-class _Fitted(NamedTuple):
+class _Together(NamedTuple):
     """Effects fitted to drives, and who judges them."""
 
     judge: Judge
@@ -112,7 +112,7 @@ def add_effects(
 
     def fit_them(
         runs: Sequence[Run], holdout: Sequence[Run], first: bool
-    ) -> tuple[_Fitted, Events]:
+    ) -> tuple[_Together, Events]:
         told = show if first else silent
         told(0.0, "set-up")
         started = begin(runs, holdout, robot, options, given=given)
@@ -121,7 +121,7 @@ def add_effects(
         told(0.15, "calibration")
         drives = drives_of(judge.train, begun, options)
         drives, fits = fits_without_jumps(effects, drives, begun, robot, also, told)
-        found = _Fitted(judge, set_up, also, drives, fits)
+        found = _Together(judge, set_up, also, drives, fits)
         return found, events_beside(drives.laid, fits.all.point, judge)
 
     (judge, set_up, also, drives, fits), happened = fitted_without_events(fit_them, runs, holdout)

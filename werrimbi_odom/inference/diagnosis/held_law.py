@@ -14,8 +14,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-import numpy as np
-
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.homogeneity import lasting, pattern_of
 from werrimbi_odom.inference.diagnosis.search import Round
@@ -117,8 +115,7 @@ def _laws(fit: Fitted, runs: Concatenated) -> Iterator[tuple[AppliedEffect, Supp
         parameters = applied.effect.parameters
         shape = {name: applied.values[name] for name, item in parameters.items() if item.tries}
         support = support_of(Candidate(applied.effect, shape), drive)
-        by_noise = fit.covariance / np.outer(fit.widening, fit.widening)
-        explained = rise_without(applied.name, fit.design, by_noise, fit.point)
+        explained = rise_without(applied.name, fit.design, fit.by_noise, fit.point)
         if support.outputs and explained > 0.0:
             yield applied, support, explained
 

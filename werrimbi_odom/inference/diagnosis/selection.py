@@ -84,13 +84,21 @@ class Fitted:
     than the noise makes."""
     widening: Floats
     """By how much that widened the standard deviation of each, (p,)."""
-    doubts: dict[str, float]
-    """By how much it widened the variance of each calibration effect."""
     moves: Floats
     """Of the design's columns, for a unit of each number that was free; (p, q)."""
     design: Design
     held: tuple[str, ...]
     """Shared directions (of `CALIBRATED`, or knobs) that the runs do not determine: as given."""
+
+    @property
+    def by_noise(self) -> Floats:
+        """The covariance that the noise alone makes."""
+        return self.covariance / np.outer(self.widening, self.widening)
+
+    @property
+    def doubts(self) -> dict[str, float]:
+        """By how much the parts widened the variance of each calibration effect."""
+        return doubts_of_sizes(self.design, self.by_noise, self.widening, self.point.model.robot)
 
     @property
     def told(self) -> bool:
@@ -182,7 +190,6 @@ def fitted(
         importance,
         covariance,
         wide,
-        doubt,
         ways.matrix,
         design,
         ways.held,
