@@ -20,12 +20,12 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     candidates,
-    knobs_of_candidate,
+    parameters_of_candidate,
     put_in,
     scores,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -86,13 +86,13 @@ class Floor:
         held = {applied.name for applied in fit.point.model.robot.effects}
         channels = set.intersection(*(set(run.counters.channels) for run in self.laid.runs))
         shapes = candidates([effect], held, channels, len(self.laid.runs))
-        knobs = (*CALIBRATION, *fit.knobs)
-        found = scores(self.laid, fit.point, knobs, shapes)
+        numbers = (*CALIBRATION, *fit.numbers)
+        found = scores(self.laid, fit.point, numbers, shapes)
         best = sorted(found, key=lambda score: -score.gain)[:SHAPES]
         fits = []
         for score in best:
             start = replace(fit.point, model=put_in(fit.point.model, score))
-            own = (*fit.knobs, *knobs_of_candidate(score.candidate))
+            own = (*fit.numbers, *parameters_of_candidate(score.candidate))
             names = (*fit.names, effect.name)
             fits.append(fitted(self.laid, start, names, own, robot, rounds=3))
         # A weak phase may differ from run to run or be one for all: the price tells.

@@ -23,7 +23,7 @@ from werrimbi_odom.inference.adding.start_values import Drives
 from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.diagnosis.sizes import sizes_needed, with_sizes
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, changed
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, changed
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.effect import Effect, view_of
 from werrimbi_odom.model.reference_measurement import shown

@@ -19,7 +19,7 @@ from werrimbi_odom.inference.changes.numbers import groups_of
 from werrimbi_odom.inference.changes.search import Segmented, segmented
 from werrimbi_odom.inference.changes.shapes import Shape, gains, rows_of
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.linear import nuisance, score_test
 
 PRICE = 9.0

@@ -17,7 +17,7 @@ from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.compare import Comparison, compare, judged
 from werrimbi_odom.inference.comparison.prepared import prepare
 from werrimbi_odom.inference.comparison.verdict import verdict_of
-from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.comparison.as_json import json_of
 from werrimbi_odom.report.comparison.words import words_of

@@ -18,7 +18,7 @@ from test.inference.test_fit import NOMINAL, TRUTH, runs_of
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.adding.adding import add_effects
 from werrimbi_odom.inference.calibration.any_driving import calibrate
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.legs.cutting import match
 
 NORMAL_95 = 1.959963984540054

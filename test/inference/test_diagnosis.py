@@ -21,7 +21,7 @@ from werrimbi_odom.inference.diagnosis.support import support_of
 from werrimbi_odom.inference.fitting.candidates import candidates, scores
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, path_of, predict, predict_all
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.pose import Floats

@@ -24,7 +24,7 @@ from werrimbi_odom.inference.diagnosis.evidence import dependences
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.design import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.noise import NOISES, noise_estimates
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.robot import Robot
@@ -59,8 +59,8 @@ def deviations(seed: int) -> dict[str, float]:
     fit, noises = fitted(runs_of(seed))
     spread = np.sqrt(np.diag(fit.covariance))
     result = {
-        knob.name: (fit.point.model.value(knob) - TRUTH[knob.name]) / spread[index]
-        for index, knob in enumerate(fit.free)
+        number.name: (fit.point.model.value(number) - TRUTH[number.name]) / spread[index]
+        for index, number in enumerate(fit.free)
     }
     for name in NOISES:
         result[name] = (noises[name].value - TRUTH[name]) / noises[name].std
@@ -93,7 +93,7 @@ def test_a_base_that_was_never_turned_on_is_left_alone() -> None:
     matched = [match(run, nominal, 0.5) for run in straight]
     # The wheels themselves differ, so the robot does turn a little: what is told apart is bounded.
     fit = fit_model(matched, start_point(matched, nominal))
-    assert [knob.name for knob in fit.mute] == ["wheel_separation_multiplier"]
+    assert [number.name for number in fit.mute] == ["wheel_separation_multiplier"]
     assert fit.robot.wheel_separation_multiplier == 1.02
 
 
@@ -106,9 +106,9 @@ def test_jumps_of_the_tracker_are_found_and_left_out() -> None:
     honest, _ = fitted(clean)
     robust, _ = fitted(spoilt)
     assert sum(int(legs.sum()) for legs in robust.point.excluded) >= 2
-    for index, knob in enumerate(robust.free):
+    for index, number in enumerate(robust.free):
         spread = np.sqrt(robust.covariance[index, index])
-        shift = robust.point.model.value(knob) - honest.point.model.value(knob)
+        shift = robust.point.model.value(number) - honest.point.model.value(number)
         assert abs(shift) < spread
 
 
@@ -120,8 +120,8 @@ def test_positions_alone_calibrate_too() -> None:
     fit = fit_model(matched, start_point(matched, NOMINAL))
     spread = np.sqrt(np.diag(fit.covariance))
     assert len(fit.free) == 3
-    for index, knob in enumerate(fit.free):
-        assert abs(fit.point.model.value(knob) - TRUTH[knob.name]) < 4.0 * spread[index]
+    for index, number in enumerate(fit.free):
+        assert abs(fit.point.model.value(number) - TRUTH[number.name]) < 4.0 * spread[index]
 
 
 def headings_alone(runs: list[Any]) -> list[Any]:
@@ -142,7 +142,7 @@ def test_headings_alone_hold_two_numbers(kind: ReferenceKind) -> None:
     # Of the three values only two move independently.
     assert np.linalg.matrix_rank(fit.covariance, tol=1e-12) == 2
     for side, value in (("left", left), ("right", right)):
-        index = [knob.name for knob in fit.free].index(f"{side}_wheel_radius_multiplier")
+        index = [number.name for number in fit.free].index(f"{side}_wheel_radius_multiplier")
         row = np.zeros(3)
         row[index], row[0] = 1.0 / value, -1.0 / base
         std = float(np.sqrt(row @ fit.covariance @ row))
@@ -163,9 +163,9 @@ def test_an_incremental_reference_calibrates_too() -> None:
     matched = [match(run, NOMINAL, 0.25) for run in runs]
     incremental = EvaluationOptions(reference_kind="incremental")
     fit = fit_model(matched, start_point(matched, NOMINAL, incremental))
-    for index, knob in enumerate(fit.free):
+    for index, number in enumerate(fit.free):
         spread = np.sqrt(fit.covariance[index, index])
-        assert abs(fit.point.model.value(knob) - TRUTH[knob.name]) < 4.0 * spread
+        assert abs(fit.point.model.value(number) - TRUTH[number.name]) < 4.0 * spread
 
 
 def test_under_a_true_model_nothing_depends_on_anything() -> None:

@@ -188,8 +188,8 @@ def test_joined_legs_are_what_the_steps_say() -> None:
     """Long legs of short ones, against each length from all its steps."""
     robot: Robot = replace(ROBOT, left_wheel_noise=4e-4, right_wheel_noise=6e-4)
     prepared = prepare([silent(run_of(robot, seed)) for seed in (1, 2)], robot)
+    from werrimbi_odom.inference.fitting.free_parameters import Model
     from werrimbi_odom.inference.fitting.joined_legs import predict_joined
-    from werrimbi_odom.inference.fitting.knobs import Model
 
     mounted = AppliedEffect(
         find("reference_lever_arm"), find("reference_lever_arm").nulls | {"x": 0.1, "y": -0.05}

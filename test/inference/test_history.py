@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from werrimbi_odom.inference.changes.history import Course, DriveTold, course_of
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.model.robot import Robot
 
 ROBOT = Robot(0.35, 0.05, 2000.0, 2000.0)

@@ -20,7 +20,7 @@ from werrimbi_odom.inference.diagnosis.evidence import dependences
 from werrimbi_odom.inference.diagnosis.homogeneity import _chance, lasting, lasting_effect
 from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
@@ -73,11 +73,11 @@ def chances(seeds: range, spoil: Spoil, hotter: float = 0.0) -> list[tuple[str, 
     runs = [driven(seed, spoil, f"drive_{seed}", hotter) for seed in seeds]
     laid = concatenated(match_finely(runs, ROBOT, 1.0, None))
     fit = first_fit(laid, ROBOT)
-    knobs = (*CALIBRATION, *fit.knobs)
-    cells = dependences(laid, fit.point, knobs)[:8]
+    numbers = (*CALIBRATION, *fit.numbers)
+    cells = dependences(laid, fit.point, numbers)[:8]
     return [
         (each.cell.variable.name, each.cell.p_value, each.p_value)
-        for each in lasting(laid, fit.point, knobs, cells)
+        for each in lasting(laid, fit.point, numbers, cells)
     ]
 
 

@@ -22,7 +22,7 @@ from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, figu
 from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
-from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.noise import of_no_wheel
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins

@@ -18,7 +18,7 @@ from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, value_of
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
 from werrimbi_odom.inference.fitting.parts import parts_of, parts_of_innovations, widening
 from werrimbi_odom.inference.legs.cutting import match_finely
 
@@ -32,7 +32,7 @@ def calibrated(seed: int, spoil: Spoil, hotter: float = 0.0) -> Fitted:
 
 def deviations(fit: Fitted) -> tuple[np.ndarray, np.ndarray]:
     """Of base and radii from the truth: in standard deviations, and in those of the noise alone."""
-    names = [knob.name for knob, _ in fit.design.columns]
+    names = [number.name for number, _ in fit.design.columns]
     where = [names.index(name) for name in MULTIPLIERS]
     robot = fit.point.model.robot
     error = np.array([value_of(robot, name) - value_of(ROBOT, name) for name in MULTIPLIERS])
@@ -75,7 +75,7 @@ def test_an_effect_that_parts_disagree_on_counts_all_that_was_tried() -> None:
     laid = concatenated(match_finely([late(0, 0.1)], ROBOT, 0.25, None))
     delay = [effect for effect in LIBRARY if effect.name == "reference_delay"]
     (fit,) = search_round(laid, first_fit(laid, ROBOT), delay, ROBOT).tried
-    mine = np.array([knob.name == "reference_delay.delay" for knob, _ in fit.design.columns])
+    mine = np.array([number.name == "reference_delay.delay" for number, _ in fit.design.columns])
     alone = lasting_effect(laid, fit, "reference_delay")
     for apart in (False, True):
         told = replace(fit, widening=np.where(mine & apart, 1.5, 1.0))

@@ -20,7 +20,7 @@ from werrimbi_odom.inference.diagnosis.homogeneity import lasting_effect
 from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
 from werrimbi_odom.inference.fitting.candidates import Candidate, put_in, scores
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.placed import best_placed
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.run_phases import at_home

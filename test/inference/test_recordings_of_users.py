@@ -24,7 +24,7 @@ from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence
 from werrimbi_odom.inference.diagnosis.variables import Variable, curve_knots, variables_of
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.rules import DRIFT_LEGS
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
@@ -73,7 +73,7 @@ def test_a_size_is_found_as_surely_as_an_effect(away: float) -> None:
     run = run_of(ROBOT, 5, 20)
     fit = diagnose([run], ROBOT, [], holdout=[run]).final
     robot = fit.point.model.robot
-    column = [knob.name for knob, _ in fit.design.columns].index("wheel_separation_multiplier")
+    column = [number.name for number, _ in fit.design.columns].index("wheel_separation_multiplier")
     share = float(np.sqrt(fit.covariance[column, column])) * away
     off = replace(
         robot, wheel_separation_multiplier=robot.wheel_separation_multiplier * (1.0 + share)

@@ -84,7 +84,7 @@ ELSEWHERE = {
         "_TAIL": "Student's t until jumps are known; the fit itself is without it",
     },
     "fitting/wandering.py": {"ANEW": "as good as infinite"},
-    "fitting/knobs.py": {"STEP": "of a derivative"},
+    "fitting/free_parameters.py": {"STEP": "of a derivative"},
     "fitting/noise.py": {
         "_LOWEST": "where the search of a variance ends",
     },

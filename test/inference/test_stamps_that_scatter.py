@@ -17,7 +17,7 @@ from werrimbi_odom.effects.collection import find
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, knobs_of
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, parameters_to_fit
 from werrimbi_odom.inference.legs.cutting import match_finely
 
 TRUE = WhiteNoiseRobot(left_noise=2e-4, right_noise=2e-4)
@@ -37,9 +37,12 @@ def test_stamps_that_scatter_are_no_slip() -> None:
     slip = find("longitudinal_slip")
     robot = replace(TRUE.entered(), effects=(slip.using(coefficient=0.0),))
     runs = concatenated(match_finely([scattered(seed) for seed in range(10)], robot, 1.0))
-    knobs = (*CALIBRATION, *(replace(each, bounds=(-0.3, 0.3)) for each in knobs_of(slip)))
-    found = fit_model(runs, start_point(runs, robot), knobs)
-    which = [knob.name for knob in found.free].index("longitudinal_slip.coefficient")
+    numbers = (
+        *CALIBRATION,
+        *(replace(each, bounds=(-0.3, 0.3)) for each in parameters_to_fit(slip)),
+    )
+    found = fit_model(runs, start_point(runs, robot), numbers)
+    which = [number.name for number in found.free].index("longitudinal_slip.coefficient")
     size = found.point.model.value(found.free[which])
     assert abs(size) < 3.0 * np.sqrt(found.covariance[which, which])
 

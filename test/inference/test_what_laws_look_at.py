@@ -21,7 +21,7 @@ from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.effects.shapes import mean_sin, share_inside
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.model.effect import Effect, Parameter, body_effect, wheel_effect

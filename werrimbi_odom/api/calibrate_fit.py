@@ -170,7 +170,7 @@ def _json(result: Calibration) -> dict[str, Any]:
     return {
         "parameters": parameters,
         "correlation": {
-            "names": [knob.name for knob in result.fit.free],
+            "names": [number.name for number in result.fit.free],
             "matrix": result.correlation.tolist(),
         },
         "numbers": result.fit.numbers,

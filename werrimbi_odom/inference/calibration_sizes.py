@@ -15,7 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, changed
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, changed
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot

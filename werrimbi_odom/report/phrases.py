@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, Stretch
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.numbers import with_std

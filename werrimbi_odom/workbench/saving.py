@@ -12,7 +12,7 @@ from pathlib import Path
 
 from werrimbi_odom.files.replacing import place_of
 from werrimbi_odom.files.robot_file import RobotFile, new_text, write_robot_file
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.workbench.steps import Session
 

@@ -46,7 +46,7 @@ from werrimbi_odom.inference.diagnosis.without_events import events_beside, fitt
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.knobs import (
+from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     MULTIPLIERS,
     NUISANCES,
@@ -235,7 +235,7 @@ def _noise(
 ) -> tuple[dict[str, NoiseEstimate], tuple[Dependence, ...], Misfit | None, bool]:
     """Noise of the wheels, what the errors still depend on, as diagnose tells it; sane wheels."""
     noises = noises_of(drives, fit)
-    found = dependences(drives.laid, fit.point, (*CALIBRATION, *fit.knobs))
+    found = dependences(drives.laid, fit.point, (*CALIBRATION, *fit.numbers))
     remaining = tuple(cell for cell in found if cell.p_value < VERY_SURE)
     wheels = [noises[name] for name in WHEEL_NOISES]
     sane = not any(of_no_wheel(item) for item in wheels)
@@ -269,5 +269,5 @@ def _on_all(
     home = judge.at_home(fit.point.model)
     own = (*fit.point.model.own, *home.model.own)
     point = replace(fit.point, model=Model(fit.point.model.robot, own), excluded=skipped)
-    again = every.fit(point, fit.names, fit.knobs, given)
+    again = every.fit(point, fit.names, fit.numbers, given)
     return every, with_sizes(every.laid, again, given, sizes)

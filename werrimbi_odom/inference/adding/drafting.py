@@ -259,7 +259,7 @@ def _by_score(
     before = replace(base, point=replace(base.point, variances=noise))
     found = []
     for plan in plans:
-        scores = scored(drives, before, [plan.effect], base.knobs)
+        scores = scored(drives, before, [plan.effect], base.numbers)
         if scores:
             best = max(scores, key=lambda each: each.gain)
             paid = base.price_of_one * plan.form.numbers
@@ -271,9 +271,9 @@ def _fitted(diagnosis: Diagnosis, drives: Drives, plan: _Plan) -> _Option:
     """A draft of one form, fitted from where its score points."""
     base = diagnosis.final
     assert plan.score is not None
-    start = start_at(base, plan.score, base.knobs)
+    start = start_at(base, plan.score, base.numbers)
     # After one round the noise is still what stood for the law: a true one cost more than another.
-    fit = drives.fit(start.point, start.names, start.knobs, diagnosis.given, rounds=2)
+    fit = drives.fit(start.point, start.names, start.numbers, diagnosis.given, rounds=2)
     return _Option(plan.cell, plan.seen, plan.form, plan.effect, plan.source, fit)
 
 

@@ -20,15 +20,15 @@ from werrimbi_odom.inference.adding.fitted_parameters import (
 from werrimbi_odom.inference.adding.start_values import (
     Drives,
     Start,
-    knobs_held,
     mistake_put_in,
+    parameters_held,
     start_of_held,
     starts,
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.fit import without_jumps
-from werrimbi_odom.inference.fitting.knobs import Model, changed
+from werrimbi_odom.inference.fitting.free_parameters import Model, changed
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show
@@ -95,13 +95,13 @@ def fits_of(
     sought = [effect for effect in effects if effect.name not in CALIBRATED]
     if not sought:
         start = start_of_held(drives, begun, also)
-        fit = drives.fit(start.point, also, start.knobs, given)
+        fit = drives.fit(start.point, also, start.numbers, given)
         return Fits(fit, fit, {})
     names = {effect.name for effect in sought}
     others = tuple(item for item in begun.effects if item.name not in (*names, *also))
     bare = replace(begun if not also else given, effects=others)
     start = start_of_held(drives, bare, ())
-    none = fit = drives.fit(start.point, (), start.knobs, given)
+    none = fit = drives.fit(start.point, (), start.numbers, given)
     show(0.3, sought[0].name)
     mended = [effect for effect in sought if effect.is_mistake and effect.name not in also]
     if also or mended:
@@ -114,15 +114,15 @@ def fits_of(
         for effect in mended:
             robot = mistake_put_in(robot, effect)
         start = start_of_held(drives, robot, (*also, *(effect.name for effect in mended)))
-        knobs = start.knobs
+        numbers = start.numbers
         for effect in sought:
-            knobs = knobs_held(robot, knobs, effect)
-        fit = _well(drives, replace(start, knobs=knobs), given)
+            numbers = parameters_held(robot, numbers, effect)
+        fit = _well(drives, replace(start, numbers=numbers), given)
     waiting = [effect for effect in sought if effect not in mended and effect.name not in also]
     count = len(waiting)
     while waiting:
         show(0.65 - 0.3 * len(waiting) / count, ", ".join(effect.name for effect in waiting))
-        options = {effect.name: starts(drives, fit, effect, fit.knobs) for effect in waiting}
+        options = {effect.name: starts(drives, fit, effect, fit.numbers) for effect in waiting}
         gains = {
             name: max((start.gain for start in each), default=-1.0)
             for name, each in options.items()
@@ -157,17 +157,17 @@ def _without(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitte
     )
     point = replace(fit.point, model=Model(replace(model.robot, effects=effects), own))
     names = tuple(name for name in fit.names if name != effect.name)
-    knobs = tuple(knob for knob in fit.knobs if not knob.name.startswith(mine))
-    return drives.fit(point, names, knobs, given)
+    numbers = tuple(number for number in fit.numbers if not number.name.startswith(mine))
+    return drives.fit(point, names, numbers, given)
 
 
 def _well(drives: Drives, start: Start, given: Robot) -> Fitted:
     """A fit from a start, phases led past half a turn where they ran against it."""
-    fit = drives.fit(start.point, start.names, start.knobs, given)
-    turned = without_phases_stuck(fit.point.model, fit.knobs)
+    fit = drives.fit(start.point, start.names, start.numbers, given)
+    turned = without_phases_stuck(fit.point.model, fit.numbers)
     if turned is None:
         return fit
-    again = drives.fit(replace(fit.point, model=turned), start.names, start.knobs, given)
+    again = drives.fit(replace(fit.point, model=turned), start.names, start.numbers, given)
     return min(fit, again, key=lambda each: each.cost)
 
 
@@ -185,6 +185,6 @@ def _pruned(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitted
         key = f"{effect.name}.{name}"
         model = fit.point.model
         at_null = changed(model.robot, {key: effect.parameters[name].null})
-        knobs = tuple(knob for knob in fit.knobs if knob.name != key)
+        numbers = tuple(number for number in fit.numbers if number.name != key)
         point = replace(fit.point, model=Model(at_null, model.own))
-        fit = drives.fit(point, fit.names, knobs, given)
+        fit = drives.fit(point, fit.names, numbers, given)

@@ -20,7 +20,12 @@ from werrimbi_odom.inference.calibration_sizes import (
 )
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob, Model, is_determined
+from werrimbi_odom.inference.fitting.free_parameters import (
+    MULTIPLIERS,
+    FreeParameter,
+    Model,
+    is_determined,
+)
 from werrimbi_odom.inference.rules import CALIBRATION_KNOWN, SIGNIFICANT
 from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter
 from werrimbi_odom.model.robot import Robot
@@ -61,30 +66,30 @@ def parameters_of(effect: Effect, fit: Fitted, given: Robot) -> dict[str, Fitted
         return {next(iter(effect.parameters)): _calibrated(effect, fit, given)}
     model = fit.point.model
     applied = next(item for item in model.robot.effects if item.name == effect.name)
-    knobs = {knob.name: knob for knob in fit.knobs}
+    numbers = {number.name: number for number in fit.numbers}
     found = {}
     for name, item in effect.parameters.items():
         key = f"{effect.name}.{name}"
-        knob = knobs.get(key)
+        number = numbers.get(key)
         if item.as_base:
             found[name] = _as_base(applied, item, fit, given)
-        elif knob is None and item.tries:
+        elif number is None and item.tries:
             found[name] = FittedParameter(item, None, None, "undetermined")
-        elif knob is None:
+        elif number is None:
             found[name] = FittedParameter(item, applied.values[name], None, "null")
-        elif knob.per_run:
+        elif number.per_run:
             own = tuple(mine[key] for mine in model.own)
             found[name] = FittedParameter(item, None, None, "per run", own)
         else:
             std = std_of(fit, key)
             found[name] = FittedParameter(
-                item, applied.values[name], std, _remark(applied.values[name], std, knob, effect)
+                item, applied.values[name], std, _remark(applied.values[name], std, number, effect)
             )
     return found
 
 
-def _remark(value: float, std: float, knob: Knob, effect: Effect) -> Remark:
-    name = knob.name.rpartition(".")[2]
+def _remark(value: float, std: float, number: FreeParameter, effect: Effect) -> Remark:
+    name = number.name.rpartition(".")[2]
     # What each drive could have anew is where on a wheel something is, and goes all the way round.
     is_place = effect.parameters[name].per_run and effect.parameters[name].unit == "rad"
     if not is_determined(effect.parameters[name], value, std):
@@ -100,8 +105,8 @@ def _at_bound(value: float, item: Parameter) -> bool:
 
 
 def std_of(fit: Fitted, name: str) -> float:
-    """Standard deviation of a shared knob of a fit."""
-    names = [knob.name for knob, _ in fit.design.columns]
+    """Standard deviation of a shared number of a fit."""
+    names = [number.name for number, _ in fit.design.columns]
     index = names.index(name)
     return float(np.sqrt(max(fit.covariance[index, index], 0.0)))
 
@@ -110,7 +115,7 @@ def _calibrated(effect: Effect, fit: Fitted, given: Robot) -> FittedParameter:
     """A calibration effect's number, relative to the given robot file."""
     robot = fit.point.model.robot
     value = sizes_of(robot).over(sizes_of(given)).as_effects[effect.name]
-    names = [knob.name for knob, _ in fit.design.columns]
+    names = [number.name for number, _ in fit.design.columns]
     where = [names.index(name) for name in MULTIPLIERS]
     std = value * std_as_effect(effect.name, robot, fit.covariance[np.ix_(where, where)])
     declared = next(iter(effect.parameters.values()))
@@ -215,18 +220,18 @@ def weakest(
     return name if doubt[name] < limit else None
 
 
-def without_phases_stuck(model: Model, knobs: Sequence[Knob]) -> Model | None:
+def without_phases_stuck(model: Model, numbers: Sequence[FreeParameter]) -> Model | None:
     """The model with phases that ran against half a turn put to its other side; None: none did."""
     stuck = False
     shared: dict[str, float] = {}
     own: list[dict[str, float]] = [{} for _ in model.own]
-    for knob in knobs:
-        if knob.unit != "rad" or abs(knob.bounds[1] - math.pi) > 1e-6:
+    for number in numbers:
+        if number.unit != "rad" or abs(number.bounds[1] - math.pi) > 1e-6:
             continue
-        for index in range(len(own)) if knob.per_run else [-1]:
-            value = model.value(knob, max(index, 0))
+        for index in range(len(own)) if number.per_run else [-1]:
+            value = model.value(number, max(index, 0))
             if abs(value) > math.pi - 1e-4:
                 target = shared if index < 0 else own[index]
-                target[knob.name] = -value
+                target[number.name] = -value
                 stuck = True
     return model.turned(shared, own) if stuck else None

@@ -22,14 +22,18 @@ from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     Score,
     candidates,
-    knobs_of_candidate,
+    parameters_of_candidate,
     put_in,
     scores,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import start_point
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, knobs_of
+from werrimbi_odom.inference.fitting.free_parameters import (
+    CALIBRATION,
+    FreeParameter,
+    parameters_to_fit,
+)
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
 from werrimbi_odom.inference.legs.cutting import at_edges, match_finely, with_stated_noise
 from werrimbi_odom.inference.rules import SHAPES_FITTED
@@ -48,7 +52,7 @@ class Drives:
     options: EvaluationOptions
     """With what the records state of the reference's noise."""
 
-    def begin(self, robot: Robot) -> tuple[Point, tuple[Knob, ...]]:
+    def begin(self, robot: Robot) -> tuple[Point, tuple[FreeParameter, ...]]:
         """A robot as it is, with what each run has of its own learnt; and what may be turned."""
         point = replace(start_point(self.laid, robot, self.options), excluded=self.skipped)
         return with_own_values(self.laid, point)
@@ -57,23 +61,23 @@ class Drives:
         self,
         point: Point,
         names: Sequence[str],
-        knobs: Sequence[Knob],
+        numbers: Sequence[FreeParameter],
         given: Robot,
         rounds: int = 3,
     ) -> Fitted:
-        """Fit calibration, noise and `knobs`."""
+        """Fit calibration, noise and `numbers`."""
         point = replace(point, options=self.options)
-        return fitted(self.laid, point, names, knobs, given, rounds=rounds)
+        return fitted(self.laid, point, names, numbers, given, rounds=rounds)
 
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """A model to begin with, and the effect's own knobs."""
+    """A model to begin with, and the effect's own numbers."""
 
     point: Point
     names: tuple[str, ...]
     """Effects beyond the given robot's."""
-    knobs: tuple[Knob, ...]
+    numbers: tuple[FreeParameter, ...]
     """Of all effects."""
     gain: float = 0.0
     """What its score promises, of an effect that begins where that points."""
@@ -125,28 +129,28 @@ def with_set_up(
 
 
 def starts(
-    drives: Drives, before: Fitted, effect: Effect, knobs: Sequence[Knob]
+    drives: Drives, before: Fitted, effect: Effect, numbers: Sequence[FreeParameter]
 ) -> tuple[Start, ...]:
     """Where fits of an effect begin: at its score's values, for the best of its shapes."""
-    found = scored(drives, before, [effect], knobs)
-    return tuple(start_at(before, score, knobs) for score in _best_shapes(found))
+    found = scored(drives, before, [effect], numbers)
+    return tuple(start_at(before, score, numbers) for score in _best_shapes(found))
 
 
 def scored(
-    drives: Drives, before: Fitted, effects: Sequence[Effect], knobs: Sequence[Knob]
+    drives: Drives, before: Fitted, effects: Sequence[Effect], numbers: Sequence[FreeParameter]
 ) -> tuple[Score, ...]:
     """What effects would explain beside a model, to first order: each shape of each effect."""
     runs = drives.laid
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     tried = candidates(effects, (), channels, len(runs.runs), asked=True)
-    return scores(runs, before.point, (*CALIBRATION, *knobs), tried)
+    return scores(runs, before.point, (*CALIBRATION, *numbers), tried)
 
 
-def start_at(before: Fitted, score: Score, knobs: Sequence[Knob]) -> Start:
+def start_at(before: Fitted, score: Score, numbers: Sequence[FreeParameter]) -> Start:
     """A fit that begins where a score points."""
-    own = knobs_of_candidate(score.candidate)
+    own = parameters_of_candidate(score.candidate)
     point = replace(before.point, model=put_in(before.point.model, score))
-    return Start(point, (*before.names, score.candidate.name), (*knobs, *own), score.gain)
+    return Start(point, (*before.names, score.candidate.name), (*numbers, *own), score.gain)
 
 
 def _best_shapes(found: Sequence[Score]) -> list[Score]:
@@ -160,8 +164,8 @@ def _best_shapes(found: Sequence[Score]) -> list[Score]:
 
 def start_of_held(drives: Drives, robot: Robot, names: tuple[str, ...]) -> Start:
     """A fit that begins with the values that the robot holds."""
-    point, knobs = drives.begin(robot)
-    return Start(point, names, knobs)
+    point, numbers = drives.begin(robot)
+    return Start(point, names, numbers)
 
 
 def mistake_put_in(robot: Robot, effect: Effect) -> Robot:
@@ -169,8 +173,12 @@ def mistake_put_in(robot: Robot, effect: Effect) -> Robot:
     return replace(robot, effects=(AppliedEffect(effect), *robot.effects))
 
 
-def knobs_held(robot: Robot, knobs: Sequence[Knob], effect: Effect) -> tuple[Knob, ...]:
-    """Knobs of a robot's effects, with those of `effect` where it is held."""
-    names = {knob.name for knob in knobs}
-    more = knobs_of(effect) if any(item.name == effect.name for item in robot.effects) else ()
-    return (*knobs, *(knob for knob in more if knob.name not in names))
+def parameters_held(
+    robot: Robot, numbers: Sequence[FreeParameter], effect: Effect
+) -> tuple[FreeParameter, ...]:
+    """Free parameters of a robot's effects, with those of `effect` where it is held."""
+    names = {number.name for number in numbers}
+    more = (
+        parameters_to_fit(effect) if any(item.name == effect.name for item in robot.effects) else ()
+    )
+    return (*numbers, *(number for number in more if number.name not in names))

@@ -17,14 +17,14 @@ from werrimbi_odom.inference.diagnosis.post_selection import Law, spread_over_ch
 from werrimbi_odom.inference.diagnosis.selection import Fitted, grain_of
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, choices
 from werrimbi_odom.inference.fitting.design import Costs, stacked
-from werrimbi_odom.inference.fitting.knobs import (
+from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     MULTIPLIERS,
     START_YAW,
-    Knob,
+    FreeParameter,
     Model,
-    knobs_of,
     own_of,
+    parameters_to_fit,
     shared_of,
     value_of,
 )
@@ -74,12 +74,17 @@ def with_spread(
     """
     laws = [law for effect in effects if len(law := _optional(effect)) > 1]
     columns = fit.design.columns
-    lacking = {name for law in laws for name in law} - {knob.name for knob, _ in columns}
+    lacking = {name for law in laws for name in law} - {number.name for number, _ in columns}
     design = fit.design
     if lacking:
-        more = [knob for effect in effects for knob in knobs_of(effect) if knob.name in lacking]
+        more = [
+            number
+            for effect in effects
+            for number in parameters_to_fit(effect)
+            if number.name in lacking
+        ]
         design = stacked(drives.laid, fit.point, [*_local(fit), *more])
-    free = np.linalg.matrix_rank(fit.moves[[knob.name in MULTIPLIERS for knob, _ in columns]])
+    free = np.linalg.matrix_rank(fit.moves[[number.name in MULTIPLIERS for number, _ in columns]])
     if free != sizes.free:  # they could not be put back (`with_sizes`)
         *_, sizes = choices()
     spread = spread_over_choices(fit, given, wanted, sizes, laws, design)
@@ -114,12 +119,12 @@ def _optional(effect: Effect) -> Law:
     }
 
 
-def _local(fit: Fitted) -> list[Knob]:
+def _local(fit: Fitted) -> list[FreeParameter]:
     """Columns of the fit's design, but start headings."""
-    knobs = (*fit.knobs, *fit.point.model.nuisance_knobs)
-    return [*CALIBRATION, *own_of(knobs), *shared_of(fit.knobs)]
+    numbers = (*fit.numbers, *fit.point.model.nuisance_parameters)
+    return [*CALIBRATION, *own_of(numbers), *shared_of(fit.numbers)]
 
 
 def _precision(drives: Drives, fit: Fitted) -> Precision:
-    local = [knob for knob in _local(fit) if knob.name != START_YAW]
+    local = [number for number in _local(fit) if number.name != START_YAW]
     return Precision.of(drives.laid, fit.point, local, fit.moves)

@@ -15,7 +15,7 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.design import Costs
 from werrimbi_odom.inference.fitting.fit import ModelFit, fit_model, start_point
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, MULTIPLIERS, START_YAW
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, MULTIPLIERS, START_YAW
 from werrimbi_odom.inference.fitting.likelihood import relative_errors
 from werrimbi_odom.inference.fitting.noise import (
     NoiseEstimate,
@@ -84,19 +84,19 @@ def calibrate(
 ) -> Calibration:
     """Fit base, radii and noise to all runs at once, and question the result."""
     begin = start_point(runs, robot, options)
-    knobs = (*CALIBRATION, *begin.model.nuisance_knobs)
-    fit = fit_model(runs, begin, knobs)
+    numbers = (*CALIBRATION, *begin.model.nuisance_parameters)
+    fit = fit_model(runs, begin, numbers)
     held = options.sigmas_known
-    local = [knob for knob in knobs if knob.name != START_YAW]
+    local = [number for number in numbers if number.name != START_YAW]
     precision = Precision.of(concatenated(runs), fit.point, local, fit.ways.matrix)
     noises = noise_estimates(
         Costs(runs, fit.point), fit.point.variances, held, precision.information
     )
-    turned = [knob for knob in knobs if knob.per_run or knob in fit.free]
+    turned = [number for number in numbers if number.per_run or number in fit.free]
     found = dependences(concatenated(runs), fit.point, turned)
     misfit = tuple(item for item in found if item.p_value < SURE)
     strange = _strange(fit, noises)
-    names = [knob.name for knob in fit.free]
+    names = [number.name for number in fit.free]
     spread = np.sqrt(np.diag(fit.covariance)) * precision.widening(noises, names)
     multipliers = {}
     for name in MULTIPLIERS:
@@ -129,7 +129,7 @@ def calibrate(
 
 
 def _strange(fit: ModelFit, noises: dict[str, NoiseEstimate]) -> tuple[str, ...]:
-    said = [f"{knob.name} ran against what is possible" for knob in fit.at_bound]
+    said = [f"{number.name} ran against what is possible" for number in fit.at_bound]
     for name in ("left_wheel_noise", "right_wheel_noise"):
         if of_no_wheel(noises[name]):
             said.append(

@@ -40,7 +40,7 @@ from werrimbi_odom.inference.fitting.candidates import (
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, STEP, Knob
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, STEP, FreeParameter
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import DATED, MOST_ALONE, RIVAL, SURE
 from werrimbi_odom.model.effect import Effect
@@ -74,7 +74,7 @@ class Moved:
 class Evidence:
     """What the legs of all runs say of the numbers, each row an innovation."""
 
-    numbers: tuple[Knob, ...]
+    numbers: tuple[FreeParameter, ...]
     """Those that may change, the first of the columns."""
     names: tuple[str, ...]
     """Of all s columns."""
@@ -134,7 +134,9 @@ def _beside(
     evidence = evidence_of(runs, fit.point, fit.design, fit.scatter)
     order = driven_in_order([float(run.counters.time[0]) for run in runs.runs])
     drives = evidence.drives(np.arange(order.size, dtype=np.float64)).chosen(order)
-    groups = groups_of([knob.name for knob in evidence.numbers], evidence.values, len(drives.names))
+    groups = groups_of(
+        [number.name for number in evidence.numbers], evidence.values, len(drives.names)
+    )
     found = segmented(drives, groups, fit.price_of_one)
     place = np.argsort(order)
     steps = [
@@ -176,7 +178,7 @@ def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float
     robot = point.model.robot
     held = {applied.name for applied in robot.effects}
     white, flat = design.flat()
-    columns = {knob.name: flat[:, n] for n, (knob, run) in enumerate(design.columns) if run < 0}
+    columns = {number.name: flat[:, n] for n, (number, run) in enumerate(design.columns) if run < 0}
     own = flat[:, [n for n, (_, run) in enumerate(design.columns) if run >= 0]]
     mounts = [find(name) for name in MOUNT if name not in held]
     nulls = {}
@@ -192,8 +194,8 @@ def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float
             for (key, item), column in sizes:
                 columns[f"{effect.name}.{key}"] = column / (STEP * item.scale)
                 nulls[f"{effect.name}.{key}"] = item.null
-    numbers = tuple(knob for knob in numbers_of(robot, seen) if knob.name in columns)
-    named = [knob.name for knob in numbers]
+    numbers = tuple(number for number in numbers_of(robot, seen) if number.name in columns)
+    named = [number.name for number in numbers]
     names = (*named, *(name for name in columns if name not in named))
     size = np.sqrt(scatter)
     return Evidence(
@@ -242,11 +244,11 @@ def _worth_of_effects(diagnosis: Diagnosis, fit: Fitted, effects: Sequence[Effec
     this = next((each for each in diagnosis.rounds if each.before is fit), None)
     if this is not None:
         return _worth_of(this.scores, fit)
-    knobs = (*CALIBRATION, *fit.knobs, *fit.point.model.nuisance_knobs)
+    numbers = (*CALIBRATION, *fit.numbers, *fit.point.model.nuisance_parameters)
     known = {applied.name for applied in fit.point.model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in diagnosis.runs.runs))
     tried = candidates(effects, known, channels, len(diagnosis.runs.runs))
-    return _worth_of(scores(diagnosis.runs, fit.point, knobs, tried), fit)
+    return _worth_of(scores(diagnosis.runs, fit.point, numbers, tried), fit)
 
 
 def _worth_of(found: Sequence[Score] | Sequence[Dependence], fit: Fitted) -> float:
@@ -255,7 +257,7 @@ def _worth_of(found: Sequence[Score] | Sequence[Dependence], fit: Fitted) -> flo
 
 
 def moves_of(
-    found: Segmented, numbers: Sequence[Knob], names: Sequence[str], runs: Sequence[str]
+    found: Segmented, numbers: Sequence[FreeParameter], names: Sequence[str], runs: Sequence[str]
 ) -> tuple[Moved, ...]:
     """Each number of each change, once for a drive.
 
@@ -264,7 +266,7 @@ def moves_of(
     runs
         Names of the drives, in their order.
     """
-    units = {knob.name: knob.unit for knob in numbers}
+    units = {number.name: number.unit for number in numbers}
     told: dict[tuple[str, int], Moved] = {}
     for step in found.steps:
         first = step.shape.first

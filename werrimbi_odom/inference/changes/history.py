@@ -32,7 +32,7 @@ from werrimbi_odom.inference.changes.search import Segmented, levels_of, segment
 from werrimbi_odom.inference.changes.shapes import Kind, rows_of
 from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, FreeParameter
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
 from werrimbi_odom.inference.legs.no_driving import looked_at
@@ -139,11 +139,11 @@ def course_of(told: Sequence[DriveTold], robot: Robot, time: Floats) -> Course:
     time : ndarray, shape (R,)
         When they were, rising [s].
     """
-    knobs = _numbers(told, robot)
-    names = tuple(knob.name for knob in knobs)
+    numbers = _numbers(told, robot)
+    names = tuple(number.name for number in numbers)
     given = np.array([value_at(robot, name, _NULLS) for name in names])
     drives = _laid(told, names, time)
-    limits = np.array([knob.undetermined for knob in knobs])
+    limits = np.array([number.undetermined for number in numbers])
     own = _alone(drives, given, limits)
     std = np.sqrt(np.einsum("rii->ri", own.spread))
     heard = std < 0.5 * limits
@@ -161,7 +161,7 @@ def course_of(told: Sequence[DriveTold], robot: Robot, time: Floats) -> Course:
         tuple(
             Number(name, unit, float(there[0][0]), *alone, *pooled, *level, size)
             for (name, unit, size), there, alone, pooled, level in zip(
-                _titles(knobs, scatter, given),
+                _titles(numbers, scatter, given),
                 _shown(names, values),
                 _silenced(_shown(names, own), [*limits, *limits[1:3]]),
                 _shown(names, _pooled(drives, found, scatter)),
@@ -170,7 +170,7 @@ def course_of(told: Sequence[DriveTold], robot: Robot, time: Floats) -> Course:
             )
             if np.isfinite(alone[0]).any()
         ),
-        moves_of(found, knobs, names, [str(number) for number in range(len(told))]),
+        moves_of(found, numbers, names, [str(number) for number in range(len(told))]),
         _off(names, given, found, heard),
     )
 
@@ -184,12 +184,12 @@ class Values(NamedTuple):
     """Their covariance, (R, s, s)."""
 
 
-def _numbers(told: Sequence[DriveTold], robot: Robot) -> tuple[Knob, ...]:
+def _numbers(told: Sequence[DriveTold], robot: Robot) -> tuple[FreeParameter, ...]:
     """Those that any drive knows of."""
     known = {name for each in told for name in each.names}
     held = {applied.name for applied in robot.effects}
     mounts = [find(name) for name in MOUNT if name not in held]
-    return tuple(knob for knob in numbers_of(robot, mounts) if knob.name in known)
+    return tuple(number for number in numbers_of(robot, mounts) if number.name in known)
 
 
 def _laid(told: Sequence[DriveTold], names: Sequence[str], time: Floats) -> Drives:
@@ -280,10 +280,15 @@ def _pooled(drives: Drives, found: Segmented, scatter: Floats) -> Values:
     return Values((level + own @ news)[..., 0], own + found.spread)
 
 
-def _titles(knobs: Sequence[Knob], scatter: Floats, given: Floats) -> list[tuple[str, str, float]]:
+def _titles(
+    numbers: Sequence[FreeParameter], scatter: Floats, given: Floats
+) -> list[tuple[str, str, float]]:
     """Names, units and scatter of all that is shown."""
-    found = [(knob.name, knob.unit, float(size)) for knob, size in zip(knobs, scatter, strict=True)]
-    left, right = (scatter[number] / given[number] for number in (1, 2))
+    found = [
+        (number.name, number.unit, float(size))
+        for number, size in zip(numbers, scatter, strict=True)
+    ]
+    left, right = (scatter[side] / given[side] for side in (1, 2))
     both, mean = math.hypot(float(left), float(right)), 0.5 * float(given[1] + given[2])
     return [
         *found,

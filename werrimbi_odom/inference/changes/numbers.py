@@ -9,14 +9,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
-from werrimbi_odom.inference.fitting.knobs import (
+from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     MULTIPLIERS,
-    Knob,
-    knobs_of,
+    FreeParameter,
+    parameters_to_fit,
     value_of,
 )
+from werrimbi_odom.inference.fitting.identifiable import CALIBRATED
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -46,7 +46,7 @@ class Group:
         return int(self.directions.shape[1])
 
 
-def numbers_of(robot: Robot, mounts: Sequence[Effect]) -> tuple[Knob, ...]:
+def numbers_of(robot: Robot, mounts: Sequence[Effect]) -> tuple[FreeParameter, ...]:
     """All numbers of a robot that may change: calibration, mount, sizes of the effects it holds.
 
     Parameters
@@ -55,17 +55,17 @@ def numbers_of(robot: Robot, mounts: Sequence[Effect]) -> tuple[Knob, ...]:
         The effects of `MOUNT` that the reference can show and the robot does not hold.
     """
     held = [applied.effect for applied in robot.effects if not applied.effect.is_mistake]
-    return (*CALIBRATION, *(knob for effect in (*held, *mounts) for knob in sizes_of(effect)))
+    return (*CALIBRATION, *(number for effect in (*held, *mounts) for number in sizes_of(effect)))
 
 
-def sizes_of(effect: Effect) -> tuple[Knob, ...]:
+def sizes_of(effect: Effect) -> tuple[FreeParameter, ...]:
     """Parameters of an effect that are sizes: no shape, and no phase of each run's own."""
     if effect.name in CALIBRATED:
         return ()  # the calibration by another name
     return tuple(
-        knob
-        for knob in knobs_of(effect)
-        if not knob.per_run and not effect.parameters[knob.name.rpartition(".")[2]].tries
+        number
+        for number in parameters_to_fit(effect)
+        if not number.per_run and not effect.parameters[number.name.rpartition(".")[2]].tries
     )
 
 

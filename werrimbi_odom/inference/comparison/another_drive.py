@@ -11,7 +11,7 @@ import numpy as np
 
 from werrimbi_odom.inference.comparison.judged_legs import Legs, judged_legs
 from werrimbi_odom.inference.comparison.prepared import Prepared
-from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.rules import (
     FAR_ABOVE_NOISE,
     OTHER_DRIVE,

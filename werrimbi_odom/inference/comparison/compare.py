@@ -30,7 +30,7 @@ from werrimbi_odom.inference.comparison.systematic import (
     noise_factors,
     systematic_parts,
 )
-from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.pose import Floats, wrap
 from werrimbi_odom.model.robot import Robot

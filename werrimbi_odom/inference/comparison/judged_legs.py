@@ -29,7 +29,7 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     residuals_of,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.knobs import YAW_DRIFT, Model
+from werrimbi_odom.inference.fitting.free_parameters import YAW_DRIFT, Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown
 from werrimbi_odom.inference.fitting.run_phases import known_at_home
 from werrimbi_odom.inference.rules import (

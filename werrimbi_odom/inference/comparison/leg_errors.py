@@ -13,8 +13,8 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.comparison.local_map import errors_on_map
 from werrimbi_odom.inference.comparison.position_filter import position_errors
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.joined_legs import predict_joined
-from werrimbi_odom.inference.fitting.knobs import Model
 from werrimbi_odom.inference.fitting.likelihood import (
     Variances,
     errors_between,

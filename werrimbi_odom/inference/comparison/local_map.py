@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.fitting.likelihood import Variances, errors_between, innovations
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.run_phases import with_own_values
@@ -52,9 +52,9 @@ def wandering_of(records: Sequence[Record], robot: Robot, options: EvaluationOpt
     point = start_point(laid, robot, options)
     if laid.data < NOISE_NUMBERS:
         return Wandering(point.variances, False)
-    point, knobs = with_own_values(laid, point)
-    knobs = (*CALIBRATION, *knobs, *point.model.nuisance_knobs)
-    fit = fit_model(laid, point, knobs)
+    point, numbers = with_own_values(laid, point)
+    numbers = (*CALIBRATION, *numbers, *point.model.nuisance_parameters)
+    fit = fit_model(laid, point, numbers)
     return Wandering(fit.point.variances, True)
 
 

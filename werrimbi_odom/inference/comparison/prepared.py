@@ -26,7 +26,7 @@ from werrimbi_odom.inference.comparison.reference_noise import (
     residuals_of,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
-from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.cutting import (
     Record,
     cut_finely,

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.run import ReferenceKind, Run
 from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.knobs import START_YAW, Model
+from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.fitting.likelihood import reading_noise
 from werrimbi_odom.inference.fitting.prediction import legs_shown, right_handed
 from werrimbi_odom.inference.rules import (

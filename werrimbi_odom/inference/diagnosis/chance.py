@@ -31,7 +31,7 @@ def chance_by_parts(runs: Concatenated, fit: Fitted, name: str, tried: int) -> f
     All that was tried counts where parts disagree beyond chance: the likelihood ratio, which counts
     it, means nothing there.
     """
-    mine = [knob.name.rpartition(".")[0] == name for knob, _ in fit.design.columns]
+    mine = [number.name.rpartition(".")[0] == name for number, _ in fit.design.columns]
     apart = bool(np.any(fit.widening[mine] > 1.0))
     return in_any_of(max(tried, 1) if apart else 1, lasting_effect(runs, fit, name))
 

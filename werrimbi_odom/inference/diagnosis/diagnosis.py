@@ -42,7 +42,7 @@ from werrimbi_odom.inference.diagnosis.without_events import events_beside, fitt
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import Score
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
 from werrimbi_odom.inference.rules import (
     CELLS_ASKED,
@@ -132,7 +132,7 @@ def _searched(
     remaining = (
         rounds[-1].dependences
         if rounds[-1].before is fit
-        else dependences(laid, fit.point, (*CALIBRATION, *fit.knobs))
+        else dependences(laid, fit.point, (*CALIBRATION, *fit.numbers))
     )
     show(0.95, "held-out runs")
     instead: tuple[Instead, ...] = ()
@@ -188,8 +188,8 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
             return share * (_fall(cell.gain, data) - penalty * cell.degrees) > worth + RIVAL
 
         certain = [cell for cell in certain if more_than_a_law_leaves(cell)]
-    knobs = (*CALIBRATION, *this.before.knobs)
-    found = lasting(runs, this.before.point, knobs, certain[:CELLS_ASKED])
+    numbers = (*CALIBRATION, *this.before.numbers)
+    found = lasting(runs, this.before.point, numbers, certain[:CELLS_ASKED])
     return next((each.cell for each in found if each.p_value < SURE and not each.only_in), None)
 
 

@@ -17,7 +17,7 @@ from werrimbi_odom.inference.diagnosis.post_selection import spread_over_choices
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, is_determined
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, is_determined
 from werrimbi_odom.inference.rules import ONE_WHEEL
 from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUpFinding
 
@@ -97,7 +97,7 @@ def _calibrated(diagnosis: Diagnosis, name: str) -> Value:
     effect = find(name)
     item = next(iter(effect.parameters.values()))
     size = sizes_of(diagnosis.robot).over(sizes_of(diagnosis.given)).as_effects[name]
-    names = [knob.name for knob, _ in diagnosis.final.design.columns]
+    names = [number.name for number, _ in diagnosis.final.design.columns]
     std = math.nan
     if set(MULTIPLIERS) <= set(names) and name not in diagnosis.final.held:
         where = [names.index(multiplier) for multiplier in MULTIPLIERS]
@@ -144,10 +144,10 @@ def _fit_with(diagnosis: Diagnosis, name: str) -> Fitted | None:
 
 
 def _spreads(fit: Fitted) -> dict[str, float]:
-    """Standard deviations of all shared knobs of a fit."""
+    """Standard deviations of all shared numbers of a fit."""
     return {
-        knob.name: math.sqrt(max(float(fit.covariance[index, index]), 0.0))
-        for index, (knob, run) in enumerate(fit.design.columns)
+        number.name: math.sqrt(max(float(fit.covariance[index, index]), 0.0))
+        for index, (number, run) in enumerate(fit.design.columns)
         if run < 0
     }
 
@@ -161,9 +161,9 @@ def widest(diagnosis: Diagnosis) -> float:
     sizes = bool({*CALIBRATED, *fit.calibrated} & found)
     told = [
         index
-        for index, (knob, run) in enumerate(fit.design.columns)
+        for index, (number, run) in enumerate(fit.design.columns)
         if run < 0
-        and (sizes if knob.name in MULTIPLIERS else knob.name.rpartition(".")[0] in found)
+        and (sizes if number.name in MULTIPLIERS else number.name.rpartition(".")[0] in found)
     ]
     return float(np.max(fit.widening[told], initial=1.0))
 
@@ -218,7 +218,7 @@ def at_bounds(diagnosis: Diagnosis) -> dict[str, tuple[str, float, str]]:
         for fit in this.tried:
             name = fit.names[-1]
             helps = fit.total < this.before.total and chance(fit, this.before, this.number) < SURE
-            wild = [knob for knob in fit.at_bound if knob.startswith(f"{name}.")]
+            wild = [number for number in fit.at_bound if number.startswith(f"{name}.")]
             if helps and wild and name not in diagnosis.found:
                 parameter = wild[0].rpartition(".")[2]
                 applied = fit.point.model.robot.effects[-1]

@@ -31,7 +31,7 @@ from werrimbi_odom.inference.diagnosis.variables import (
 from werrimbi_odom.inference.fitting.candidates import unexplained
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
-from werrimbi_odom.inference.fitting.knobs import Knob
+from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
 from werrimbi_odom.inference.fitting.prediction import DrivenPath, path_of, predict_all
 from werrimbi_odom.inference.linear import ScoreTest, score_test_of_products
 from werrimbi_odom.inference.rules import FLOOR_CELL, NEIGHBOUR
@@ -126,12 +126,14 @@ def place_of(cell: Dependence) -> tuple[float, float]:
     return float(px), float(py)
 
 
-def dependences(runs: Concatenated, point: Point, knobs: Sequence[Knob]) -> tuple[Dependence, ...]:
+def dependences(
+    runs: Concatenated, point: Point, numbers: Sequence[FreeParameter]
+) -> tuple[Dependence, ...]:
     """All cells of the map for a model, the most certain first.
 
-    `knobs` are what the model can turn: what they can explain is no evidence.
+    `numbers` are what the model can turn: what they can explain is no evidence.
     """
-    frame, rest = unexplained(runs, point, knobs, predict_all(point.model, runs))
+    frame, rest = unexplained(runs, point, numbers, predict_all(point.model, runs))
     told = unexpected(runs, point)
     found: list[tuple[Amount, Variable, Form, ScoreTest]] = []
     known = np.concatenate([frame.basis, rest[:, None]], axis=-1)

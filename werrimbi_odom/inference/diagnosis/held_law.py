@@ -28,7 +28,7 @@ from werrimbi_odom.inference.fitting.candidates import (
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, FreeParameter
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.linear import nuisance, score_test
 from werrimbi_odom.inference.rules import LEFT_ASKED, LITTLE_OF_A_LAW, REST_EXPLAINED, SURE
@@ -76,8 +76,8 @@ def misfit_of_held_law(
         cell = max(own, key=lambda cell: cell.gain - cell.degrees, default=None)
         if cell is None or share >= LITTLE_OF_A_LAW:
             continue
-        knobs = (*CALIBRATION, *before.knobs)
-        left = _gain_beside(runs, before.point, knobs, score, cell)
+        numbers = (*CALIBRATION, *before.numbers)
+        left = _gain_beside(runs, before.point, numbers, score, cell)
         if left < (1.0 - REST_EXPLAINED) * score.gain:
             return Misfit(law.name, cell, share)
     return None
@@ -94,8 +94,8 @@ def misfit_of_found(
         Cells of the final model's map that chance does not show.
     """
     worth = sorted(certain, key=lambda cell: cell.degrees * fit.price_of_one - cell.gain)
-    knobs = (*CALIBRATION, *fit.knobs)
-    for cell, p_value, only_in in lasting(runs, fit.point, knobs, worth[:LEFT_ASKED]):
+    numbers = (*CALIBRATION, *fit.numbers)
+    for cell, p_value, only_in in lasting(runs, fit.point, numbers, worth[:LEFT_ASKED]):
         dear = cell.gain <= cell.degrees * fit.price_of_one  # as a law of the robot
         if only_in or (p_value < SURE and not dear):
             for law, support, explained in _laws(fit, runs):
@@ -126,14 +126,18 @@ def _shares(support: Support, cell: Dependence) -> bool:
 
 
 def _gain_beside(
-    runs: Concatenated, point: Point, knobs: Sequence[Knob], score: Score, cell: Dependence
+    runs: Concatenated,
+    point: Point,
+    numbers: Sequence[FreeParameter],
+    score: Score,
+    cell: Dependence,
 ) -> float:
     """What a candidate would still explain if the model could turn a cell's pattern as well."""
     prediction = predict_all(point.model, runs)
-    turned, rest = unexplained(runs, point, knobs, prediction)
+    turned, rest = unexplained(runs, point, numbers, prediction)
     pattern = pattern_of(runs, point, cell)
     freer = nuisance(turned.residual(pattern))
-    signature = next(signatures(runs, point, knobs, [score.candidate])[1])
+    signature = next(signatures(runs, point, numbers, [score.candidate])[1])
     free, left = freer.residual(signature.free), freer.residual(rest)
     found = score_test(signature.flat, free, left)
     return 0.0 if found is None else found.gain

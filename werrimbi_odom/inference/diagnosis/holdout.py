@@ -25,7 +25,7 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import (
 from werrimbi_odom.inference.diagnosis.splitting import set_aside
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
-from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.run_phases import at_home, known_at_home
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.no_driving import looked_at

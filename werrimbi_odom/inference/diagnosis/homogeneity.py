@@ -25,7 +25,7 @@ from werrimbi_odom.inference.diagnosis.variables import functions_of
 from werrimbi_odom.inference.fitting.candidates import of_each_run, unexplained
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
-from werrimbi_odom.inference.fitting.knobs import Knob
+from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
 from werrimbi_odom.inference.fitting.parts import heard_share, parts_of_innovations
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.linear import nuisance, score_test
@@ -61,15 +61,15 @@ def lasting_effect(runs: Concatenated, fit: Fitted, name: str) -> float:
         return 0.0
     model = fit.point.model
     applied = next(item for item in model.robot.effects if item.name == name)
-    whose = [knob.name.rpartition(".") for knob, _ in fit.design.columns]
+    whose = [number.name.rpartition(".") for number, _ in fit.design.columns]
     own, away = [], []
-    for column, (knob, run) in enumerate(fit.design.columns):
+    for column, (number, run) in enumerate(fit.design.columns):
         effect, _, parameter = whose[column]
         if effect == name and not applied.effect.parameters[parameter].tries:
             null = applied.effect.parameters[parameter].null
             is_phase = parameter in (applied.effect.quadrature or ())[1:]
             own.append(column)
-            away.append(0.0 if is_phase and run >= 0 else model.value(knob, max(run, 0)) - null)
+            away.append(0.0 if is_phase and run >= 0 else model.value(number, max(run, 0)) - null)
     mine = [effect == name for effect, *_ in whose]
     # What these drives do not determine was not turned, and explains nothing of the effect.
     others = nuisance(flat @ fit.moves[:, ~fit.moves[mine].any(axis=0)])
@@ -80,14 +80,14 @@ def lasting_effect(runs: Concatenated, fit: Fitted, name: str) -> float:
 
 
 def lasting(
-    runs: Concatenated, point: Point, knobs: Sequence[Knob], cells: Iterable[Dependence]
+    runs: Concatenated, point: Point, numbers: Sequence[FreeParameter], cells: Iterable[Dependence]
 ) -> Iterator[Lasting]:
     """Some cells of a model's map, each with whether it lasts.
 
-    `knobs` are those of the map.
+    `numbers` are those of the map.
     """
     prediction = predict_all(point.model, runs)
-    frame, rest = unexplained(runs, point, knobs, prediction)
+    frame, rest = unexplained(runs, point, numbers, prediction)
     parts = parts_of_innovations(runs, rest)
     if parts is None:
         yield from (Lasting(cell, 0.0, None) for cell in cells)

@@ -17,12 +17,12 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidates import (
     CALIBRATED,
     candidates,
-    knobs_of_candidate,
+    parameters_of_candidate,
     put_in,
     scores,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Model
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, Model
 from werrimbi_odom.inference.rules import INSTEAD_FITTED, RIVAL, WORTH_A_FIT
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.robot import Robot
@@ -53,18 +53,18 @@ def _rivals(
         for each in model.own
     )
     point = replace(fit.point, model=Model(replace(model.robot, effects=others), own))
-    knobs = tuple(knob for knob in fit.knobs if not knob.name.startswith(mine))
+    numbers = tuple(number for number in fit.numbers if not number.name.startswith(mine))
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     library = [held, *(effect for effect in effects if effect.name != held.name)]
     tried = candidates(library, {item.name for item in others}, channels, len(runs.runs))
-    ordered = best_of_each(scores(runs, point, (*CALIBRATION, *knobs), tried))
+    ordered = best_of_each(scores(runs, point, (*CALIBRATION, *numbers), tried))
     gains = {score.candidate.name: score.gain for score in ordered}
     least = WORTH_A_FIT * gains.get(held.name, max(gains.values(), default=0.0))
     near = [each for each in ordered if each.candidate.name != held.name and each.gain > least]
     found = {}
     for score in near[:INSTEAD_FITTED]:
         start = replace(point, model=put_in(point.model, score))
-        free = (*knobs, *knobs_of_candidate(score.candidate))
+        free = (*numbers, *parameters_of_candidate(score.candidate))
         other = fitted(runs, start, (score.candidate.name,), free, given)
         if other.told and not other.at_bound and other.total < fit.total + RIVAL * fit.scatter:
             found[score.candidate.name] = other.total

@@ -18,7 +18,7 @@ import numpy as np
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.diagnosis.sizes import Sizes, choices
 from werrimbi_odom.inference.fitting.design import Design
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, value_of
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, value_of
 from werrimbi_odom.inference.linear import SILENT, covariance_of, nuisance
 from werrimbi_odom.inference.rules import CALIBRATION_KNOWN
 from werrimbi_odom.model.pose import Floats
@@ -36,7 +36,7 @@ def spread_over_choices(
     laws: Sequence[Law] = (),
     design: Design | None = None,
 ) -> dict[str, float]:
-    """Standard deviations of shared knobs about what one choice makes of them.
+    """Standard deviations of shared numbers about what one choice makes of them.
 
     Each choice has its own values, with their own covariance, and is as likely as its cost and
     price say; the mean square about the values told, over all choices, is what is not known of them
@@ -47,14 +47,16 @@ def spread_over_choices(
     wanted
         Effects of calibration whose sizes are free in every choice.
     told
-        Sizes that were chosen, and what is told is about; of `laws` the knobs that `fit` holds.
+        Sizes that were chosen, and what is told is about; of `laws` the numbers that `fit` holds.
     design
         With the other parameters of `laws` too; the fit's own if there are none.
     """
     robot = fit.point.model.robot
     names, marks, rest = _shared(design or fit.design)
     now = np.array([value_of(robot, name) for name in names])
-    fitted = {knob.name: row for (knob, _), row in zip(fit.design.columns, fit.moves, strict=True)}
+    fitted = {
+        number.name: row for (number, _), row in zip(fit.design.columns, fit.moves, strict=True)
+    }
     matrix = np.array([fitted.get(name, np.zeros(fit.moves.shape[1])) for name in names])
     nulls = {name: null for law in laws for name, null in law.items()}
     chosen = np.isin(names, [*MULTIPLIERS, *nulls])
@@ -65,7 +67,7 @@ def spread_over_choices(
             absent[index] = -now[index] * math.log(now[index] / getattr(given, name))
         elif name in nulls:
             absent[index] = nulls[name] - now[index]
-    limit = {knob.name: knob.undetermined for knob, _ in (design or fit.design).columns}
+    limit = {number.name: number.undetermined for number, _ in (design or fit.design).columns}
     kept_now = tuple(name for name in nulls if name in fitted and fitted[name].any())
     sized = [names.index(name) for name in MULTIPLIERS]
     found, there_now = [], np.zeros(len(names))
@@ -94,19 +96,21 @@ def spread_over_choices(
     weights = np.array([math.exp(-0.5 * (cost - least)) for cost, *_ in found])
     squares = [np.diag(inside) + (there - there_now) ** 2 for _, there, inside in found]
     spread = np.sqrt(np.average(squares, axis=0, weights=weights))
-    doubt = {knob.name: by for (knob, _), by in zip(fit.design.columns, fit.widening, strict=True)}
+    doubt = {
+        number.name: by for (number, _), by in zip(fit.design.columns, fit.widening, strict=True)
+    }
     spread *= [doubt.get(name, 1.0) for name in names]
     return dict(zip(names, spread.tolist(), strict=True))
 
 
 def _shared(design: Design) -> tuple[list[str], Floats, Floats]:
-    """Names, derivatives and innovations of shared knobs, clear of what runs have of their own."""
+    """Names, derivatives, innovations of shared numbers, clear of what runs have of their own."""
     white, flat = design.flat()
     common = np.array([run < 0 for _, run in design.columns])
     own = nuisance(flat[:, ~common])
     joined = np.column_stack([own.residual(flat[:, common]), own.residual(white)])
     corner = np.asarray(np.linalg.qr(joined, mode="r"))  # as good as all rows, for squares
-    names = [knob.name for knob, run in design.columns if run < 0]
+    names = [number.name for number, run in design.columns if run < 0]
     return names, corner[:, :-1], corner[:, -1]
 
 

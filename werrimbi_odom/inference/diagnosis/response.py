@@ -22,7 +22,7 @@ from werrimbi_odom.inference.diagnosis.variables import CONSTANT
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, unexplained
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
-from werrimbi_odom.inference.fitting.knobs import CALIBRATION, Knob, Model
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, FreeParameter, Model
 from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.linear import SILENT
 from werrimbi_odom.model.pose import Floats
@@ -56,7 +56,7 @@ def parts_of(left: Floats, right: Floats, *, turns: bool) -> Floats:
 def response(
     runs: Concatenated,
     point: Point,
-    knobs: Sequence[Knob],
+    numbers: Sequence[FreeParameter],
     amount: Amount,
     values: tuple[Floats, Floats],
     edges: Floats,
@@ -65,14 +65,14 @@ def response(
 
     Parameters
     ----------
-    knobs
+    numbers
         What the model could turn: what they can explain is taken off.
     values : (ndarray, ndarray), shape (n,) each
         The variable at every step, for left and right wheel.
     edges : ndarray, shape (parts + 1,)
     """
     prediction = predict_all(point.model, runs)
-    frame, rest = unexplained(runs, point, knobs, prediction)
+    frame, rest = unexplained(runs, point, numbers, prediction)
     path = path_of(point.model, runs)
     of_left, of_right = pushes_of(runs, path, [amount], point)
     left, right = (_marks(side, edges) for side in values)
@@ -85,7 +85,7 @@ def response(
     heard = length > SILENT
     scale, free = length[heard], frame.residual(flat[:, heard])
     normal = (free / scale).T @ (free / scale)
-    # What the knobs explain as well (a constant, mostly) is no part of it: left out, not blown up.
+    # What numbers explain as well (a constant, mostly) is no part of it: left out, not blown up.
     inverse = np.linalg.pinv(normal, rcond=_BLURRED, hermitian=True)
     solution = -(inverse @ ((free / scale).T @ rest)) / scale
     excess = max(float(np.mean(rest**2)), 1.0)  # errors larger than promised: wider bars
@@ -142,24 +142,24 @@ def before_after(diagnosis: Diagnosis) -> BeforeAfter | None:
     if cell is None or cell.form == "place":
         return None
     start = diagnosis.rounds[0].before
-    point, knobs = start.point, (*CALIBRATION, *start.knobs)
+    point, numbers = start.point, (*CALIBRATION, *start.numbers)
     if effect in CALIBRATED:
-        own = tuple({} for _ in point.model.own) if not start.knobs else point.model.own
+        own = tuple({} for _ in point.model.own) if not start.numbers else point.model.own
         point = replace(point, model=Model(diagnosis.set_up.robot, own))
-        knobs = start.knobs
+        numbers = start.numbers
     after = _after(diagnosis, effect) if effect is not None else None
     values, aligned = _values(diagnosis, cell, effect, after)
     turns = cell.form == "turns"
     edges = parts_of(*values, turns=turns)
 
-    def at(where: Point, free: tuple[Knob, ...]) -> Response:
+    def at(where: Point, free: tuple[FreeParameter, ...]) -> Response:
         return response(diagnosis.runs, where, free, cell.amount, values, edges)
 
     return BeforeAfter(
         effect=effect,
         cell=cell,
-        before=at(point, knobs),
-        after=None if after is None else at(after, knobs),
+        before=at(point, numbers),
+        after=None if after is None else at(after, numbers),
         turns=turns,
         aligned=aligned,
     )

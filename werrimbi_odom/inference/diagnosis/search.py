@@ -13,13 +13,13 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted, fitted
 from werrimbi_odom.inference.fitting.candidates import (
     Score,
     candidates,
-    knobs_of_candidate,
+    parameters_of_candidate,
     put_in,
     scores,
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point, without_jumps
-from werrimbi_odom.inference.fitting.knobs import (
+from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     MULTIPLIERS,
     Model,
@@ -61,10 +61,10 @@ def first_fit(
     """The robot as given, calibrated."""
     point = start_point(runs, robot, options)
     point = replace(point, excluded=at_edges(runs.runs))
-    point, knobs = with_own_values(runs, point)
+    point, numbers = with_own_values(runs, point)
     if options.reference_kind != "absolute":
-        point = fit_model(runs, point, (*CALIBRATION, *knobs), rounds=0).point
-    return fitted(runs, point, (), knobs, robot, rounds=3)
+        point = fit_model(runs, point, (*CALIBRATION, *numbers), rounds=0).point
+    return fitted(runs, point, (), numbers, robot, rounds=3)
 
 
 def jumps_anew(runs: Concatenated, fit: Fitted, robot: Robot) -> Fitted:
@@ -78,7 +78,7 @@ def jumps_anew(runs: Concatenated, fit: Fitted, robot: Robot) -> Fitted:
     point = without_jumps(runs, fit.point)
     both = (jumped | edge for jumped, edge in zip(point.excluded, at_edges(runs.runs), strict=True))
     point = replace(point, excluded=tuple(both))
-    return fitted(runs, point, fit.names, fit.knobs, robot)
+    return fitted(runs, point, fit.names, fit.numbers, robot)
 
 
 @dataclass(frozen=True, slots=True)
@@ -100,18 +100,18 @@ def instead_of_calibration(
     back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
     model = calibrated.point.model
     point = replace(calibrated.point, model=Model(changed(model.robot, back), model.own))
-    nuisances = model.nuisance_knobs
+    nuisances = model.nuisance_parameters
     held = {applied.name for applied in model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     # On a map that somebody made, by a laser's metre.
     wanders = point.options.reference_kind == "local_map"
     looked_at = candidates(effects, held, channels, len(runs.runs), own_scale=wanders)
-    found = scores(runs, point, (*calibrated.knobs, *nuisances), looked_at)
+    found = scores(runs, point, (*calibrated.numbers, *nuisances), looked_at)
     results = []
     for score in worth_fitting(best_of_each(found))[:INSTEAD_FITTED]:
         start = replace(point, model=put_in(point.model, score))
-        knobs = (*calibrated.knobs, *knobs_of_candidate(score.candidate), *nuisances)
-        fit = fit_model(runs, start, knobs, find_jumps=False, rounds=2)
+        numbers = (*calibrated.numbers, *parameters_of_candidate(score.candidate), *nuisances)
+        fit = fit_model(runs, start, numbers, find_jumps=False, rounds=2)
         if not fit.at_bound:
             price = calibrated.price_of_one * len(fit.free) * calibrated.scatter
             results.append(Instead(score.candidate.name, fit.minus_two_log_likelihood + price))
@@ -126,7 +126,7 @@ def search_round(
     held = {applied.name for applied in point.model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     looked_at = candidates(effects, held, channels, len(runs.runs))
-    turned = (*CALIBRATION, *before.knobs)
+    turned = (*CALIBRATION, *before.numbers)
     found = scores(runs, point, turned, looked_at)
     ordered = best_of_each(found)
     tried = []
@@ -142,9 +142,9 @@ def search_round(
         fits = []
         for option in options:
             start = replace(point, model=put_in(point.model, option))
-            knobs = (*before.knobs, *knobs_of_candidate(option.candidate))
+            numbers = (*before.numbers, *parameters_of_candidate(option.candidate))
             names = (*before.names, option.candidate.name)
-            fits.append(fitted(runs, start, names, knobs, given))
+            fits.append(fitted(runs, start, names, numbers, given))
         fits = [fit for fit in fits if fit.told]
         tried += [min(fits, key=lambda fit: fit.total)] if fits else []
     tried.sort(key=lambda fit: fit.total)

@@ -23,19 +23,19 @@ from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
 from werrimbi_odom.inference.fitting.fit import fit_model
+from werrimbi_odom.inference.fitting.free_parameters import (
+    CALIBRATION,
+    MULTIPLIERS,
+    NUISANCES,
+    FreeParameter,
+    own_of,
+    shared_of,
+)
 from werrimbi_odom.inference.fitting.identifiable import (
     SIZE,
     Directions,
     determined,
     every_direction,
-)
-from werrimbi_odom.inference.fitting.knobs import (
-    CALIBRATION,
-    MULTIPLIERS,
-    NUISANCES,
-    Knob,
-    own_of,
-    shared_of,
 )
 from werrimbi_odom.inference.fitting.parts import widening
 from werrimbi_odom.inference.linear import nuisance, score_test
@@ -57,7 +57,7 @@ class Fitted:
     names: tuple[str, ...]
     """Effects that it holds beyond the given robot's."""
     point: Point
-    knobs: tuple[Knob, ...]
+    numbers: tuple[FreeParameter, ...]
     """What was fitted."""
     cost: float
     """Minus two log-likelihood."""
@@ -76,7 +76,7 @@ class Fitted:
     needless: float
     """What it costs to put them back."""
     at_bound: tuple[str, ...]
-    """Knobs that ran against what physics allows."""
+    """Free parameters that ran against what physics allows."""
     importance: dict[str, float]
     """By effect, how much the cost would rise without it."""
     covariance: Floats
@@ -88,7 +88,7 @@ class Fitted:
     """Of the design's columns, for a unit of each number that was free; (p, q)."""
     design: Design
     held: tuple[str, ...]
-    """Shared directions (of `CALIBRATED`, or knobs) that the runs do not determine: as given."""
+    """Shared directions (of `CALIBRATED`, or numbers) that the runs do not determine: as given."""
 
     @property
     def by_noise(self) -> Floats:
@@ -137,15 +137,15 @@ def fitted(
     runs: Concatenated,
     point: Point,
     names: Sequence[str],
-    knobs: Sequence[Knob],
+    numbers: Sequence[FreeParameter],
     given: Robot,
     *,
     rounds: int = 2,
 ) -> Fitted:
     """Fit a model, calibration and all, and say which multipliers it needs."""
-    every = (*CALIBRATION, *knobs, *point.model.nuisance_knobs)
+    every = (*CALIBRATION, *numbers, *point.model.nuisance_parameters)
     result = fit_model(runs, point, every, find_jumps=False, rounds=rounds)
-    design = stacked(runs, result.point, [*CALIBRATION, *own_of(every), *shared_of(knobs)])
+    design = stacked(runs, result.point, [*CALIBRATION, *own_of(every), *shared_of(numbers)])
     ways = determined(design, result.robot)
     price, scatter = price_of_one(runs), scatter_of(runs, design)
     rises = calibration_rises(design, result.robot, given, ways.held)
@@ -164,13 +164,13 @@ def fitted(
         importance[name] = (rest - rise) / max(scatter, doubt[name])
     counted = sum(
         1
-        for knob, _ in design.columns
-        if knob.name not in MULTIPLIERS and knob.name not in NUISANCES
+        for number, _ in design.columns
+        if number.name not in MULTIPLIERS and number.name not in NUISANCES
     )
     return Fitted(
         tuple(names),
         result.point,
-        tuple(knobs),
+        tuple(numbers),
         result.minus_two_log_likelihood,
         kept,
         tuple(
@@ -186,7 +186,7 @@ def fitted(
         scatter,
         spare_of(runs, design),
         rise,
-        tuple(knob.name for knob in result.at_bound if knob.name not in MULTIPLIERS),
+        tuple(number.name for number in result.at_bound if number.name not in MULTIPLIERS),
         importance,
         covariance,
         wide,
@@ -219,7 +219,7 @@ def calibration_rises(
     ways = every_direction(design.columns, robot)
     flat = design.flat()
     marks = flat[1] @ ways.matrix[:, [ways.names.index(name) for name in CALIBRATED]]
-    names = [knob.name for knob, _ in design.columns]
+    names = [number.name for number, _ in design.columns]
     others = nuisance(flat[1][:, [name not in MULTIPLIERS for name in names]])
     free = others.residual(marks)
     put_back = others.residual(flat[0]) - free @ calibration_deviation(robot, given)
@@ -240,7 +240,7 @@ def doubts_of_sizes(
     design: Design, covariance: Floats, wide: Floats, robot: Robot
 ) -> dict[str, float]:
     """By how much the variance of each calibration effect is widened, for all three."""
-    names = [knob.name for knob, _ in design.columns]
+    names = [number.name for number, _ in design.columns]
     where = [names.index(name) for name in MULTIPLIERS]
     inside = covariance[np.ix_(where, where)]
     wider = inside * np.outer(wide[where], wide[where])
@@ -269,15 +269,15 @@ def grain_of(design: Design, robot: Robot) -> Floats:
         for item in robot.effects
         for name, value in item.values.items()
     }
-    widths = np.array([declared.get(knob.name, 0.0) for knob, _ in design.columns])
+    widths = np.array([declared.get(number.name, 0.0) for number, _ in design.columns])
     return np.asarray(widths**2 / 12.0)
 
 
 def rise_without(name: str, design: Design, covariance: Floats, point: Point) -> float:
     """How much the cost rises when an effect is taken out, by the curvature at the fit."""
     chosen, away = [], []
-    for index, (knob, run) in enumerate(design.columns):
-        effect, _, parameter = knob.name.rpartition(".")
+    for index, (number, run) in enumerate(design.columns):
+        effect, _, parameter = number.name.rpartition(".")
         if effect != name:
             continue
         applied = next(item for item in point.model.robot.effects if item.name == name)
@@ -285,7 +285,7 @@ def rise_without(name: str, design: Design, covariance: Floats, point: Point) ->
         if declared.tries or declared.per_run:
             continue
         chosen.append(index)
-        away.append(point.model.value(knob, max(run, 0)) - declared.null)
+        away.append(point.model.value(number, max(run, 0)) - declared.null)
     if not chosen:
         return 0.0
     spread = covariance[np.ix_(chosen, chosen)]

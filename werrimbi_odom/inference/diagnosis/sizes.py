@@ -18,7 +18,7 @@ from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Costs, Design, stacked
 from werrimbi_odom.inference.fitting.fit import moved
-from werrimbi_odom.inference.fitting.knobs import (
+from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     MULTIPLIERS,
     Model,
@@ -31,7 +31,7 @@ from werrimbi_odom.inference.rules import RIVAL, STILL
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
-_BOUNDS = {knob.name: knob.bounds for knob in CALIBRATION}
+_BOUNDS = {number.name: number.bounds for number in CALIBRATION}
 _BASE = {"": (), "base": ((1.0, 0.0, 0.0),)}
 _RADII: dict[str, tuple[tuple[float, float, float], ...]] = {
     "": (),
@@ -95,8 +95,8 @@ def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: Sizes) -> F
     point = fit.point
     every = [
         *CALIBRATION,
-        *own_of([*fit.knobs, *point.model.nuisance_knobs]),
-        *shared_of(fit.knobs),
+        *own_of([*fit.numbers, *point.model.nuisance_parameters]),
+        *shared_of(fit.numbers),
     ]
     for _ in range(3):
         there = _sized(given, sizes, away)
@@ -123,7 +123,7 @@ def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: Sizes) -> F
         return fit
     inverse = np.linalg.pinv((columns / size).T @ (columns / size), rcond=1e-12, hermitian=True)
     covariance = free @ (inverse / np.outer(size, size)) @ free.T
-    heard = np.isin([knob.name for knob, _ in design.columns], MULTIPLIERS)
+    heard = np.isin([number.name for number, _ in design.columns], MULTIPLIERS)
     mute = ~heard & (np.sum(flat**2, axis=0) < 1e-18)
     covariance[mute, mute] = 1e12
     others = fit.moves[:, ~fit.moves[heard].any(axis=0)]
@@ -161,7 +161,7 @@ def _at_given(design: Design, robot: Robot, given: Robot) -> tuple[Floats, Float
 
     Both clear of all that else is fitted.
     """
-    names = [knob.name for knob, _ in design.columns]
+    names = [number.name for number, _ in design.columns]
     white, flat = design.flat()
     now = np.array([getattr(robot, name) for name in MULTIPLIERS])
     before = np.array([getattr(given, name) for name in MULTIPLIERS])
@@ -189,7 +189,7 @@ def _sized(given: Robot, sizes: Sizes, away: Floats) -> dict[str, float]:
 
 def _free(design: Design, robot: Robot, sizes: Sizes) -> Floats:
     """Columns of a design (p,) by what is free in it (q,): the sizes first, then all the rest."""
-    names = [knob.name for knob, _ in design.columns]
+    names = [number.name for number, _ in design.columns]
     rest = [index for index, name in enumerate(names) if name not in MULTIPLIERS]
     free = np.zeros((len(names), sizes.free + len(rest)))
     for name, row in zip(MULTIPLIERS, sizes.directions, strict=True):

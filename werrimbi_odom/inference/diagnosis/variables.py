@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.prediction import (
     anchors,
     headings_of,

@@ -36,7 +36,7 @@ from werrimbi_odom.inference.diagnosis.sizes import sizes_needed, with_sizes
 from werrimbi_odom.inference.events.events import Events
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Model, changed
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.rules import CALIBRATION_WORTH, SIGNIFICANT, SURE
 from werrimbi_odom.inference.set_up.findings import IN_DEGREES
@@ -218,7 +218,7 @@ def _is_news(name: str, final: Fitted, tried: int) -> bool:
 def _differs(name: str, final: Fitted, given: Robot) -> bool:
     """Whether a size surely differs from the file's; what set-ups began with may be off it too."""
     robot = final.point.model.robot
-    columns = [knob.name for knob, _ in final.design.columns]
+    columns = [number.name for number, _ in final.design.columns]
     where = [columns.index(multiplier) for multiplier in MULTIPLIERS]
     std = std_as_effect(name, robot, final.covariance[np.ix_(where, where)])
     size = sizes_of(robot).over(sizes_of(given)).as_effects[name]

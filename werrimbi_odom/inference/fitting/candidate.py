@@ -8,7 +8,7 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
-from werrimbi_odom.inference.fitting.knobs import STEP
+from werrimbi_odom.inference.fitting.free_parameters import STEP
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 
 

@@ -21,8 +21,13 @@ import numpy as np
 from werrimbi_odom.inference.fitting.candidate import Candidate as Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
+from werrimbi_odom.inference.fitting.free_parameters import (
+    STEP,
+    FreeParameter,
+    Model,
+    parameters_to_fit,
+)
 from werrimbi_odom.inference.fitting.identifiable import CALIBRATED as CALIBRATED
-from werrimbi_odom.inference.fitting.knobs import STEP, Knob, Model, knobs_of
 from werrimbi_odom.inference.fitting.placed import best_placed
 from werrimbi_odom.inference.fitting.prediction import Prediction, legs_shown, predict_all
 from werrimbi_odom.inference.linear import Nuisance, nuisance, score_test
@@ -116,9 +121,9 @@ class Signature(NamedTuple):
 
 
 def signatures(
-    runs: Concatenated, point: Point, knobs: Sequence[Knob], tried: Sequence[Candidate]
+    runs: Concatenated, point: Point, numbers: Sequence[FreeParameter], tried: Sequence[Candidate]
 ) -> tuple[Floats, Iterator[Signature]]:
-    """Innovations (n,) that `knobs` cannot explain, and what each candidate does to them."""
+    """Innovations (n,) that `numbers` cannot explain, and what each candidate does to them."""
     if runs.headings_alone:
         tried = [candidate for candidate in tried if candidate.name not in BESIDE_POSITIONS]
     prediction = predict_all(point.model, runs)
@@ -137,7 +142,7 @@ def signatures(
         return np.zeros(0), iter(())
     change = np.stack(columns, axis=-1)
     marks = unexpected(runs, point, prediction).marks(change)[..., :-1]
-    frame, rest = unexplained(runs, point, knobs, prediction)
+    frame, rest = unexplained(runs, point, numbers, prediction)
     owned = np.array(owners)
 
     def each() -> Iterator[Signature]:
@@ -152,10 +157,10 @@ def signatures(
 
 
 def unexplained(
-    runs: Concatenated, point: Point, knobs: Sequence[Knob], prediction: Prediction
+    runs: Concatenated, point: Point, numbers: Sequence[FreeParameter], prediction: Prediction
 ) -> tuple[Nuisance, Floats]:
-    """What `knobs` can turn, and the innovations (n,) clear of it."""
-    white, basis = stacked(runs, point, knobs, prediction).flat()
+    """What `numbers` can turn, and the innovations (n,) clear of it."""
+    white, basis = stacked(runs, point, numbers, prediction).flat()
     frame = nuisance(basis)
     return frame, frame.residual(white)
 
@@ -167,10 +172,10 @@ def of_each_run(runs: Concatenated, marks: Floats) -> Floats:
 
 
 def scores(
-    runs: Concatenated, point: Point, knobs: Sequence[Knob], tried: Sequence[Candidate]
+    runs: Concatenated, point: Point, numbers: Sequence[FreeParameter], tried: Sequence[Candidate]
 ) -> tuple[Score, ...]:
-    """Score of each candidate beside what `knobs` can turn; those without any effect left out."""
-    rest, found = signatures(runs, point, knobs, tried)
+    """Score of each candidate beside what `numbers` can turn; those without any effect left out."""
+    rest, found = signatures(runs, point, numbers, tried)
     results: list[Score] = []
     for candidate, flat, free in found:
         if candidate.place is not None:
@@ -257,6 +262,6 @@ def put_in(model: Model, score: Score) -> Model:
     return Model(robot, tuple(own))
 
 
-def knobs_of_candidate(candidate: Candidate) -> tuple[Knob, ...]:
+def parameters_of_candidate(candidate: Candidate) -> tuple[FreeParameter, ...]:
     """What a fit may turn of it."""
-    return knobs_of(candidate.effect, candidate.shared)
+    return parameters_to_fit(candidate.effect, candidate.shared)

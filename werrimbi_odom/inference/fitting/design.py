@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whitened innovations of all legs, what they cost, and how they change with every knob."""
+"""Whitened innovations of all legs, what they cost, and how they change with every number."""
 
 from __future__ import annotations
 
@@ -13,12 +13,12 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
-from werrimbi_odom.inference.fitting.knobs import (
+from werrimbi_odom.inference.fitting.free_parameters import (
     HEADING_AT_START,
     MULTIPLIERS,
     START_YAW,
     YAW_DRIFT,
-    Knob,
+    FreeParameter,
     Model,
 )
 from werrimbi_odom.inference.fitting.likelihood import Innovations, Variances, innovations
@@ -49,8 +49,8 @@ class Design:
 
     white: Floats
     slopes: Floats
-    columns: tuple[tuple[Knob, int], ...]
-    """What the p are; a knob of the runs' own has one column for each run, with its index."""
+    columns: tuple[tuple[FreeParameter, int], ...]
+    """What the p are; a number of the runs' own has one column for each run, with its index."""
     sized: bool = True
     """Whether any length was measured: headings know lengths over lengths alone."""
 
@@ -97,54 +97,58 @@ class Costs:
         return found.minus_two_log_likelihood()
 
 
-def slopes_of(runs: Concatenated, model: Model, knobs: Sequence[Knob]) -> Floats:
-    """Derivatives of the legs' relative poses in knobs, (m, 3, p), by central differences.
+def slopes_of(runs: Concatenated, model: Model, numbers: Sequence[FreeParameter]) -> Floats:
+    """Derivatives of the legs' relative poses in numbers, (m, 3, p), by central differences.
 
-    A knob of the runs' own is moved in all of them at once: legs feel their own run's alone.
+    A number of the runs' own is moved in all of them at once: legs feel their own run's alone.
     """
-    columns = [runs.of_model(model, knob, partial(_slope, runs, model, knob)) for knob in knobs]
+    columns = [
+        runs.of_model(model, number, partial(_slope, runs, model, number)) for number in numbers
+    ]
     return np.stack(columns, axis=-1) if columns else np.zeros((runs.count, 3, 0))
 
 
-def _slope(runs: Concatenated, model: Model, knob: Knob) -> Floats:
-    if knob.name == YAW_DRIFT:
+def _slope(runs: Concatenated, model: Model, number: FreeParameter) -> Floats:
+    if number.name == YAW_DRIFT:
         return np.outer(runs.duration, [0.0, 0.0, 1.0])
-    ahead, behind = model.moved_by(knob, knob.scale), model.moved_by(knob, -knob.scale)
+    ahead, behind = model.moved_by(number, number.scale), model.moved_by(number, -number.scale)
     # What effects look at hardly changes with a radius; it is worked out once, as it is now.
-    looked_at = model.robot if knob.name in MULTIPLIERS else None
-    width = ahead.value(knob) - behind.value(knob) if not knob.per_run else 2.0 * knob.scale
+    looked_at = model.robot if number.name in MULTIPLIERS else None
+    width = ahead.value(number) - behind.value(number) if not number.per_run else 2.0 * number.scale
     poses = [legs_shown(side, runs, looked_at) for side in (ahead, behind)]
     return np.asarray((poses[0] - poses[1]) / width)
 
 
 def stacked(
-    runs: Concatenated, point: Point, knobs: Sequence[Knob], prediction: Prediction | None = None
+    runs: Concatenated,
+    point: Point,
+    numbers: Sequence[FreeParameter],
+    prediction: Prediction | None = None,
 ) -> Design:
-    """The design for knobs at a point; start headings that were not measured are among them."""
-    local = [knob for knob in knobs if knob.name != START_YAW]
+    """The design for numbers at a point; start headings that were not measured are among them."""
+    local = [number for number in numbers if number.name != START_YAW]
     found = unexpected(runs, point, prediction)
     marks = found.marks(slopes_of(runs, point.model, local))
     return spread_out(runs, point.model, found.whitened(), marks, local)
 
 
 def spread_out(
-    runs: Concatenated, model: Model, white: Floats, slopes: Floats, local: Sequence[Knob]
+    runs: Concatenated, model: Model, white: Floats, slopes: Floats, local: Sequence[FreeParameter]
 ) -> Design:
     """Local columns, those of the runs' own given a column for each run.
 
     `slopes` has one column more than `local`: that of the start headings.
     """
-    columns: list[tuple[Knob, int]] = []
+    columns: list[tuple[FreeParameter, int]] = []
     parts = []
-    for number, knob in enumerate([*local, HEADING_AT_START]):
-        column = slopes[..., number]
-        if not knob.per_run:
-            columns.append((knob, -1))
+    for column, number in zip(np.moveaxis(slopes, -1, 0), [*local, HEADING_AT_START], strict=True):
+        if not number.per_run:
+            columns.append((number, -1))
             parts.append(column)
             continue
         for index, own in enumerate(model.own):
-            if knob.name in own:
-                columns.append((knob, index))
+            if number.name in own:
+                columns.append((number, index))
                 parts.append(column * (runs.run_of_leg == index)[:, None])
     wide = np.stack(parts, axis=-1) if parts else np.zeros((runs.count, 3, 0))
     return Design(white, wide, tuple(columns), sized=not runs.headings_alone)

@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """Maximum likelihood of calibration, effects and noise from any driving with a reference.
 
-Two blocks that hardly disturb each other are fitted in turn: the knobs (multipliers, parameters of
-effects, nuisances of runs) by Gauss-Newton on the whitened innovations, and the variances
+Two blocks that hardly disturb each other are fitted in turn: the numbers (multipliers, parameters
+of effects, nuisances of runs) by Gauss-Newton on the whitened innovations, and the variances
 (`noise`) on their likelihood. What the driving does not excite is left as it was.
 """
 
@@ -18,15 +18,15 @@ from numpy.typing import NDArray
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, laid_out
 from werrimbi_odom.inference.fitting.design import Costs, Design, Point, stacked, unexpected
-from werrimbi_odom.inference.fitting.identifiable import Directions, determined, put_back
-from werrimbi_odom.inference.fitting.knobs import (
+from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     START_YAW,
     YAW_DRIFT,
-    Knob,
+    FreeParameter,
     Model,
     shared_of,
 )
+from werrimbi_odom.inference.fitting.identifiable import Directions, determined, put_back
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import held_variances, likeliest, prior_cost
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict, predict_all
@@ -54,22 +54,22 @@ class ModelFit:
     """What a fit found."""
 
     point: Point
-    free: tuple[Knob, ...]
-    """Shared knobs that the driving determines, and that were fitted."""
+    free: tuple[FreeParameter, ...]
+    """Shared numbers that the driving determines, and that were fitted."""
     covariance: Floats
     """Of the values of `free`; singular where they are more than the `numbers` that data hold."""
-    mute: tuple[Knob, ...]
-    """Shared knobs that the driving does not determine; left alone."""
+    mute: tuple[FreeParameter, ...]
+    """Shared numbers that the driving does not determine; left alone."""
     ways: Directions
-    """What the data determine, in the columns of the design for the fitted knobs."""
-    at_bound: tuple[Knob, ...]
-    """Fitted knobs that ran against what is physically possible."""
+    """What the data determine, in the columns of the design for the fitted numbers."""
+    at_bound: tuple[FreeParameter, ...]
+    """Fitted numbers that ran against what is physically possible."""
     minus_two_log_likelihood: float
     """With what is known of wheels' noise beforehand (`noise.prior_cost`)."""
 
     @property
     def held(self) -> tuple[str, ...]:
-        """Directions that the driving does not determine (of `CALIBRATED`, or knobs): as given."""
+        """Directions that the driving does not determine (`CALIBRATED`, or numbers): as given."""
         return self.ways.held
 
     @property
@@ -112,16 +112,16 @@ def start_point(
 def fit_model(
     runs: Sequence[MatchedRun] | Concatenated,
     point: Point,
-    knobs: Sequence[Knob] = CALIBRATION,
+    numbers: Sequence[FreeParameter] = CALIBRATION,
     *,
     find_jumps: bool = True,
     rounds: int = 3,
 ) -> ModelFit:
-    """Fit knobs and noise to all runs at once.
+    """Fit numbers and noise to all runs at once.
 
     Parameters
     ----------
-    knobs
+    numbers
         What may be turned; those of the runs' own among them.
     find_jumps : bool
         Find the legs on which the reference jumped. Once for a set of runs: what is compared with
@@ -131,7 +131,7 @@ def fit_model(
     given = point.model
     if find_jumps:
         noise = point.variances
-        point = _robustly(laid, point, knobs)
+        point = _robustly(laid, point, numbers)
         if laid.data < NOISE_NUMBERS:
             point = replace(point, variances=noise)
     point = replace(point, variances=held_variances(point.variances, point.options))
@@ -141,14 +141,14 @@ def fit_model(
         if laid.data >= NOISE_NUMBERS:
             variances = likeliest(Costs(laid, point), point.variances, point.options.sigmas_known)
             point = replace(point, variances=variances)
-        design = stacked(laid, point, knobs)
+        design = stacked(laid, point, numbers)
         ways = determined(design, point.model.robot)
-        model = put_back(point.model, given, ways.held, shared_of(knobs))
-        point, moved = _gauss_newton(laid, replace(point, model=model), knobs, ways)
+        model = put_back(point.model, given, ways.held, shared_of(numbers))
+        point, moved = _gauss_newton(laid, replace(point, model=model), numbers, ways)
         if not moved:
             break
     if rounds < 1:
-        design = stacked(laid, point, knobs)
+        design = stacked(laid, point, numbers)
         ways = determined(design, point.model.robot)
     covariance = ways.covariance(design.flat()[1])
     moves = ways.matrix[:, ways.shared].any(axis=1)
@@ -159,23 +159,23 @@ def fit_model(
         point,
         tuple(free),
         covariance[np.ix_(where, where)],
-        tuple(knob for knob in shared_of(knobs) if knob not in free),
+        tuple(number for number in shared_of(numbers) if number not in free),
         ways,
-        tuple(knob for knob in free if _at_bound(point.model.value(knob), knob)),
+        tuple(number for number in free if _at_bound(point.model.value(number), number)),
         float((costs(point.variances) + prior_cost(costs, point.variances))[0]),
     )
 
 
-def _at_bound(value: float, knob: Knob) -> bool:
-    low, high = knob.bounds_about(value)
+def _at_bound(value: float, number: FreeParameter) -> bool:
+    low, high = number.bounds_about(value)
     margin = 1e-6 * (high - low)
     return value <= low + margin or value >= high - margin
 
 
-def _robustly(runs: Concatenated, point: Point, knobs: Sequence[Knob]) -> Point:
+def _robustly(runs: Concatenated, point: Point, numbers: Sequence[FreeParameter]) -> Point:
     """Come near the answer whatever the reference's jumps, then find these."""
     for _ in range(12):
-        design = stacked(runs, point, knobs)
+        design = stacked(runs, point, numbers)
         deviation = np.sum(design.white**2, axis=-1)
         counted = deviation > 0.0
         scale = float(np.median(deviation[counted])) / _MEDIAN_CHI2_3 if counted.any() else 1.0
@@ -208,13 +208,13 @@ def _jumps(runs: Concatenated, point: Point) -> tuple[NDArray[np.bool_], ...]:
 
 
 def _gauss_newton(
-    runs: Concatenated, point: Point, knobs: Sequence[Knob], ways: Directions
+    runs: Concatenated, point: Point, numbers: Sequence[FreeParameter], ways: Directions
 ) -> tuple[Point, bool]:
     """The point of least squares near a point, and whether it is another one."""
     prediction = predict_all(point.model, runs)
     best = np.inf
     for number in range(6):
-        design = stacked(runs, point, knobs, prediction)
+        design = stacked(runs, point, numbers, prediction)
         best = min(best, float(np.sum(design.white**2)))
         step = _step(design, ways)
         if _small(design, step):
@@ -235,7 +235,7 @@ def _gauss_newton(
 
 
 def _small(design: Design, step: Floats) -> bool:
-    scales = np.array([knob.scale for knob, _ in design.columns])
+    scales = np.array([number.scale for number, _ in design.columns])
     return bool(np.all(np.abs(step) < 1e-4 * scales))
 
 
@@ -250,10 +250,10 @@ def moved(model: Model, design: Design, step: Floats) -> Model:
     """The model after a step in the design's columns."""
     shared: dict[str, float] = {}
     own: list[dict[str, float]] = [{} for _ in model.own]
-    for (knob, index), move in zip(design.columns, step.tolist(), strict=True):
+    for (number, index), move in zip(design.columns, step.tolist(), strict=True):
         target = shared if index < 0 else own[index]
-        now = model.value(knob, max(index, 0))
-        target[knob.name] = float(np.clip(now + move, *knob.bounds_about(now)))
+        now = model.value(number, max(index, 0))
+        target[number.name] = float(np.clip(now + move, *number.bounds_about(now)))
     return model.turned(shared, own)
 
 

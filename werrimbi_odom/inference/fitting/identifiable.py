@@ -18,7 +18,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.inference.fitting.design import Design
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS, Knob, Model, changed
+from werrimbi_odom.inference.fitting.free_parameters import (
+    MULTIPLIERS,
+    FreeParameter,
+    Model,
+    changed,
+)
 from werrimbi_odom.inference.linear import admitted, covariance_of, nuisance
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -33,7 +38,7 @@ class Directions:
     """What a fit may move: q directions in the p columns of a design."""
 
     names: tuple[str, ...]
-    """Of each: a knob, or one of `CALIBRATED`."""
+    """Of each: a number, or one of `CALIBRATED`."""
     matrix: Floats
     """Moves of the columns for a unit of each, shape (p, q)."""
     limits: Floats
@@ -49,9 +54,9 @@ class Directions:
         return np.asarray(self.matrix @ inside @ self.matrix.T)
 
 
-def every_direction(columns: Sequence[tuple[Knob, int]], robot: Robot) -> Directions:
+def every_direction(columns: Sequence[tuple[FreeParameter, int]], robot: Robot) -> Directions:
     """All directions of a design's columns; those of single runs have no limit."""
-    names = [knob.name for knob, _ in columns]
+    names = [number.name for number, _ in columns]
     found: list[tuple[str, dict[int, float], float, bool]] = []
     calibrated = all(name in names for name in MULTIPLIERS)
     if calibrated:
@@ -62,14 +67,14 @@ def every_direction(columns: Sequence[tuple[Knob, int]], robot: Robot) -> Direct
         for name, parts in zip(CALIBRATED, signs, strict=True):
             moves = {index: sign * values[index] for index, sign in parts.items()}
             found.append((name, moves, limit, True))
-    for index, (knob, run) in enumerate(columns):
-        if calibrated and knob.name in MULTIPLIERS:
+    for index, (number, run) in enumerate(columns):
+        if calibrated and number.name in MULTIPLIERS:
             continue
-        found.append((knob.name, {index: 1.0}, knob.undetermined, run < 0))
+        found.append((number.name, {index: 1.0}, number.undetermined, run < 0))
     matrix = np.zeros((len(columns), len(found)))
-    for number, (_, moves, _, _) in enumerate(found):
+    for column, (_, moves, _, _) in enumerate(found):
         for index, move in moves.items():
-            matrix[index, number] = move
+            matrix[index, column] = move
     return Directions(
         tuple(name for name, *_ in found),
         matrix,
@@ -125,10 +130,12 @@ def _plainest_first(asked: Sequence[int], names: Sequence[str], seen: Floats) ->
     return [*order, *(index for index in asked if names[index] not in CALIBRATED)]
 
 
-def put_back(model: Model, given: Model, held: Iterable[str], knobs: Sequence[Knob]) -> Model:
+def put_back(
+    model: Model, given: Model, held: Iterable[str], numbers: Sequence[FreeParameter]
+) -> Model:
     """The model with what is held as it was given."""
     names = set(held)
-    changes = {knob.name: given.value(knob) for knob in knobs if knob.name in names}
+    changes = {number.name: given.value(number) for number in numbers if number.name in names}
     if names & set(CALIBRATED):
         here, there = (_sizes(item.robot) for item in (model, given))
         base, ratio, size = (

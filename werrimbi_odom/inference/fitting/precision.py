@@ -13,7 +13,7 @@ import numpy as np
 from werrimbi_odom.inference.chances import NORMAL_95, student_quantile
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point, slopes_of, spread_out, unexpected
-from werrimbi_odom.inference.fitting.knobs import Knob
+from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.noise import NoiseEstimate, with_noises
 from werrimbi_odom.inference.linear import covariance_of
@@ -27,7 +27,7 @@ class Precision:
 
     runs: Concatenated
     point: Point
-    local: tuple[Knob, ...]
+    local: tuple[FreeParameter, ...]
     """Columns of `slopes`."""
     slopes: Floats
     moves: Floats
@@ -35,11 +35,11 @@ class Precision:
 
     @classmethod
     def of(
-        cls, runs: Concatenated, point: Point, local: Sequence[Knob], moves: Floats
+        cls, runs: Concatenated, point: Point, local: Sequence[FreeParameter], moves: Floats
     ) -> Precision:
-        """Of a fit that ended at a point; start headings are no local knobs."""
-        knobs = tuple(local)
-        return cls(runs, point, knobs, slopes_of(runs, point.model, knobs), moves)
+        """Of a fit that ended at a point; start headings are no local numbers."""
+        numbers = tuple(local)
+        return cls(runs, point, numbers, slopes_of(runs, point.model, numbers), moves)
 
     def _design(self, variances: Variances) -> Design:
         point = replace(self.point, variances=variances)
@@ -53,15 +53,15 @@ class Precision:
         return float(np.linalg.slogdet(marks.T @ marks)[1])
 
     def _variances_of(self, names: Sequence[str], variances: Variances) -> Floats:
-        """Of shared knobs."""
+        """Of shared numbers."""
         design = self._design(variances)
-        columns = [knob.name for knob, _ in design.columns]
+        columns = [number.name for number, _ in design.columns]
         rows = self.moves[[columns.index(name) for name in names]]
         inside = covariance_of(design.flat()[1] @ self.moves)
         return np.asarray(np.einsum("pi,ij,pj->p", rows, inside, rows))
 
     def widening(self, noises: Mapping[str, NoiseEstimate], names: Sequence[str]) -> Floats:
-        """By how much to widen standard deviations of shared knobs so that 1.96 of them hold 95 %.
+        """By how much to widen deviations of shared numbers so that 1.96 of them hold 95 %.
 
         A fit takes its noise for known. Here variances are averaged over the log-normal law of each
         noise (law of total variance, three points by Gauss and Hermite), and standard deviations

@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
-from werrimbi_odom.inference.fitting.knobs import START_YAW, Model
+from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
 from werrimbi_odom.inference.legs.cutting import MatchedRun
 from werrimbi_odom.model.course import integrated
 from werrimbi_odom.model.covariance import (

@@ -22,13 +22,13 @@ from werrimbi_odom.inference.fitting.candidates import (
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.fit import fit_model, start_point
-from werrimbi_odom.inference.fitting.knobs import (
+from werrimbi_odom.inference.fitting.free_parameters import (
     CALIBRATION,
     NUISANCES,
-    Knob,
+    FreeParameter,
     Model,
     changed,
-    knobs_of,
+    parameters_to_fit,
 )
 from werrimbi_odom.model.effect import AppliedEffect
 
@@ -57,22 +57,22 @@ def at_home(model: Model, runs: Concatenated, kind: ReferenceKind) -> Point:
     robot = replace(model.robot, effects=effects)
     point = start_point(runs, robot, EvaluationOptions(reference_kind=kind))
     point, _ = with_own_values(runs, point)
-    knobs = point.model.nuisance_knobs
+    numbers = point.model.nuisance_parameters
     for applied in effects:
-        knobs += [
-            knob
-            for knob in knobs_of(applied.effect)
-            if knob.per_run and knob.name in point.model.own[0]
+        numbers += [
+            number
+            for number in parameters_to_fit(applied.effect)
+            if number.per_run and number.name in point.model.own[0]
         ]
-    return fit_model(runs, point, knobs, find_jumps=False, rounds=1).point
+    return fit_model(runs, point, numbers, find_jumps=False, rounds=1).point
 
 
-def with_own_values(runs: Concatenated, point: Point) -> tuple[Point, tuple[Knob, ...]]:
-    """The point with what each run has of its own in the robot's effects, and all their knobs.
+def with_own_values(runs: Concatenated, point: Point) -> tuple[Point, tuple[FreeParameter, ...]]:
+    """The point with what each run has of its own in the robot's effects, and all their numbers.
 
     A phase can be anywhere, so it is looked for by its score, which knows no start value.
     """
-    knobs: list[Knob] = []
+    numbers: list[FreeParameter] = []
     for applied in point.model.robot.effects:
         if applied.effect.is_mistake or applied.name in CALIBRATED:
             continue
@@ -81,10 +81,10 @@ def with_own_values(runs: Concatenated, point: Point) -> tuple[Point, tuple[Knob
             for name, item in applied.effect.parameters.items()
             if item.per_run and name not in applied.unknown
         )
-        knobs += knobs_of(applied.effect, shared)
+        numbers += parameters_to_fit(applied.effect, shared)
         if applied.unknown:
             point = replace(point, model=_learnt(runs, point, applied))
-    return point, tuple(knobs)
+    return point, tuple(numbers)
 
 
 def _learnt(runs: Concatenated, point: Point, applied: AppliedEffect) -> Model:

@@ -35,7 +35,7 @@ from werrimbi_odom.inference.fitting.candidates import (
 )
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.fit import start_point
-from werrimbi_odom.inference.fitting.knobs import STEP
+from werrimbi_odom.inference.fitting.free_parameters import STEP
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.linear import DETERMINED, SILENT, nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
@@ -161,7 +161,7 @@ def information_limits(
 def _seen(
     drives: Experiment, candidates: Sequence[Candidate], final: Fitted, tried: int
 ) -> dict[str, DetectionLimit]:
-    look = sensitivities_of(drives, candidates, final.knobs)
+    look = sensitivities_of(drives, candidates, final.numbers)
     return {item.name: _best(item, look, tried, final.held) for item in candidates}
 
 
@@ -217,7 +217,7 @@ def _shown_by(diagnosis: Diagnosis, hidden: Sequence[Candidate], *, better: bool
     for ideal in MANOEUVRES:
         drives, _ = imagined(ideal, diagnosis.runs, final.point, pace, better=better)
         beside = [item for item in _calibrated() if item.name not in _names(wanted)]
-        look = sensitivities_of(drives, [*wanted, *beside], final.knobs)
+        look = sensitivities_of(drives, [*wanted, *beside], final.numbers)
         for item in list(wanted):
             if not _best(item, look, diagnosis.rounds[-1].number, final.held).hidden:
                 found[item.name] = ideal.name

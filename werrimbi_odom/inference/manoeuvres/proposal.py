@@ -84,8 +84,8 @@ def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
     rivals = [_candidate(name, this, diagnosis) for name in diagnosis.rivals]
     first = _as_fitted(rivals[0], this, diagnosis)
     looked_at = _once([*rivals, *(Candidate(find(name), {}) for name in CALIBRATED)])
-    point, knobs = this.before.point, this.before.knobs
-    before = sensitivities_of(Experiment(diagnosis.runs, point), looked_at, knobs)
+    point, numbers = this.before.point, this.before.numbers
+    before = sensitivities_of(Experiment(diagnosis.runs, point), looked_at, numbers)
     target = trace_at(before, first)
     sizes = {item.name: best_alias(before, target, item) for item in rivals[1:]}
     pace = pace_of(diagnosis.runs, point.model.robot)
@@ -93,7 +93,7 @@ def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
     found = []
     for ideal in MANOEUVRES:
         drives, minutes = imagined(ideal, diagnosis.runs, point, pace)
-        ahead = sensitivities_of(drives, looked_at, knobs)
+        ahead = sensitivities_of(drives, looked_at, numbers)
         there = trace_at(ahead, first)
         stands = {rivals[0].name: ((before, target), (ahead, there))} | {
             name: (

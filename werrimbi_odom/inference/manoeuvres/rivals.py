@@ -18,7 +18,7 @@ import numpy as np
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED, Candidate
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, stacked, unexpected
-from werrimbi_odom.inference.fitting.knobs import Knob, Model
+from werrimbi_odom.inference.fitting.free_parameters import FreeParameter, Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
 from werrimbi_odom.inference.linear import SILENT, nuisance, solved
 from werrimbi_odom.model.effect import AppliedEffect
@@ -44,9 +44,9 @@ class Experiment:
         marks = found.marks(changes)[..., : changes.shape[-1]]
         return np.asarray(marks.reshape(-1, changes.shape[-1]))
 
-    def nuisances(self, knobs: Sequence[Knob]) -> Floats:
-        """Columns of what each run has of its own, and of other knobs; (3 m, q)."""
-        every = [*knobs, *self.point.model.nuisance_knobs]
+    def nuisances(self, numbers: Sequence[FreeParameter]) -> Floats:
+        """Columns of what each run has of its own, and of other numbers; (3 m, q)."""
+        every = [*numbers, *self.point.model.nuisance_parameters]
         return stacked(self.runs, self.point, every).flat()[1]
 
     def marks(self, candidate: Candidate) -> Floats:
@@ -95,12 +95,12 @@ class Sensitivities:
 
 
 def sensitivities_of(
-    drives: Experiment, candidates: Sequence[Candidate], knobs: Sequence[Knob]
+    drives: Experiment, candidates: Sequence[Candidate], numbers: Sequence[FreeParameter]
 ) -> Sensitivities:
-    """Try effects on drives; `knobs` are those of effects that the model holds already."""
+    """Try effects on drives; `numbers` are those of effects that the model holds already."""
     legs = {item.name: drives.marks(item) for item in candidates}
     white = {name: drives.whitened(marks) for name, marks in legs.items()}
-    return Sensitivities(drives, legs, white, drives.nuisances(knobs))
+    return Sensitivities(drives, legs, white, drives.nuisances(numbers))
 
 
 @dataclass(frozen=True)

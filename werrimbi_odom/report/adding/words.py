@@ -9,7 +9,7 @@ from typing import Any
 
 from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
-from werrimbi_odom.inference.fitting.knobs import MULTIPLIERS
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.report.comparison.words import headline
 from werrimbi_odom.report.document import Entry, Part, Table, paragraphs
 from werrimbi_odom.report.events import events_json, events_words

@@ -10,7 +10,7 @@ import numpy as np
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, right_handed
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all

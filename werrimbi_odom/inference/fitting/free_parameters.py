@@ -37,7 +37,7 @@ more than what a reference delay needs to feel beyond one interval of the ticks.
 
 
 @dataclass(frozen=True, slots=True)
-class Knob:
+class FreeParameter:
     """One number that a fit may change.
 
     Parameters
@@ -68,17 +68,17 @@ class Knob:
 
 
 CALIBRATION = tuple(
-    Knob(name, "", 1e-4, CALIBRATION_BOUNDS, CALIBRATION_KNOWN) for name in MULTIPLIERS
+    FreeParameter(name, "", 1e-4, CALIBRATION_BOUNDS, CALIBRATION_KNOWN) for name in MULTIPLIERS
 )
 
-HEADING_AT_START = Knob(START_YAW, "rad", 1e-4, (-1e9, 1e9), float("inf"), per_run=True)
+HEADING_AT_START = FreeParameter(START_YAW, "rad", 1e-4, (-1e9, 1e9), float("inf"), per_run=True)
 
 
-DRIFT_OF_YAW = Knob(YAW_DRIFT, "rad/s", 1e-4, (-10.0, 10.0), float("inf"), per_run=True)
+DRIFT_OF_YAW = FreeParameter(YAW_DRIFT, "rad/s", 1e-4, (-10.0, 10.0), float("inf"), per_run=True)
 
 
-def knobs_of(effect: Effect, shared: Sequence[str] = ()) -> tuple[Knob, ...]:
-    """The parameters of an effect as knobs.
+def parameters_to_fit(effect: Effect, shared: Sequence[str] = ()) -> tuple[FreeParameter, ...]:
+    """The parameters of an effect as numbers.
 
     Parameters
     ----------
@@ -87,7 +87,7 @@ def knobs_of(effect: Effect, shared: Sequence[str] = ()) -> tuple[Knob, ...]:
         where counters keep their zero).
     """
     return tuple(
-        Knob(
+        FreeParameter(
             f"{effect.name}.{name}",
             item.unit,
             STEP * item.scale,
@@ -112,14 +112,14 @@ def is_determined(parameter: Parameter, value: float, std: float) -> bool:
     return not std > min(0.5 * (high - low), scale)
 
 
-def shared_of(knobs: Sequence[Knob]) -> list[Knob]:
-    """Knobs that all runs have in common."""
-    return [knob for knob in knobs if not knob.per_run]
+def shared_of(numbers: Sequence[FreeParameter]) -> list[FreeParameter]:
+    """Free parameters that all runs have in common."""
+    return [number for number in numbers if not number.per_run]
 
 
-def own_of(knobs: Sequence[Knob]) -> list[Knob]:
-    """Knobs of which each run has its own."""
-    return [knob for knob in knobs if knob.per_run]
+def own_of(numbers: Sequence[FreeParameter]) -> list[FreeParameter]:
+    """Free parameters of which each run has its own."""
+    return [number for number in numbers if number.per_run]
 
 
 @dataclass(frozen=True, slots=True)
@@ -149,7 +149,7 @@ class Model:
         return np.array([own.get(YAW_DRIFT, 0.0) for own in self.own])
 
     @property
-    def nuisance_knobs(self) -> list[Knob]:
+    def nuisance_parameters(self) -> list[FreeParameter]:
         """What is turned because of the references; start headings `design.stacked` adds itself."""
         return [DRIFT_OF_YAW] if any(YAW_DRIFT in own for own in self.own) else []
 
@@ -177,25 +177,25 @@ class Model:
         values = {name: np.repeat([own[name] for own in self.own], sizes) for name in names}
         return changed(self.robot, cast("Mapping[str, float]", values))
 
-    def value(self, knob: Knob, index: int = 0) -> float:
-        """Where a knob stands."""
-        return self.own[index][knob.name] if knob.per_run else value_of(self.robot, knob.name)
+    def value(self, number: FreeParameter, index: int = 0) -> float:
+        """Where a number stands."""
+        return self.own[index][number.name] if number.per_run else value_of(self.robot, number.name)
 
     def turned(self, changes: Mapping[str, float], own: Sequence[Mapping[str, float]]) -> Model:
         """The model with shared values and the runs' own values changed."""
         merged = tuple({**before, **after} for before, after in zip(self.own, own, strict=True))
         return Model(changed(self.robot, changes), merged)
 
-    def moved_by(self, knob: Knob, move: float) -> Model:
-        """One knob moved, a run's own in all runs that have it; bounds are kept."""
-        if not knob.per_run:
-            now = value_of(self.robot, knob.name)
-            low, high = knob.bounds_about(now)
+    def moved_by(self, number: FreeParameter, move: float) -> Model:
+        """One number moved, a run's own in all runs that have it; bounds are kept."""
+        if not number.per_run:
+            now = value_of(self.robot, number.name)
+            low, high = number.bounds_about(now)
             return Model(
-                changed(self.robot, {knob.name: min(max(now + move, low), high)}), self.own
+                changed(self.robot, {number.name: min(max(now + move, low), high)}), self.own
             )
         own = tuple(
-            {**mine, knob.name: mine[knob.name] + move} if knob.name in mine else mine
+            {**mine, number.name: mine[number.name] + move} if number.name in mine else mine
             for mine in self.own
         )
         return Model(self.robot, own)
