@@ -33,7 +33,7 @@ from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
-from werrimbi_odom.inference.fitting.knobs import Model
+from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.model.robot import Robot

@@ -41,6 +41,7 @@ TRUE = WhiteNoiseRobot()
 SIGMA_XY, SIGMA_YAW = 5e-4, 1e-3
 DEEP = {"subscription": {"reliability": "reliable", "depth": 10_000}}
 WINDOW = 20
+AHEAD = 10.0  # of the drive [s], well within what compare_node remembers
 COMMAND = [sys.executable, "-m", "werrimbi_odom.ros.compare_node"]
 
 
@@ -157,10 +158,17 @@ def play(launched: Any, run: Any, compare: Comparing) -> None:
         )
     )
     launched.publisher(PoseStamped, "reference")
-    row = 0
+    row, waited = 0, run.ticks.time[0]
     for at, left, right in zip(
         *map(np.ndarray.tolist, (run.ticks.time, run.ticks.left, run.ticks.right)), strict=True
     ):
+        if at > waited + AHEAD:  # a sample that DDS sends again may come seconds later
+            waited = at
+            launched.until(
+                lambda: bool(compare.errors) and stamp(compare.errors[-1]) > 999.0 + waited,
+                "the errors so far",
+                60.0,
+            )
         launched.ticks(left, right, 1000.0 + at)
         while row < len(reference) and reference[row][0] <= at:
             launched.send(PoseStamped, "reference", pose_stamped(*reference[row]))
