@@ -12,6 +12,7 @@ import sys
 import time
 from collections import defaultdict
 from collections.abc import Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -98,6 +99,10 @@ class Comparing:
             if status.name.startswith("compare_node: "):
                 self.told[status.name.removeprefix("compare_node: ")].append(status)
 
+    def reached(self, time: float) -> bool:
+        """Whether an error has come of a later instant."""
+        return bool(self.errors) and stamp(self.errors[-1]) > time
+
     def verdict(self) -> Any:
         """The next /diagnostics."""
         before = len(self.said)
@@ -164,11 +169,7 @@ def play(launched: Any, run: Any, compare: Comparing) -> None:
     ):
         if at > waited + AHEAD:  # a sample that DDS sends again may come seconds later
             waited = at
-            launched.until(
-                lambda: bool(compare.errors) and stamp(compare.errors[-1]) > 999.0 + waited,
-                "the errors so far",
-                60.0,
-            )
+            launched.until(partial(compare.reached, 999.0 + at), "the errors so far", 60.0)
         launched.ticks(left, right, 1000.0 + at)
         while row < len(reference) and reference[row][0] <= at:
             launched.send(PoseStamped, "reference", pose_stamped(*reference[row]))
@@ -180,9 +181,7 @@ def play(launched: Any, run: Any, compare: Comparing) -> None:
         "the last odometry",
         60.0,
     )
-    launched.until(
-        lambda: bool(compare.errors) and stamp(compare.errors[-1]) > end - 0.5, "its error", 60.0
-    )
+    launched.until(partial(compare.reached, end - 0.5), "its error", 60.0)
     compare.verdict()
 
 

@@ -71,7 +71,7 @@ def test_what_is_no_echo_is_left_out() -> None:
     ranges = np.array([0.0, np.inf, np.nan, 0.05, 1.0, 9.0, -1.0, 2.0])
     sweep = sweep_of(10.0, ranges, 0.1 * np.arange(8), 0.01, nearest=0.12, farthest=8.0)
     assert np.hypot(*sweep.points.T) == pytest.approx([1.0, 2.0])
-    assert sweep.after == pytest.approx([0.005, 0.035])
+    assert sweep.duration * sweep.share == pytest.approx([0.005, 0.035])
     assert sweep.time == pytest.approx(10.035)
     assert isinstance(sweep, Sweep)
     assert deskewed(sweep, Course()) == pytest.approx(sweep.points)

@@ -15,13 +15,11 @@ from werrimbi_odom.files.frames import Chain
 from werrimbi_odom.files.mounting import Mount, MountingCollector
 from werrimbi_odom.files.run import Reference
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.scans.beam_order import EitherOrder
+from werrimbi_odom.scans.beam_order import AnyOrder, Order
+from werrimbi_odom.scans.limits import LONGEST_SWEEP
 from werrimbi_odom.scans.path import ScanPath
 from werrimbi_odom.scans.scan_odometry import Flag
 from werrimbi_odom.scans.sweep import sweep_of
-
-LONGEST_SWEEP = 1.0
-"""A turn that takes longer was stated in another unit [s]: its beams count as seen at once."""
 
 WHY: dict[Flag, str] = {
     "few": "too little within the lidar's reach",
@@ -31,6 +29,11 @@ WHY: dict[Flag, str] = {
     "fast": "a place farther away than a robot drives",
 }
 """Why a scan is matched with none, as the end of a sentence."""
+
+_ORDERS: dict[Order, str] = {
+    "first to last": "from the first to the last",
+    "last to first": "from the last to the first",
+}
 
 
 class LidarCollector:
@@ -43,7 +46,7 @@ class LidarCollector:
         self._frame = source.child
         self._mounting = MountingCollector(mounting) if mounting else None
         self._base = mounting.parent if mounting else ""
-        self._matcher = EitherOrder()
+        self._matcher = AnyOrder()
         self._echoes, self._reach = 0, (0.0, np.inf)
         self.topics = (source.name, *(self._mounting.topics if self._mounting else ()))
         self.taken_out: tuple[tuple[float, float], ...] = ()
@@ -88,10 +91,11 @@ class LidarCollector:
         if found.cuts:
             self.damage = (f"the path by {self._name} is in pieces: {_unmatched(found)}",)
         told = f"{self._mounted(mount)}; {_in_words(found, sigma_xy, sigma_yaw)}"
-        if self._matcher.backwards:
+        if self._matcher.order != "stated":
             told += (
-                "; its beams are deskewed from the last to the first, for so the walls are sharper "
-                "while it turns: its driver states them the other way round"
+                f"; its beams are deskewed {_ORDERS[self._matcher.order]}, for so the walls are "
+                "sharper while it turns: its driver states them "
+                f"{'all at one instant' if self._matcher.at_once else 'the other way round'}"
             )
         x, y, yaw = (np.ascontiguousarray(each) for each in poses.T)
         # Not local_map: in a room the map walks by less than a match errs (docs/scans.md), and a

@@ -49,6 +49,9 @@ CALM = 0.25
 """Share of a drive in which speeds change least, where that scatter is looked for: of short hops
 with hard starts and stops half is neither."""
 
+LONGEST_SWEEP = 1.0
+"""A turn that takes longer was stated in another unit [s]: its beams count as seen at once."""
+
 ORDER_TURNING = 0.1
 """Rate of turning [rad/s] from which on a scan tells in which order its beams were seen: a wall 2 m
 away is bent by 2 cm in a tenth of a second, and by 4 cm if it is deskewed the wrong way."""

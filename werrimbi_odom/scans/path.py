@@ -36,7 +36,8 @@ AROUND = 3
 """Scans before and after one, that its course in the second pass is fitted to."""
 USUAL = 0.1
 """Time of a turn until two scans are known [s]."""
-_INTERVALS = 15
+INTERVALS = 15
+"""Scans whose median tells how long a turn takes."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +79,7 @@ class ScanMatcher:
     """Takes scans in the order of time, and gives the path at the end."""
 
     def __init__(self) -> None:
-        self._intervals: deque[float] = deque(maxlen=_INTERVALS)
+        self._intervals: deque[float] = deque(maxlen=INTERVALS)
         self._last: Sweep | None = None
         self._first = Tracker(np.zeros(3))
         self._second = Tracker(np.zeros(3))

@@ -19,8 +19,10 @@ class Sweep:
     """Of the middle of the sweep, which is where its pose is told [s]."""
     points: Floats
     """In the lidar's frame at the instant of each, shape (k, 2) [m]."""
-    after: Floats
-    """When each was seen, after the middle, shape (k,) [s]."""
+    share: Floats
+    """Of the turn, from its middle to where each was seen, shape (k,); -0.5 to 0.5."""
+    duration: float
+    """Of the turn [s]; 0 where all are seen at once, negative where the last is seen first."""
     spacing: Floats
     """Distance between neighbouring beams there, shape (k,) [m]."""
 
@@ -65,13 +67,13 @@ def sweep_of(
     points = distance[:, None] * np.column_stack([np.cos(direction), np.sin(direction)])
     middle = 0.5 * (ranges.size - 1) * beam_interval
     step = abs(float(angles[1] - angles[0])) if angles.size > 1 else 0.0
-    after = np.asarray(number * beam_interval - middle, dtype=np.float64)
-    return Sweep(time + middle, points, after, distance * step)
+    share = np.asarray((number - 0.5 * (ranges.size - 1)) / max(ranges.size, 1), dtype=np.float64)
+    return Sweep(time + middle, points, share, ranges.size * beam_interval, distance * step)
 
 
 def deskewed(sweep: Sweep, course: Course) -> Floats:
     """The echoes as they would have been seen from where the lidar was at the middle, (k, 2)."""
-    t = sweep.after[:, None]
+    t = sweep.duration * sweep.share[:, None]
     moved = t * np.array(course.linear) + t * t * np.array(course.quadratic)
     cos, sin = np.cos(moved[:, 2]), np.sin(moved[:, 2])
     x, y = sweep.points.T
