@@ -18,7 +18,8 @@ from werrimbi_odom.model.reference_view import View
 def reference_mirrored(view: View) -> View:
     """The reference's frame is left-handed: y points down, or east and north are exchanged.
 
-    Images have y down, maps have north up and count clockwise, and some capture systems do both.
+    Images have y down, maps have north up and count clockwise, and some capture systems do both; a
+    lidar that hangs upside down sees so, where no transform of its recording says that it does.
 
     Formula    measured y = -y;  measured yaw = -yaw (x and y exchanged is the same, turned)
     Signature  left turns come out as right turns of the same size; lines are good

@@ -109,7 +109,7 @@ def _wiring(setting: Setting, ways: list[Wired]) -> Iterator[SetUpFinding]:
             twins = twins_of(name, ways)
             words = WIRING_WORDS[name]
             if "reference_mirrored" in twins:
-                words += "; or the reference's frame is left-handed (y down)"
+                words += "; or the reference's frame is left-handed (y down; a lidar upside down)"
             yield SetUpFinding(name, {}, None, words, twins, 1.0, replace(setting, wired=right))
 
 
