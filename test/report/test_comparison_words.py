@@ -23,9 +23,17 @@ from werrimbi_odom.inference.comparison.systematic import NoiseFactor, Systemati
 from werrimbi_odom.inference.comparison.verdict import Noise, Verdict
 from werrimbi_odom.inference.rules import FEWEST_LEGS, HONEST_CHANCE, HONEST_WITHIN
 from werrimbi_odom.report.comparison.phrases import covariance_words
+from werrimbi_odom.report.numbers import from_start
 
 SYSTEMATIC = Systematic("line", "heading", "travel", 0.1, 0.01, 1e-9, 0.1, 0.1, True)
 NUMBER = r"([\d.]+(?:e[+-]?\d+)?)"
+
+
+def test_a_clock_that_shows_the_time_of_day_is_told_from_the_drives_start() -> None:
+    assert from_start(1_767_225_600.0, 1_767_225_626.4, 1_767_225_630.6) == pytest.approx(
+        (26.4, 30.6)
+    )
+    assert from_start(1000.0, 1026.4) == (1026.4,), "one that began with the robot is told as it is"
 
 
 def table(random: np.random.Generator) -> tuple[AtLength, ...]:

@@ -9,8 +9,7 @@ from typing import Any
 
 from werrimbi_odom.inference.events.common_cause import Alike
 from werrimbi_odom.inference.events.events import Event, Events
-from werrimbi_odom.report.numbers import in_unit, with_std
-from werrimbi_odom.report.phrases import LONGEST_DRIVE
+from werrimbi_odom.report.numbers import from_start, in_unit, with_std
 
 _TOLD = 6
 """Events that are told one by one, the largest against their noise."""
@@ -31,7 +30,7 @@ def events_words(happened: Events, track: float) -> list[str]:
             name = "/".join(event.run.parts[-2:]) if twice else event.run.name
             where = f" of {name}" if len(drives) > 1 else ""
             words = event_words(event, track, adds_up=adds_up(happened))
-            lines.append(f"- at {told_from_start(event):.1f} s{where} {words};")
+            lines.append(f"- at {when(event)}{where} {words};")
     lines[-1] = f"{lines[-1][:-1]}."
     rest = len(events) - len(clear)
     if rest:
@@ -147,9 +146,9 @@ def alike_json(happened: Events) -> dict[str, Any] | None:
     }
 
 
-def told_from_start(event: Event) -> float:
-    """When it was [s]; of a clock that shows the time of day from the run's first tick."""
-    return event.time - event.started if event.started > LONGEST_DRIVE else event.time
+def when(event: Event) -> str:
+    """When it was, told from the run's first tick if its clock shows the time of day."""
+    return f"{from_start(event.started, event.time)[0]:.1f} s"
 
 
 def _size(event: Event) -> tuple[str, str]:

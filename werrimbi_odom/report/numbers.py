@@ -8,6 +8,13 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+_LONGEST_DRIVE = 1e7  # no clock that begins with the drive shows so many seconds
+
+
+def from_start(started: float, *times: float) -> tuple[float, ...]:
+    """Times as they are told [s]: since a run's first tick, if its clock shows the time of day."""
+    return tuple(time - started for time in times) if started > _LONGEST_DRIVE else times
+
 
 def length(value: float) -> str:
     """Metres, in the unit that reads best."""

@@ -8,15 +8,14 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark, Stretch
+from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.numbers import with_std
+from werrimbi_odom.report.numbers import from_start, with_std
 
 _MOST = 5  # stretches that are told one by one
 _TOLD = 3  # the same, of a reference that is suspect
-LONGEST_DRIVE = 1e7  # no clock that begins with the drive shows so many seconds
 
 
 def left_out_words(parts: Sequence[LeftOut]) -> list[str]:
@@ -29,7 +28,7 @@ def left_out_words(parts: Sequence[LeftOut]) -> list[str]:
     lines = []
     for part in silent[:_MOST]:
         where = f" of {part.run.name}" if len(runs) > 1 or len(silent) > _MOST else ""
-        from_s, to_s = told_from_start(part)
+        from_s, to_s = from_start(part.started, part.begin, part.end)
         end = ". Left out." if ":" in part.words else ": left out."
         lines.append(f"From {from_s:.1f} s to {to_s:.1f} s{where} {part.words}{end}")
     rest = silent[_MOST:]
@@ -40,17 +39,6 @@ def left_out_words(parts: Sequence[LeftOut]) -> list[str]:
             f"stretch{'' if len(rest) == 1 else 'es'}, {seconds:.1f} s in all."
         )
     return lines
-
-
-def told_from_start(part: LeftOut | Stretch) -> tuple[float, float]:
-    """When it begins and ends [s].
-
-    A clock that shows the time of day is no help: it is told from the run's first tick.
-    """
-    begin, end = part.begin, part.end
-    return (
-        (begin - part.started, end - part.started) if part.started > LONGEST_DRIVE else (begin, end)
-    )
 
 
 def jumps_words(parts: Sequence[LeftOut]) -> list[str]:
@@ -182,7 +170,7 @@ def _places(remark: ReferenceRemark) -> str:
     told = [
         f"{part.run.name} from {begin:.0f} s to {end:.0f} s"
         for part in remark.stretches[:_TOLD]
-        for begin, end in [told_from_start(part)]
+        for begin, end in [from_start(part.started, part.begin, part.end)]
     ]
     more = ", ..." if len(remark.stretches) > _TOLD else ""
     return f"{len(remark.stretches)} stretches ({', '.join(told)}{more})"

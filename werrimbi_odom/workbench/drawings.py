@@ -22,6 +22,7 @@ from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.leg_errors import CHI2_95
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.adding.figures import ErrorOfModel, error_falling_figure
+from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.report.style import (
     BLUE,
     FEWEST,
@@ -31,6 +32,7 @@ from werrimbi_odom.report.style import (
     MARKS,
     ORANGE,
     along_path,
+    escaped,
     plain,
     small,
 )
@@ -153,8 +155,8 @@ def leg_told(comparison: Comparison, index: int) -> str:
     run = comparison.runs[legs.run[index]].run.name
     along, sideways, heading = legs.errors.error[index]
     return (
-        f"{run}, {legs.start_time[index]:.1f} to {legs.end_time[index]:.1f} s, "
-        f"{legs.errors.kind[index]}<br>measured − predicted: along {1e3 * along:+.1f} mm, "
+        f"{escaped(run)}, {leg_when(comparison, index)}, {legs.errors.kind[index]}<br>"
+        f"measured − predicted: along {1e3 * along:+.1f} mm, "
         f"sideways {1e3 * sideways:+.1f} mm, heading {np.degrees(heading):+.2f}°"
     )
 

@@ -11,6 +11,7 @@ import numpy as np
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.dead_reckoning import covariance_along, middles
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.report.path_figure import add_mark, add_path, ellipse, spread_along_path
 from werrimbi_odom.report.style import (
     BLUE,
@@ -175,7 +176,7 @@ def _told(comparison: Comparison, row: int) -> str:
     error = legs.errors.error[row]
     promised = np.sqrt(np.diagonal(legs.errors.covariance[row]))
     name = escaped(comparison.runs[int(legs.run[row])].run.name)
-    lines = [f"{name}, {legs.start_time[row]:.1f} to {legs.end_time[row]:.1f} s"]
+    lines = [f"{name}, {leg_when(comparison, row)}"]
     lines.append(str(legs.errors.kind[row]))
     for word, value, sigma, scale, unit in zip(
         ("along", "sideways", "heading"),

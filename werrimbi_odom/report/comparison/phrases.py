@@ -7,12 +7,21 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
+from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.consistency import AtLength, trend_of
 from werrimbi_odom.inference.comparison.systematic import Systematic
 from werrimbi_odom.inference.comparison.verdict import Verdict
-from werrimbi_odom.report.numbers import listed
+from werrimbi_odom.report.numbers import from_start, listed
 
 NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
+
+
+def leg_when(comparison: Comparison, index: int) -> str:
+    """From when to when a leg was driven."""
+    legs = comparison.legs
+    started = float(comparison.runs[int(legs.run[index])].run.ticks.time[0])
+    begin, end = from_start(started, float(legs.start_time[index]), float(legs.end_time[index]))
+    return f"{begin:.1f} to {end:.1f} s"
 
 
 def systematic_told(part: Systematic) -> str:

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.report.document import Table
 from werrimbi_odom.workbench.drawings import floor_figure
 from werrimbi_odom.workbench.figure import figure
@@ -43,7 +44,7 @@ def floor(tab: Tab) -> None:
             lines.append(
                 [
                     comparison.runs[legs.run[index]].run.name,
-                    f"{legs.start_time[index]:.1f} to {legs.end_time[index]:.1f} s",
+                    leg_when(comparison, index),
                     str(legs.errors.kind[index]),
                     f"{1e3 * along:+.1f} mm",
                     f"{1e3 * sideways:+.1f} mm",
