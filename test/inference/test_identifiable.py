@@ -22,7 +22,7 @@ from werrimbi_odom.inference.comparison.judged_legs import far_above_noise, figu
 from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
-from werrimbi_odom.inference.fitting.free_parameters import Model
+from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model
 from werrimbi_odom.inference.fitting.noise import of_no_wheel
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.manoeuvres.by_hand import for_twins
@@ -54,6 +54,29 @@ def test_a_wrong_base_is_found_in_one_short_drive_with_positions_alone() -> None
     result = calibrate(match_finely([run], NOMINAL, 1.0), NOMINAL)
     assert max(result.robot.left_wheel_noise, result.robot.right_wheel_noise) < 3e-3
     assert result.robot.wheel_separation_multiplier == pytest.approx(1.0 / 0.83, rel=0.02)
+
+
+def test_a_circle_by_positions_alone_holds_two_numbers() -> None:
+    """A marker 60 mm to the left, to which a smaller circle and smaller wheels look the same.
+
+    It was said to be a metre 1.33 times too long, wheels 7 % smaller and one of them 16 % more so,
+    each of them "beyond any chance".
+    """
+    random = np.random.default_rng(2)
+    true = WhiteNoiseRobot(0.35, 0.05, 0.05, 5e-4, 5e-4)
+    steps = 50 * 60
+    run = drive(true, (np.full(steps, 0.4), np.full(steps, 0.4)), random, sigma_xy=1e-3, every=5)
+    marker = 0.06j * np.exp(1j * run.reference.yaw)
+    run.reference.x[:] += marker.real
+    run.reference.y[:] += marker.imag
+    run.reference.yaw[:] = np.nan
+    found = diagnose([run], NOMINAL, LIBRARY)
+    assert found.set_up.findings == ()
+    assert found.verdict == "ambiguous"
+    assert "reference_lever_arm" in found.rivals
+    assert found.rivals_of_others == {"unequal_wheel_radii": ("track_width",)}
+    for name in MULTIPLIERS:
+        assert getattr(found.robot, name) == pytest.approx(1.0, abs=0.1)
 
 
 def test_an_error_that_no_noise_makes_is_told_from_one_that_noise_makes() -> None:

@@ -33,8 +33,7 @@ def rivals_of(
 ) -> tuple[str, ...]:
     """What the runs cannot tell from the first effect, that one leading; alone: none."""
     if first in CALIBRATED:
-        others = {name for subset in final.alternatives for name in subset if first not in subset}
-        named = [first, *(name for name in CALIBRATED if name in others)]
+        named = [first, *_sizes_in_place_of(first, final)]
         limit = final.total + RIVAL * final.scatter
         named += [item.effect for item in instead if item.total < limit]
         return tuple(named) if len(named) > 1 else ()
@@ -51,10 +50,21 @@ def rivals_of_others(
     """The same of each further effect, in the round that took it; none that was found as well."""
     others = {}
     for name in found[1:]:
-        if name in final.names and name not in rivals:
+        if name in rivals:
+            continue
+        near: tuple[str, ...] = ()
+        if name in final.names:
             near = _near(name, rounds[final.names.index(name)])
-            others[name] = tuple(other for other in near if other not in (*found, *rivals))
+        elif name in CALIBRATED:
+            near = _sizes_in_place_of(name, final)
+        others[name] = tuple(other for other in near if other not in (*found, *rivals))
     return {name: near for name, near in others.items() if near}
+
+
+def _sizes_in_place_of(name: str, final: Fitted) -> tuple[str, ...]:
+    """Sizes of the robot that explain as much without one."""
+    others = {other for subset in final.alternatives for other in subset if name not in subset}
+    return tuple(other for other in CALIBRATED if other in others)
 
 
 def _near(name: str, this: Round) -> tuple[str, ...]:

@@ -111,7 +111,7 @@ def instead_of_calibration(
     for score in worth_fitting(best_of_each(found))[:INSTEAD_FITTED]:
         start = replace(point, model=put_in(point.model, score))
         numbers = (*calibrated.numbers, *parameters_of_candidate(score.candidate), *nuisances)
-        fit = fit_model(runs, start, numbers, find_jumps=False, rounds=2)
+        fit = fit_model(runs, start, numbers, find_jumps=False, rounds=8)
         if not fit.at_bound:
             price = calibrated.price_of_one * len(fit.free) * calibrated.scatter
             results.append(Instead(score.candidate.name, fit.minus_two_log_likelihood + price))

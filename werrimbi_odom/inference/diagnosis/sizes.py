@@ -27,7 +27,7 @@ from werrimbi_odom.inference.fitting.free_parameters import (
     shared_of,
 )
 from werrimbi_odom.inference.linear import nuisance
-from werrimbi_odom.inference.rules import RIVAL, STILL
+from werrimbi_odom.inference.rules import CALIBRATION_KNOWN, RIVAL, STILL
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -78,9 +78,20 @@ def sizes_needed(fit: Fitted, given: Robot, wanted: Collection[str]) -> Sizes:
     marks, rest = _at_given(fit.design, fit.point.model.robot, given)
     weighed = []
     for sizes in choices(wanted):
-        gained = float(np.sum((marks @ sizes.directions @ _solved(marks, sizes, rest)) ** 2))
-        weighed.append((fit.price_of_one * sizes.free - gained / fit.scatter, sizes))
+        away = _solved(marks, sizes, rest)
+        gained = float(np.sum((marks @ sizes.directions @ away) ** 2))
+        price = fit.price_of_one * sizes.free + _surprise(sizes.directions @ away)
+        weighed.append((price - gained / fit.scatter, sizes))
     return min(weighed, key=lambda item: item[0])[1]
+
+
+def _surprise(logs: Floats) -> float:
+    """What it costs to believe in multipliers (3,) so far from the given, twice a log-likelihood.
+
+    By Cauchy's law about what a tape tells: where two choices do as well, as on one circle, the
+    one that moves the robot less is the likelier. Nothing where the data decide.
+    """
+    return float(2.0 * np.sum(np.log1p((logs / CALIBRATION_KNOWN) ** 2)))
 
 
 def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: Sizes) -> Fitted:

@@ -141,8 +141,9 @@ POSITIONS_REFINED = 6
 all on the coarse windows."""
 
 GIVEN_AS_GOOD = 1.05
-"""Times the best error up to which the sizes as entered are kept. Chosen: a search of 1260 set-ups
-finds one that is a little better by chance."""
+"""Times the best error up to which the sizes as entered are kept, and no lever arm is believed.
+Chosen: a search of 1260 set-ups finds one that is a little better by chance, and on circles any arm
+is as good as a base."""
 
 POSITIONS_WIDE = 2.0
 """Times by which another set-up must make the typical error smaller than the given one. More than
@@ -150,10 +151,6 @@ POSITIONS_WIDE = 2.0
 
 WINDOW_FLOOR = 0.01
 """Share of a cut's length below which one error of a window is as good as another."""
-
-ARM_IN_HALF_BASES = 6.0
-"""Longest lever arm that positions alone tell, in half bases: on circles an arm is as good as a
-base, and runs away to any length."""
 
 # ------------------------------------------------------------------------------- two poses a drive
 

@@ -18,7 +18,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.inference.rules import (
-    ARM_IN_HALF_BASES,
     COARSE_WINDOWS,
     FINE_WINDOWS,
     GIVEN_AS_GOOD,
@@ -176,14 +175,12 @@ def search_positions(
     given = _refined(windows, 1.0 / track, 1.0 / track)
     if given[0] < GIVEN_AS_GOOD * best[0]:
         best = given
-    _, left, right = best
-    arm = 0j
-    for _ in range(3):
-        half_base, arm = windows.mount(left, right, arm)
-        if abs(arm) > ARM_IN_HALF_BASES * half_base:  # circles alone do not tell an arm from a base
-            half_base, arm = windows.half_base(left, right), 0j
-            break
-        _, left, right = _refined(windows, left, right, arm, step=0.03)
+    with_arm = _with_arm(windows, best[1], best[2])
+    if with_arm[0] * GIVEN_AS_GOOD < best[0]:
+        _, left, right, half_base, arm = with_arm
+    else:  # circles alone do not tell an arm from a base
+        _, left, right = best
+        half_base, arm = windows.half_base(left, right), 0j
     if half_base <= 0.0:
         return [], None
     estimate = Estimate(left, right, 2.0 * half_base, None, arm)
@@ -199,6 +196,17 @@ def search_positions(
     if not found or entered < POSITIONS_WIDE * misfit(setting):
         return [], None
     return found, setting
+
+
+def _with_arm(
+    windows: Windows, left: float, right: float
+) -> tuple[float, float, float, float, complex]:
+    """Error, turning of both wheels, half the base and the lever arm that fit best with one."""
+    arm, error = 0j, math.inf
+    for _ in range(3):
+        half_base, arm = windows.mount(left, right, arm)
+        error, left, right = _refined(windows, left, right, arm, step=0.03)
+    return error, left, right, half_base, arm
 
 
 def _grid() -> list[tuple[float, float]]:
