@@ -15,16 +15,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.model.pose import Floats, wrap_all
+from werrimbi_odom.inference.fitting.leg_loop import InOrder, both_of, go_along
+from werrimbi_odom.model.pose import Floats
 
 STRETCH = 100
 """Legs, at the least, after which the filter starts anew where it can."""
 
 SIDE_BY_SIDE = 50
 """Stretches into which a long record is cut, about."""
-
-UNMEASURED = 1e6
-"""Variance [m², rad²] that stands for a coordinate that was not measured."""
 
 
 class Legs(NamedTuple):
@@ -204,81 +202,37 @@ def filtered(legs: Legs) -> Unexpected:
     free = ~finite[:, 2]
     state = np.where(finite, legs.start[first], 0.0)
     state[:, 2] = np.where(free, np.nan_to_num(legs.heading[first]), state[:, 2])
-    state = np.repeat(state[None], sets, axis=0)
     alike = legs.reading.shape[1] == 1
-    spread = (legs.reading if alike else legs.reading[:, first]) * _both(finite)
-
-    relative, noise, finish = legs.relative[leg], legs.noise[:, leg], legs.finish[leg]
+    spread = (legs.reading if alike else legs.reading[:, first]) * both_of(finite)
+    finish = legs.finish[leg]
     known, jumped = np.isfinite(finish), legs.skip[leg]
-    finish = np.where(known, finish, 0.0)
-    reading = np.broadcast_to(legs.reading, noise.shape) if alike else legs.reading[:, leg]
-    doubted = reading + UNMEASURED * _diagonal(~known)
-    plain = [bool(known[now].all()) and not jumped[now].any() for now in rounds]
-
-    values = np.zeros((sets, count, 3))
-    covariances, turns, levers = (np.empty((sets, count, 3, 3)) for _ in range(3))
-    kept = np.empty((count, 3, 3))
-    identity = np.eye(3)
-    levers[:] = identity
-    for now, simple in zip(rounds, plain, strict=True):
-        still = now.stop - now.start
-        state, spread = state[:, :still], spread[:, :still]
-        turn, lever = turns[:, now], levers[:, now]
-        turn_into(turn, state[..., 2])
-        move = (turn @ relative[now, :, None])[..., 0]
-        lever[..., 0, 2], lever[..., 1, 2] = -move[..., 1], move[..., 0]
-        state = state + move
-        spread = lever @ spread @ lever.swapaxes(-1, -2)
-        spread += turn @ noise[:, now] @ turn.swapaxes(-1, -2)
-        total = np.add(spread, doubted[:, now], out=covariances[:, now])
-        new = np.subtract(finish[now], state, out=values[:, now])
-        if not simple:
-            new[:, ~known[now]] = 0.0
-        new[..., 2] = wrap_all(new[..., 2])
-        gain = spread @ np.linalg.inv(total)
-        before = state, spread
-        state = state + (gain @ new[..., None])[..., 0]
-        spread = spread - gain @ spread
-        spread = 0.5 * (spread + spread.swapaxes(-1, -2))
-        kept[now] = identity - gain[0] * known[now, None, :]
-        if not simple:
-            # What was measured at the end of a leg with a jump is all that is known of it; the rest
-            # (the heading, where positions alone are measured) is as well known as the wheels
-            # carried it there.
-            seen, leapt = known[now], jumped[now]
-            both, apart = _both(seen), _both(~seen)
-            anew = np.where(apart, before[1], np.where(both, reading[:, now], 0.0))
-            values[:, now][:, leapt] = 0.0
-            state = np.where(leapt[:, None], np.where(seen, finish[now], before[0]), state)
-            spread = np.where(leapt[:, None, None], anew, spread)
-            kept[now][leapt] = _diagonal(~seen[leapt])
+    noise = legs.noise[:, leg]
+    of = InOrder(
+        rounds,
+        state,
+        spread,
+        legs.relative[leg],
+        noise,
+        np.where(known, finish, 0.0),
+        known,
+        jumped,
+        np.broadcast_to(legs.reading, noise.shape) if alike else legs.reading[:, leg],
+        values=np.zeros((sets, count, 3)),
+        covariances=np.empty((sets, count, 3, 3)),
+        turns=np.empty((sets, count, 3, 3)),
+        levers=np.empty((sets, count, 3, 3)),
+        kept=np.empty((count, 3, 3)),
+    )
+    go_along(of)
     place = np.empty(count, dtype=np.intp)
     place[leg] = np.arange(count)
-    back = turns.swapaxes(-1, -2)
+    back = of.turns.swapaxes(-1, -2)
     seen_back = -back[0] * (known & ~jumped[:, None])[:, None]
-    passed = levers[0].copy()
+    passed = of.levers[0].copy()
     for last, now in itertools.pairwise(rounds):
-        passed[now] = levers[0, now] @ kept[last.start : last.start + now.stop - now.start]
+        passed[now] = of.levers[0, now] @ of.kept[last.start : last.start + now.stop - now.start]
     return Unexpected(
-        (back @ values[..., None])[..., 0][:, place],
-        (back @ covariances @ turns)[:, place],
-        Ways(leg, turns[0], passed, seen_back, free, rounds),
+        (back @ of.values[..., None])[..., 0][:, place],
+        (back @ of.covariances @ of.turns)[:, place],
+        Ways(leg, of.turns[0], passed, seen_back, free, rounds),
     )
-
-
-def turn_into(turn: Floats, yaw: Floats) -> None:
-    """Write rotations of (x, y, yaw) by angles of shape (g, s)."""
-    cos, sin = np.cos(yaw), np.sin(yaw)
-    turn[:] = 0.0
-    turn[..., 0, 0] = turn[..., 1, 1] = cos
-    turn[..., 0, 1], turn[..., 1, 0] = -sin, sin
-    turn[..., 2, 2] = 1.0
-
-
-def _diagonal(rows: NDArray[np.bool_]) -> Floats:
-    return np.asarray(rows[..., None] * np.eye(3))
-
-
-def _both(known: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Which entries of a covariance are of two known coordinates."""
-    return known[..., :, None] & known[..., None, :]

@@ -20,12 +20,12 @@ from werrimbi_odom.files.run import ReferenceKind
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.filtering import (
     STRETCH,
-    UNMEASURED,
     Legs,
     Shocks,
     Ways,
     filtered,
 )
+from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.wandering import LaidHeading, Wander, filtered_wandering
 from werrimbi_odom.inference.legs.cutting import MatchedRun

@@ -20,14 +20,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.fitting.filtering import (
-    UNMEASURED,
-    Legs,
-    Unexpected,
-    Ways,
-    in_rounds,
-    turn_into,
-)
+from werrimbi_odom.inference.fitting.filtering import Legs, Unexpected, Ways, in_rounds
+from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED, turn_into
 from werrimbi_odom.inference.rules import LAID_DRIFT, LAID_SCALE, LAID_YAW, LOST_XY, LOST_YAW
 from werrimbi_odom.model.pose import Floats, wrap_all
 
