@@ -49,7 +49,7 @@ TEST = [
 ]
 DOCS = ["sphinx>=8.0", "myst-parser>=4.0", "sphinx-rtd-theme>=3.0"]  # `make docs`
 RELEASE = ["build>=1.2", "twine>=6.0"]  # sdist and wheel, and whether they can be uploaded
-FAST = ["numba>=0.61"]  # machine code for long records; the same figures without
+FAST = ["numba>=0.61"]  # machine code for long records and diagnoses; the same figures without
 GPS = ["pyproj>=3.6"]  # fixes of satellites as a reference
 EVIDENCE = ["atheris>=2.3"]  # for the long tests alone; not for every Python
 
