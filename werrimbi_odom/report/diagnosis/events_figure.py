@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from werrimbi_odom.inference.events.events import Event, Events, Way
-from werrimbi_odom.report.events import adds_up, event_words, told_from_start
+from werrimbi_odom.report.events import either, event_words, told_from_start
 from werrimbi_odom.report.path_figure import add_path
 from werrimbi_odom.report.style import (
     BLUE,
@@ -118,7 +118,7 @@ def _marks(
 
 def _said(happened: Events, event: Event, track: float) -> str:
     when = f"{escaped(event.run.name)}, {told_from_start(event):.1f} s"
-    return f"{when}<br>{escaped(event_words(event, track, adds_up=adds_up(happened)))}"
+    return f"{when}<br>{escaped(event_words(event, track, either=either(happened)))}"
 
 
 def _name(way: Way) -> str:
