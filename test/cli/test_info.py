@@ -205,6 +205,22 @@ def test_what_is_no_urdf_says_nothing(text: str) -> None:
     assert not of_urdf(text).has_sizes
 
 
+def test_a_negative_multiplier_of_a_controller_is_a_reversed_wheel(tmp_path: Path) -> None:
+    """So diff_drive_controller takes it; a robot file says it with an effect."""
+    parameters = tmp_path / "controllers.yaml"
+    parameters.write_text(
+        "diff_drive_controller:\n  ros__parameters:\n    wheel_separation: 1.9\n"
+        "    wheel_radius: 0.3\n    left_wheel_radius_multiplier: 1.01\n"
+        "    right_wheel_radius_multiplier: -1.0\n"
+    )
+    out = tmp_path / "robot.yaml"
+    out.write_text(of_controller(parameters).text("first"))
+    robot = wo.read_robot(out).robot
+    assert [each.name for each in robot.effects] == ["right_wheel_reversed"]
+    assert robot.left_wheel_radius_multiplier == 1.01
+    assert robot.right_wheel_radius_multiplier == 1.0
+
+
 def test_a_file_without_wheels_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "other.yaml"
     path.write_text("amcl:\n  ros__parameters:\n    max_particles: 2000\n")

@@ -22,8 +22,10 @@ from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.legs.agreement import Agreement
+from werrimbi_odom.inference.legs.counters import counters_of
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.legs.no_driving import _judged, _stretches, looked_at
+from werrimbi_odom.inference.legs.spans import driven
 from werrimbi_odom.inference.legs.windows import Windows
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.report.phrases import left_out_words
@@ -174,6 +176,18 @@ def test_nothing_of_a_carry_is_left_in_the_next_leg(seed: int) -> None:
     ]
     assert left[0] < 2e-3
     assert 1.0 - left[1] < 2e-3, "of 1.1 m: two millimetres"
+
+
+def test_angles_that_tremble_in_their_last_digits_are_no_driving() -> None:
+    """As of a simulator: a minute of waiting in which no angle is twice the same."""
+    time = np.arange(0.0, 60.0, 0.05)
+    way = np.cumsum(0.05 * 0.3 * ((time > 10.0) & (time < 18.0)))
+    way += 1e-7 * np.random.default_rng(0).standard_normal(time.size)
+    ticks = Ticks(time, way / ROBOT.left_tick, way / ROBOT.right_tick)
+    run = Run("waits", Path("waits"), ticks, None)
+    found = driven(counters_of(run, ROBOT, None), ROBOT, ())
+    assert [each.what for each in found.spans] == ["stood", "drove", "stood"]
+    assert found.reversals == 0
 
 
 def test_headings_alone_show_it_while_the_wheels_turn_the_robot() -> None:

@@ -53,6 +53,10 @@ STANDS = 0.05
 """Share of the median way of the wheels in a window, below which they stand: a motor that holds its
 place jitters by a count or two."""
 
+TREMBLES = 1e-3
+"""Share of the speed below which half of all way is gone, up to which wheels only tremble: far less
+than any motor drives, far more than the last digits of an angle in single precision."""
+
 MOSTLY = 0.3
 """Share of the wheels' way, below which a robot turns on the spot: there the reference's arm is
 seen by itself, and not the way."""
