@@ -188,6 +188,9 @@ def test_angles_that_tremble_in_their_last_digits_are_no_driving() -> None:
     found = driven(counters_of(run, ROBOT, None), ROBOT, ())
     assert [each.what for each in found.spans] == ["stood", "drove", "stood"]
     assert found.reversals == 0
+    assert found.turned < 1e-3
+    other = replace(ROBOT, effects=(find("right_wheel_reversed").using(),))
+    assert driven(counters_of(run, other, None), other, ()).turned > 1.0, "as the file says"
 
 
 def test_headings_alone_show_it_while_the_wheels_turn_the_robot() -> None:
