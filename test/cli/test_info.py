@@ -19,6 +19,8 @@ from test.inference.test_no_driving import held
 from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.first_robot import of_controller, of_urdf, with_steps
+from werrimbi_odom.files.stamps import _judged
+from werrimbi_odom.report.info import _clock
 from werrimbi_odom.simulation.lidar import Lidar
 
 DAY = 1_700_000_000
@@ -203,6 +205,31 @@ def test_sizes_of_a_urdf(yaw: float) -> None:
 )
 def test_what_is_no_urdf_says_nothing(text: str) -> None:
     assert not of_urdf(text).has_sizes
+
+
+def test_stamps_of_a_simulation_are_of_another_clock() -> None:
+    """Received in 2025, stamped from zero, by a clock that goes a little slower."""
+    stamped = np.arange(0.0, 60.0, 0.05)
+    words = _clock("/joint_states", _judged(stamped, 1.7e9 + 1.02 * stamped))
+    assert "another clock" in words
+    assert "e+09" not in words
+    assert "late" not in words
+
+
+def test_a_negative_multiplier_of_a_controller_is_a_reversed_wheel(tmp_path: Path) -> None:
+    """So diff_drive_controller takes it; a robot file says it with an effect."""
+    parameters = tmp_path / "controllers.yaml"
+    parameters.write_text(
+        "diff_drive_controller:\n  ros__parameters:\n    wheel_separation: 1.9\n"
+        "    wheel_radius: 0.3\n    left_wheel_radius_multiplier: 1.01\n"
+        "    right_wheel_radius_multiplier: -1.0\n"
+    )
+    out = tmp_path / "robot.yaml"
+    out.write_text(of_controller(parameters).text("first"))
+    robot = wo.read_robot(out).robot
+    assert [each.name for each in robot.effects] == ["right_wheel_reversed"]
+    assert robot.left_wheel_radius_multiplier == 1.01
+    assert robot.right_wheel_radius_multiplier == 1.0
 
 
 def test_a_file_without_wheels_is_refused(tmp_path: Path) -> None:

@@ -48,6 +48,20 @@ def test_counters_of_drivers(tmp_path: Path, ros: Any, robot: Any, kind: str, pl
     assert run.ticks.left.dtype == np.int64
 
 
+@pytest.mark.parametrize("wish", [None, "sensors", "/sensors"])
+def test_a_topic_that_was_recorded_without_its_slash(
+    tmp_path: Path, ros: Any, robot: Any, wish: str | None
+) -> None:
+    """As by `rosbag record sensors`."""
+    kind = "kobuki_msgs/msg/SensorState"
+    entries = [
+        ("sensors", n * MS, ros.of_driver(kind, n * MS, left_encoder=n, right_encoder=2 * n))
+        for n in range(1, 4)
+    ]
+    bag = ros.write_ros1(tmp_path / "run.bag", entries)
+    assert read_run(bag, robot(), ticks_topic=wish).ticks.right.tolist() == [2, 4, 6]
+
+
 def test_a_bag_without_definitions(tmp_path: Path, ros: Any, robot: Any) -> None:
     """As a sqlite3 bag of ROS 2 Humble: the types come from our own list."""
     import sqlite3

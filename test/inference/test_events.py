@@ -117,6 +117,10 @@ def test_a_push_of_five_times_the_noise_is_told_and_left_out(sound: Drives) -> N
     [told] = events_json(found.happened, robot.track)
     assert (told["run"], told["unit"], told["left_out"]) == (str(runs[0].path), "m", True)
     assert "to the left" in told["words"]
+    said = " ".join(events_words(replace(found.happened, kind="local_map"), robot.track))
+    assert "the robot or the reference jumped by" in said
+    assert "A localiser that corrects itself" in said
+    assert "it was pushed" not in said
 
 
 def test_every_verb_tells_the_same_of_drives_in_which_something_happened(sound: Drives) -> None:

@@ -22,8 +22,10 @@ from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.legs.agreement import Agreement
+from werrimbi_odom.inference.legs.counters import counters_of
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.legs.no_driving import _judged, _stretches, looked_at
+from werrimbi_odom.inference.legs.spans import driven
 from werrimbi_odom.inference.legs.windows import Windows
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.report.phrases import left_out_words
@@ -145,6 +147,50 @@ def test_a_robot_that_is_carried_is_found_within_half_a_second(seed: int, which:
     found = span(parts(carried(run_of(ROBOT, seed), 30.0, 3.0), which))
     assert found[:2] == pytest.approx((30.0, 33.0), abs=NEAR)
     assert found[2] == {"carried"}
+
+
+@pytest.mark.parametrize("late", [0.0, 0.1])
+def test_a_reference_that_is_late_at_starts_and_stops_hides_no_hand(late: float) -> None:
+    """A drive of short lines says nothing of turns: of places alone it must be learnt how late."""
+    time = np.arange(0.0, 60.0, 0.05)
+    speed = np.where((time > 30.0) & (time < 36.0), 0.0, 0.35 * (1.0 - np.cos(2.0 * np.pi * time)))
+    way = np.cumsum(0.05 * speed)
+    counts = way / ROBOT.left_tick
+    away = 0.4 * 0.5 * (1.0 - np.cos(np.pi * np.clip((time - 30.5) / 5.0, 0.0, 1.0)))
+    noise = np.random.default_rng(0).normal(0.0, [[NOISE_XY], [NOISE_XY], [NOISE_YAW]], (3, 1200))
+    seen = Reference(time + late, way + noise[0], away + noise[1], 2.0 * away + noise[2])
+    begin, end, why = span(Run("lines", Path("lines"), Ticks(time, counts, counts), seen))
+    assert why == {"carried"}
+    assert begin == pytest.approx(30.5, abs=NEAR)
+    assert end == pytest.approx(35.5 + late, abs=NEAR)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_nothing_of_a_carry_is_left_in_the_next_leg(seed: int) -> None:
+    """Who sets a robot down does it gently; it stands, and what nobody drove is nobody's leg."""
+    run = carried(run_of(ROBOT, seed), 30.0, 5.0)
+    assert run.reference is not None
+    begin, end, _ = span(run)
+    left = [
+        0.5 * (1.0 - np.cos(np.pi * np.clip((at - 30.0) / 5.0, 0.0, 1.0))) for at in (begin, end)
+    ]
+    assert left[0] < 2e-3
+    assert 1.0 - left[1] < 2e-3, "of 1.1 m: two millimetres"
+
+
+def test_angles_that_tremble_in_their_last_digits_are_no_driving() -> None:
+    """As of a simulator: a minute of waiting in which no angle is twice the same."""
+    time = np.arange(0.0, 60.0, 0.05)
+    way = np.cumsum(0.05 * 0.3 * ((time > 10.0) & (time < 18.0)))
+    way += 1e-7 * np.random.default_rng(0).standard_normal(time.size)
+    ticks = Ticks(time, way / ROBOT.left_tick, way / ROBOT.right_tick)
+    run = Run("waits", Path("waits"), ticks, None)
+    found = driven(counters_of(run, ROBOT, None), ROBOT, ())
+    assert [each.what for each in found.spans] == ["stood", "drove", "stood"]
+    assert found.reversals == 0
+    assert found.turned < 1e-3
+    other = replace(ROBOT, effects=(find("right_wheel_reversed").using(),))
+    assert driven(counters_of(run, other, None), other, ()).turned > 1.0, "as the file says"
 
 
 def test_headings_alone_show_it_while_the_wheels_turn_the_robot() -> None:

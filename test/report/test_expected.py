@@ -35,6 +35,12 @@ def test_ten_turns_fall_short_by_as_much_as_is_said(multiplier: float) -> None:
     assert ("short" in words) == (short > 0.0)
 
 
+@pytest.mark.parametrize("delay", [0.0996, 0.1])
+def test_a_length_near_a_decimetre_has_no_power_of_ten(delay: float) -> None:
+    words = expected_words("reference_delay", {"delay": delay}, ROBOT)
+    assert re.search(r"expect (100 mm|10 cm) ", words), words
+
+
 @pytest.mark.parametrize("ratio", [0.99, 1.03])
 def test_a_larger_wheel_leads_aside_as_far_as_is_said(ratio: float) -> None:
     line = read(ROBOT, 50.0, np.full(500, 0.3), np.zeros(500))

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag_types import Types
-from werrimbi_odom.files.unfinished_bag import Raw, raw_messages
+from werrimbi_odom.files.unfinished_bag import Raw, absolute, raw_messages
 
 ROS1 = ".bag"
 SUFFIXES = (".mcap", ".db3", ROS1)
@@ -114,7 +114,9 @@ def opened_bag(path: Path) -> Iterator[Bag]:
             _refuse_repeated(path)
         reader = (Reader1 if ros1 else Reader2)(path)
         reader.open()
-        topics = _topics((each.topic, each.msgtype, each.msgcount) for each in reader.connections)
+        topics = _topics(
+            (absolute(each.topic), each.msgtype, each.msgcount) for each in reader.connections
+        )
         definitions = {each.msgtype: each.msgdef.data for each in reader.connections}
     except Exception as error:  # as above
         scanned = None
@@ -126,9 +128,10 @@ def opened_bag(path: Path) -> Iterator[Bag]:
         return
 
     def raw(names: Sequence[str]) -> Iterator[Raw]:
-        chosen = [each for each in reader.connections if each.topic in names]
+        chosen = [each for each in reader.connections if absolute(each.topic) in names]
         for connection, received, data in reader.messages(connections=chosen) if chosen else ():
-            yield Raw(connection.topic, connection.msgtype, received, data, "")
+            topic = absolute(connection.topic)
+            yield Raw(topic, connection.msgtype, received, data, "")
 
     try:
         yield Bag(path, topics, (), raw, Types(ros1, definitions))

@@ -43,6 +43,8 @@ class FirstRobot:
     """Width at which the counters wrap; 0: they do not."""
     more: Mapping[str, float] | None = None
     """Multipliers of a controller."""
+    reversed: tuple[str, ...] = ()
+    """Sides whose counters run backwards, as a controller's negative multiplier says."""
     told: Mapping[str, str] | None = None
     """Where each is from, in words."""
 
@@ -76,6 +78,9 @@ class FirstRobot:
             if joints:
                 quoted = ", ".join(f'"{name}"' for name in joints)
                 lines.append(line(f"{side}_wheel_names", f"[{quoted}]", "joints"))
+        if self.reversed:
+            effects = ", ".join(f"{side}_wheel_reversed" for side in self.reversed)
+            lines.append(line("effects", f"[{effects}]", "reversed"))
         return "\n".join(lines) + "\n"
 
 
@@ -222,18 +227,25 @@ def of_controller(path: Path) -> FirstRobot:
     for block in _blocks(content):
         sizes = [block.get(name) for name in _OF_CONTROLLER]
         if all(isinstance(size, int | float) and size > 0.0 for size in sizes):
-            more = {
+            given = {
                 name: float(block[name])
                 for name in _MULTIPLIERS
-                if isinstance(block.get(name), int | float) and block[name] != 1.0
+                if isinstance(block.get(name), int | float) and block[name] != 0.0
             }
+            more = {name: abs(value) for name, value in given.items() if abs(value) != 1.0}
             told = dict.fromkeys(("separation", "radius", "more", "joints"), f"of {path.name}")
+            told["reversed"] = f"of {path.name}: a negative multiplier"
             return FirstRobot(
                 float(block["wheel_radius"]),
                 float(block["wheel_separation"]),
                 _names(block.get("left_wheel_names")),
                 _names(block.get("right_wheel_names")),
                 more=more,
+                reversed=tuple(
+                    side
+                    for side in SIDES
+                    if given.get(f"{side}_wheel_radius_multiplier", 1.0) < 0.0
+                ),
                 told=told,
             )
     raise InputError(

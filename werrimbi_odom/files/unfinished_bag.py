@@ -37,6 +37,11 @@ class Raw(NamedTuple):
     """Of its type; "" where the file has none."""
 
 
+def absolute(topic: str) -> str:
+    """A topic's name from the root: a recorder of ROS 1 keeps names as they were typed."""
+    return "/" + topic.strip("/")
+
+
 class SpoiltError(Exception):
     """A file ends in mid-record, or what stands there is no record."""
 
@@ -148,7 +153,7 @@ def _ros1_records(stream: IO[bytes], connections: dict[int, tuple[str, str, str]
             topic, kind, definition = connections[struct.unpack("<I", fields["conn"])[0]]
             seconds, nanoseconds = struct.unpack("<II", fields["time"])
             received = seconds * 10**9 + nanoseconds
-            yield Raw("/" + topic.strip("/"), kind, received, data, definition)
+            yield Raw(absolute(topic), kind, received, data, definition)
         elif code == 5:
             size = struct.unpack("<I", fields["size"])[0]
             compression = fields["compression"].decode().replace("none", "")

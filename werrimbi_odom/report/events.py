@@ -29,7 +29,7 @@ def events_words(happened: Events, track: float) -> list[str]:
         if event in clear:
             name = "/".join(event.run.parts[-2:]) if twice else event.run.name
             where = f" of {name}" if len(drives) > 1 else ""
-            words = event_words(event, track, adds_up=adds_up(happened))
+            words = event_words(event, track, either=either(happened))
             lines.append(f"- at {when(event)}{where} {words};")
     lines[-1] = f"{lines[-1][:-1]}."
     rest = len(events) - len(clear)
@@ -37,11 +37,8 @@ def events_words(happened: Events, track: float) -> list[str]:
         lines.append(f"So {'is' if rest == 1 else 'are'} {rest} more, in the report and the JSON.")
     if happened.alike is not None:
         lines.append(alike_words(happened.alike))
-    if adds_up(happened):
-        lines.append(
-            "To a reference whose errors add up a step of the robot and a match that failed are "
-            "one and the same."
-        )
+    if either(happened):
+        lines.append(_EITHER[happened.kind])
     if happened.left_out:
         they = "It is" if len(events) == 1 else "They are"
         lines.append(f"{they} left out of the fits.")
@@ -50,19 +47,19 @@ def events_words(happened: Events, track: float) -> list[str]:
     return lines
 
 
-def event_words(event: Event, track: float, *, adds_up: bool = False) -> str:
+def event_words(event: Event, track: float, *, either: bool = False) -> str:
     """What one was, as the end of a sentence.
 
     Parameters
     ----------
-    adds_up
-        Whether the reference's errors add up, so that a step of it is one of the robot.
+    either
+        Whether a step of the robot looks as one of the reference.
     """
     size, unit = _size(event)
     if event.channel == "reference":
         how = "and stayed there" if event.stays else "and was right again at the next pose"
         return f"the reference jumped by {size} {unit} {how}"
-    if adds_up:
+    if either:
         how = {"heading": "in heading"}.get(event.channel, event.channel)
         return f"the robot or the reference jumped by {size} {unit} {how}"
     slipped = _slipped(event, track)
@@ -107,7 +104,7 @@ def events_json(happened: Events, track: float) -> list[dict[str, Any]]:
             "size": event.size,
             "std": event.std,
             "unit": event.unit,
-            "words": event_words(event, track, adds_up=adds_up(happened)),
+            "words": event_words(event, track, either=either(happened)),
             "sizes": dict(zip(_SIZES, event.sizes, strict=True)),
             "stds": dict(zip(_SIZES, event.stds, strict=True)),
             "x_m": event.place[0],
@@ -121,10 +118,19 @@ def events_json(happened: Events, track: float) -> list[dict[str, Any]]:
     ]
 
 
-def adds_up(happened: Events) -> bool:
-    """Whether a step of the reference is one of the robot to it; a gyro loses no place."""
+def either(happened: Events) -> bool:
+    """Whether a step of the robot looks as one of the reference; a gyro loses no place."""
     seen = any(math.isfinite(event.place[0]) for event in happened.events)
-    return happened.kind == "incremental" and seen
+    return happened.kind in _EITHER and seen
+
+
+_EITHER = {
+    "incremental": "To a reference whose errors add up a step of the robot and a match that failed "
+    "are one and the same.",
+    "local_map": "A localiser that corrects itself, at once or within a second, looks as if the "
+    "robot had been pushed.",
+}
+"""Why nobody can tell which of both it was, by the kind of the reference."""
 
 
 _SIZES = ("along_m", "sideways_m", "heading_rad")

@@ -17,7 +17,7 @@ from werrimbi_odom.inference.legs.spans import Driven
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of
 from werrimbi_odom.report.document import Document, Paragraph, paragraphs
 from werrimbi_odom.report.numbers import listed
-from werrimbi_odom.report.phrases import left_out_json, left_out_words
+from werrimbi_odom.report.phrases import LONGEST_DRIVE, left_out_json, left_out_words
 
 _GIVES = {
     "counts": "counters",
@@ -132,6 +132,9 @@ def _clock(name: str, stamps: Stamps) -> str:
                 f"Stamps of {name}: the headers are used, though their intervals vary by {pair}: "
                 "the times of receipt are the evener"
             )
+        if abs(stamps.offset or 0.0) > LONGEST_DRIVE:
+            apart = "they are of another clock than receipt (a simulation's, or one that began"
+            return f"{words}; {apart} when a computer was switched on)."
         if (stamps.wander or 0.0) > _WANDERS:
             words += (
                 f"; what lies between stamp and receipt wanders by {stamps.wander:.2g} s, and is "

@@ -26,6 +26,11 @@ def length(value: float) -> str:
     return f"{millimetres:.1f} mm" if millimetres < 100.0 else f"{millimetres:.0f} mm"
 
 
+def two_digits(value: float) -> str:
+    """A number of any size to two digits, without a power of ten below a million."""
+    return f"{float(f'{value:.2g}'):g}"
+
+
 def error_words(value: float, unit: str) -> str:
     """An error of legs, in the unit that reads best: of position [m], or of heading [rad]."""
     if unit != "rad":

@@ -179,4 +179,5 @@ def _quantum(steps: Counts) -> float:
 
 
 def _small(length: float) -> str:
-    return f"{1e3 * length:.2g} mm" if length < 1.0 else f"{length:.2g} m"
+    millimetres = float(f"{1e3 * length:.2g}")
+    return f"{millimetres:g} mm" if length < 1.0 else f"{length:.2g} m"

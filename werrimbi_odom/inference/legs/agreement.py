@@ -122,25 +122,32 @@ def ways_agree(windows: Windows, turns: Agreement | None, base: float) -> Agreem
     else:
         wirings, lags = [np.array([-1.0, 1.0]), np.array([1.0, 1.0])], _lags(windows.step)
     best: tuple[float, float, Floats, Floats] | None = None
-    for lag in lags:
+
+    def kept_at(lag: float, wiring: Floats) -> tuple[float, float, Floats, Floats] | None:
         every = windows.later(lag).rolling()
         if every.time.size < AGREE_FEWEST:
-            continue
+            return None
+        law = _way_law(every, wiring, base)
+        kept, asked = _kept(every, *_way(every, wiring, base, law[:, None]))
+        return float(kept[0] / max(asked[0], _TINY)), lag, law, wiring
+
+    for lag in lags:
         for wiring in wirings:
-            law = _way_law(every, wiring, base)
-            kept, asked = _kept(every, *_way(every, wiring, base, law[:, None]))
-            share = float(kept[0] / max(asked[0], _TINY))
-            if best is None or share > AGREE_BETTER * best[0]:
-                best = share, lag, law, wiring
+            found = kept_at(lag, wiring)
+            if found is not None and (best is None or found[0] > AGREE_BETTER * best[0]):
+                best = found
         if best is not None and best[0] > AGREE_LAGS:
             break
     if best is None:
         return None
+    if turns is None:  # a law that is learnt at a wrong lag is off itself
+        beside = [kept_at(best[1] + side * windows.step, best[3]) for side in (-1.0, 1.0)]
+        best = max([best, *filter(None, beside)], key=lambda each: each[0])
     _, lag, law, wiring = best
     late = windows.later(lag)
     shown, gross = _way(late, wiring, base, law[:, None])
-    near = abs(float(np.sqrt(max(law[0], 0.0))) - 1.0) < AGREE_WITHIN
-    return _plain(Agreement(late, shown[:, 0], gross[:, 0], lag, law), near, AGREE_WAY)
+    by_file = abs(float(np.sqrt(max(law[0], 0.0))) - 1.0) < AGREE_WITHIN
+    return _plain(Agreement(late, shown[:, 0], gross[:, 0], lag, law), by_file, AGREE_WAY)
 
 
 def _of_size(windows: Windows, sizes: Floats) -> Windows:

@@ -38,10 +38,12 @@ from werrimbi_odom.inference.rules import (
     NO_DRIVING_OFF,
     NO_DRIVING_QUICK,
     NO_DRIVING_ROUGH,
+    NO_DRIVING_SET_DOWN,
     NO_DRIVING_SILENT,
     NO_DRIVING_SPLIT,
     NO_DRIVING_STOPPED,
     NO_DRIVING_STOPPED_FOR,
+    NO_DRIVING_TREMBLES,
     NO_DRIVING_TURN,
     NO_DRIVING_TURNS,
     NO_DRIVING_WAY,
@@ -116,6 +118,7 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
         seen.append(_judged(by_ways, NO_DRIVING_GOES * typical, NO_DRIVING_WAY, turns=False))
     found = sorted(_reaching(stretch, seen) for each in seen for stretch in _stretches(each))
     parts = [part for each in _joined(found, seen) for part in _by_kind(*each, seen)]
+    parts = _with_rests(parts, counters, robot)
     if turns is not None and not seen:
         parts = _turned_by_hand(turns, robot.track)
     if parts and not reference.has_yaw.any():
@@ -325,6 +328,26 @@ def _by_kind(begin: float, end: float, seen: Sequence[_Seen]) -> list[NoDriving]
             stood = np.mean(rolled[one:other] <= still) > 0.5
             parts.append(NoDriving(*span, "carried", CARRIED if stood else BY_HAND))
     return parts
+
+
+def _with_rests(parts: Sequence[NoDriving], counters: Counters, robot: Robot) -> list[NoDriving]:
+    """Carries with the rest of the wheels about them: their motion begins and ends gently."""
+    travel = np.stack([counters.left * robot.left_tick, counters.right * robot.right_tick])
+
+    def further(at: float, side: float, least: float) -> float:
+        here = np.array([np.interp(at, counters.time, wheel) for wheel in travel])
+        rolled = np.abs(travel - here[:, None]).max(axis=0) > NO_DRIVING_TREMBLES
+        ahead = side * (counters.time[rolled] - at)
+        return at + side * float(min([NO_DRIVING_SET_DOWN, least, *ahead[ahead > 0.0]]))
+
+    found = list(parts)
+    for number, part in enumerate(parts):
+        if part.words == CARRIED:
+            before = part.begin - found[number - 1].end if number else np.inf
+            after = parts[number + 1].begin - part.end if number + 1 < len(parts) else np.inf
+            begin, end = (part.begin, -1.0, before), (part.end, 1.0, after)
+            found[number] = part._replace(begin=further(*begin), end=further(*end))
+    return found
 
 
 def _with_what_follows(parts: Sequence[NoDriving], counters: Counters) -> list[NoDriving]:

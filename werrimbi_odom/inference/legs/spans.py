@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.files.run import NoDriving
 from werrimbi_odom.inference.legs.counters import Counters
-from werrimbi_odom.inference.rules import REST_LASTS, STANDS
+from werrimbi_odom.inference.legs.windows import standing_below
+from werrimbi_odom.inference.rules import REST_LASTS
+from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.robot import Robot
 
 _GRID = 0.1  # [s]
@@ -44,10 +46,11 @@ def driven(counters: Counters, robot: Robot, no_driving: tuple[NoDriving, ...]) 
     """What a robot did when, by its wheels and by what is known to be no driving."""
     first, last = float(counters.time[0]), float(counters.time[-1])
     grid = np.append(np.arange(first, last, _GRID), last)
-    left, right = (np.diff(counters.at(grid), axis=0) * [robot.left_tick, robot.right_tick]).T
+    counted = wiring_of(robot.effects).wheels(*np.diff(counters.at(grid), axis=0).T)
+    left, right = counted[0] * robot.left_tick, counted[1] * robot.right_tick
     way, turn = 0.5 * (left + right), (right - left) / robot.track
     rolled = 0.5 * (np.abs(left) + np.abs(right))
-    moving = rolled > (STANDS * float(np.median(rolled[rolled > 0.0])) if rolled.any() else 0.0)
+    moving = rolled > standing_below(rolled)
     state = np.where(moving, "drove", "stood").astype(object)
     for begin, end in itertools.pairwise(_changes(state)):
         if state[begin] == "stood" and (end - begin) * _GRID < REST_LASTS:

@@ -23,6 +23,7 @@ from werrimbi_odom.inference.rules import (
     NO_DRIVING_SPANS,
     NO_DRIVING_WINDOW,
     STANDS,
+    TREMBLES,
 )
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
@@ -58,8 +59,7 @@ class Windows:
     @property
     def still(self) -> float:
         """Way of the wheels in a window, below which they stand [m]."""
-        rolling = self.rolled[self.rolled > 0.0]
-        return STANDS * float(np.median(rolling)) if rolling.size else 0.0
+        return standing_below(self.rolled)
 
     def later(self, lag: float) -> Windows:
         """The same, when the reference is later than the wheels by `lag` [s]."""
@@ -86,6 +86,20 @@ class Windows:
     def at_rest(self) -> Floats:
         """What is measured while the wheels stand."""
         return self.measured[(self.rolled <= _STILL * self.still) & np.isfinite(self.measured)]
+
+
+def standing_below(rolled: Floats) -> float:
+    """Way of the wheels in equal times [m], below which they stand.
+
+    A share of the usual way of those that roll, and not of those that tremble: angles that are
+    worked out do in their last digits, for as long as a robot waits.
+    """
+    ordered = np.sort(rolled[rolled > 0.0])
+    if not ordered.size:
+        return 0.0
+    gone = np.cumsum(ordered)
+    half_of_all = float(ordered[int(np.searchsorted(gone, 0.5 * gone[-1]))])
+    return STANDS * float(np.median(ordered[ordered >= TREMBLES * half_of_all]))
 
 
 def windows_of(

@@ -150,7 +150,8 @@ def _size(apart: Floats) -> str:
     heading = float(np.degrees(np.quantile(np.abs(apart[:, 2]), 0.9)))
     parts = []
     if position > APART_POSITION:
-        parts.append(f"{1e3 * position:.2g} mm" if position < 0.1 else f"{position:.2g} m")
+        millimetres = float(f"{1e3 * position:.2g}")
+        parts.append(f"{millimetres:g} mm" if position < 0.1 else f"{position:.2g} m")
     if heading > APART_HEADING:
         parts.append(f"{heading:.2g}°")
     return (" and ".join(parts) or "little, again and again") + " on a short leg"

@@ -53,6 +53,10 @@ STANDS = 0.05
 """Share of the median way of the wheels in a window, below which they stand: a motor that holds its
 place jitters by a count or two."""
 
+TREMBLES = 1e-3
+"""Share of the speed below which half of all way is gone, up to which wheels only tremble: far less
+than any motor drives, far more than the last digits of an angle in single precision."""
+
 MOSTLY = 0.3
 """Share of the wheels' way, below which a robot turns on the spot: there the reference's arm is
 seen by itself, and not the way."""
@@ -142,6 +146,14 @@ nothing in between is seen to move as its wheels do. Who holds a robot takes his
 
 NO_DRIVING_SPLIT = 1.5
 """Shortest part of a stretch [s] that is told by itself, as held or as carried."""
+
+NO_DRIVING_SET_DOWN = 0.3
+"""What belongs to a carry at its ends [s], where the wheels stand: who sets a robot down does it
+gently, and windows of half a second see the last of it no better. A rest that is left out costs
+nothing, and times are told within half a second."""
+
+NO_DRIVING_TREMBLES = 1e-3
+"""Way of a wheel [m] up to which it stands: counts of one that is lifted tremble by less."""
 
 REST_LASTS = 0.5
 """Shortest rest [s] that is told as standing: less is a change of direction."""

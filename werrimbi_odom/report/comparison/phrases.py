@@ -11,7 +11,7 @@ from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.consistency import AtLength, trend_of
 from werrimbi_odom.inference.comparison.systematic import Systematic
 from werrimbi_odom.inference.comparison.verdict import Verdict
-from werrimbi_odom.report.numbers import from_start, listed
+from werrimbi_odom.report.numbers import from_start, listed, two_digits
 
 NAMES = {"line": "straight driving", "arc": "curves", "spin": "spins"}
 
@@ -132,7 +132,11 @@ def _by_noise(verdict: Verdict, at: AtLength) -> str:
     """Where one factor on the wheels' noise explains it."""
     factor = verdict.factor
     times, low, high = (math.sqrt(part) for part in factor)
-    between = f"{low:.2g} to {high:.2g}" if math.isfinite(high) else f"at least {low:.2g}"
+    between = (
+        f"{two_digits(low)} to {two_digits(high)}"
+        if math.isfinite(high)
+        else f"at least {two_digits(low)}"
+    )
     leg, errors = f"{at.leg:g} m", math.sqrt(at.nees)
     if at.says == "too small":
         text = f"{_times(at.nees)} times too small over legs of {leg} (NEES {at.nees:.3g}, 1 is "
@@ -141,7 +145,7 @@ def _by_noise(verdict: Verdict, at: AtLength) -> str:
         text = f"too large (NEES {at.nees:.3g} over legs of {leg}, 1 is right)"
     return (
         f"- The covariance is {text}. Beside the reference's own noise they scatter as if the "
-        f"wheels' noise k were {times:.2g} times what the robot file says ({between})."
+        f"wheels' noise k were {two_digits(times)} times what the robot file says ({between})."
     )
 
 

@@ -13,7 +13,7 @@ from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict
 from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
 from werrimbi_odom.report.document import Paragraph, paragraphs
-from werrimbi_odom.report.numbers import counted, listed
+from werrimbi_odom.report.numbers import counted, listed, two_digits
 from werrimbi_odom.report.phrases import left_out_words, remark_words
 
 _AGREES = {"line": "is", "arc": "are", "spin": "are"}
@@ -231,7 +231,7 @@ def _reference(comparison: Comparison) -> list[str]:
 
 def _sizes(measure: Measure, xy: float, yaw: float) -> str:
     """Of what is measured, in words."""
-    parts = [f"{1e3 * xy:.2g} mm"] if measure != "heading" else []
+    parts = [f"{two_digits(1e3 * xy)} mm"] if measure != "heading" else []
     parts += [f"{math.degrees(yaw):.2g}°"] if measure != "position" else []
     return " and ".join(parts)
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from werrimbi_odom.inference.events.events import Event, Events, Way
-from werrimbi_odom.report.events import adds_up, event_words, when
+from werrimbi_odom.report.events import either, event_words, when
 from werrimbi_odom.report.path_figure import add_path
 from werrimbi_odom.report.style import (
     BLUE,
@@ -118,7 +118,7 @@ def _marks(
 
 def _said(happened: Events, event: Event, track: float) -> str:
     where = f"{escaped(event.run.name)}, {when(event)}"
-    return f"{where}<br>{escaped(event_words(event, track, adds_up=adds_up(happened)))}"
+    return f"{where}<br>{escaped(event_words(event, track, either=either(happened)))}"
 
 
 def _name(way: Way) -> str:

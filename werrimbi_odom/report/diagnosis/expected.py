@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.numbers import two_digits
 
 SLOW, FAST = 0.1, 0.5
 """Speeds of a check [m/s]: those of a hand-held test, which any robot reaches."""
@@ -49,7 +50,7 @@ def _length(metres: float) -> str:
     size = abs(metres)
     if size >= 1.0:
         return f"{size:.2f} m"
-    return f"{100.0 * size:.0f} cm" if size >= 0.1 else f"{1e3 * size:.2g} mm"
+    return f"{100.0 * size:.0f} cm" if size >= 0.1 else f"{two_digits(1e3 * size)} mm"
 
 
 def _angle(radians: float) -> str:
