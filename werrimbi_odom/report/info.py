@@ -16,8 +16,8 @@ from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.spans import Driven
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of
 from werrimbi_odom.report.document import Document, Paragraph, paragraphs
-from werrimbi_odom.report.numbers import listed
-from werrimbi_odom.report.phrases import LONGEST_DRIVE, left_out_json, left_out_words
+from werrimbi_odom.report.numbers import TIME_OF_DAY, listed
+from werrimbi_odom.report.phrases import left_out_json, left_out_words
 
 _GIVES = {
     "counts": "counters",
@@ -132,7 +132,7 @@ def _clock(name: str, stamps: Stamps) -> str:
                 f"Stamps of {name}: the headers are used, though their intervals vary by {pair}: "
                 "the times of receipt are the evener"
             )
-        if abs(stamps.offset or 0.0) > LONGEST_DRIVE:
+        if abs(stamps.offset or 0.0) > TIME_OF_DAY:
             apart = "they are of another clock than receipt (a simulation's, or one that began"
             return f"{words}; {apart} when a computer was switched on)."
         if (stamps.wander or 0.0) > _WANDERS:

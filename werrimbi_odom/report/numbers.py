@@ -8,12 +8,13 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-_LONGEST_DRIVE = 1e7  # no clock that begins with the drive shows so many seconds
+TIME_OF_DAY = 1e7
+"""Seconds that no clock shows that began with a drive, or with its robot."""
 
 
 def from_start(started: float, *times: float) -> tuple[float, ...]:
     """Times as they are told [s]: since a run's first tick, if its clock shows the time of day."""
-    return tuple(time - started for time in times) if started > _LONGEST_DRIVE else times
+    return tuple(time - started for time in times) if started > TIME_OF_DAY else times
 
 
 def length(value: float) -> str:
