@@ -76,9 +76,9 @@ ELSEWHERE = {
     "fitting/filtering.py": {
         "STRETCH": "size of a block",
         "SIDE_BY_SIDE": "size of a block",
-        "UNMEASURED": "as good as infinite",
         "_COLUMNS": "size of a block",
     },
+    "fitting/leg_loop.py": {"UNMEASURED": "as good as infinite"},
     "fitting/fit.py": {
         "_MEDIAN_CHI2_3": "a quantile",
         "_TAIL": "Student's t until jumps are known; the fit itself is without it",
