@@ -74,6 +74,21 @@ def test_a_gyro_that_shows_too_little_of_a_turn_is_mended_by_the_localiser() -> 
     assert np.abs(mended.yaw - mended.yaw[0] - (YAW - YAW[0])).max() < 0.01
 
 
+def test_a_gyros_scale_is_no_drift_in_a_drive_that_turns_to_one_side() -> None:
+    """Nor an angle: both were fitted without it, and it was put right afterwards."""
+    turned = np.cumsum(np.where((TIME > 5.0) & (TIME < 14.0), -0.4, 0.1 * np.cos(0.4 * TIME)))
+    rng = np.random.default_rng(7)
+    scans = replace(localiser(), yaw=turned + rng.normal(0.0, 1e-3, TIME.size))
+    shows = Reference(TIME, NONE, NONE, 0.99 * turned + 1e-3 * TIME)
+    found, told = merged("bag", scans, shows)
+    (mended,) = with_one_scale([found], [found])
+    off = np.angle(np.exp(1j * (mended.yaw - turned)))
+    assert abs(np.mean(off)) < 3e-4
+    assert np.abs(off).max() < 2e-3
+    drift = float(told.split("steady drift of ")[1].split("°")[0])
+    assert drift == pytest.approx(-np.degrees(60.0 * 1e-3 / 0.99), abs=0.4)
+
+
 def test_what_cannot_be_put_together_is_said() -> None:
     with pytest.raises(InputError, match="both hold positions"):
         merged("bag", localiser(), localiser())

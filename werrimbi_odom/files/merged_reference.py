@@ -88,8 +88,7 @@ def merged(
     late = _later(poses, (time, yaw), pieces, columns, both) if poses.own_axes else 0.0
     at = np.interp(poses.time - late, time, yaw)
     apart = poses.yaw - at
-    told = _laid(pieces[both], columns[both], apart[both])
-    drift = told[-1]
+    told, gyro, drift = _gyro_turn(pieces[both], columns, at, apart, both)
     laid = np.where(inside, at + columns @ told, np.nan)
     degrees = np.degrees(60.0 * drift)
     each = f", in each of its {len(cuts) + 1} pieces by itself," if cuts else ""
@@ -103,7 +102,6 @@ def merged(
             f"; by them the robot turns {1e3 * abs(late):.0f} ms {when} it does by the other, on "
             "whose clock they are put"
         )
-    gyro = _gyro_turn(pieces[both], columns, at, apart, both)
     return replace(poses, yaw=laid, sigma_yaw=None, gyro=gyro), words
 
 
@@ -165,8 +163,13 @@ def _later(
 
 def _gyro_turn(
     pieces: Floats, columns: Floats, gyro: Floats, apart: Floats, both: NDArray[np.bool_]
-) -> GyroTurn:
-    """What the gyro turned, and by how much the other turned more, (m,)."""
+) -> tuple[Floats, GyroTurn, float]:
+    """What to take of each column; what the gyro turned, and by how much the other turned more.
+
+    Both at once: of a scale that is left to itself the columns would take what a drive's sense of
+    turning makes of it, and not as much as is put right afterwards. And the drift [rad/s], of which
+    a scale that this drive tells has no part.
+    """
     clear = np.linalg.lstsq(columns[both], gyro[both], rcond=None)[0]
     turned = gyro - columns @ clear
     free = np.column_stack([columns[both], turned[both]])
@@ -176,7 +179,10 @@ def _gyro_turn(
     # A localiser errs alike for a while: as many headings tell as there are such whiles.
     count = max(float(np.ptp(columns[both, -1])) / LASTING, 1.0)
     spread = max(float(np.std(turned[both])), 1e-9)
-    return GyroTurn(turned, 1.0 + told[-1], max(noise, 1e-6) / spread / np.sqrt(count))
+    std = max(noise, 1e-6) / spread / np.sqrt(count)
+    more = float(told[-1]) if SCALE_TOLD * std < abs(told[-1]) < SCALE_MOST else 0.0
+    drift = float(told[-2] - more * clear[-1])
+    return np.asarray(told[:-1]), GyroTurn(turned, 1.0 + told[-1], std), drift
 
 
 def _laid(pieces: Floats, columns: Floats, apart: Floats) -> Floats:
