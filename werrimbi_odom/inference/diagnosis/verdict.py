@@ -38,7 +38,7 @@ from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, Model, changed
 from werrimbi_odom.inference.legs.gaps import LeftOut
-from werrimbi_odom.inference.rules import CALIBRATION_WORTH, SIGNIFICANT, SURE
+from werrimbi_odom.inference.rules import CALIBRATION_WORTH, LAW_SHARE, SIGNIFICANT, SURE
 from werrimbi_odom.inference.set_up.findings import IN_DEGREES
 from werrimbi_odom.inference.set_up.search import SetUp
 from werrimbi_odom.model.effect import Effect
@@ -127,6 +127,17 @@ class Diagnosis:
         known = [score.candidate.effect for this in self.rounds for score in this.scores]
         known += [applied.effect for applied in self.robot.effects]
         return next((effect for effect in known if effect.name == name), None) or find(name)
+
+    def explained_by(self, name: str) -> bool:
+        """Whether an effect that was tried explains what the errors go with, or nearly so."""
+        falls = [
+            this.before.cost - fit.cost
+            for this in self.rounds
+            for fit in this.tried
+            if fit.names[-1] == name
+        ]
+        most = max((cell.gain for this in self.rounds for cell in this.dependences), default=0.0)
+        return max(falls, default=0.0) > LAW_SHARE * most
 
 
 def told(

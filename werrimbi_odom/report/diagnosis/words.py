@@ -248,13 +248,13 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
     best = min(judged_ones, key=lambda item: _after(item.holdout), default=None)
     if best is not None and best.holdout is not None and best.holdout.after < best.holdout.before:
         lines.append(
-            f"Nearest in the library is {best.effect}: errors fall from "
-            f"{error_words(best.holdout.before, best.holdout.unit)} to "
-            f"{error_words(best.holdout.after, best.holdout.unit)} with it. "
+            f"Nearest in the library is {best.effect}: errors are "
+            f"{error_words(best.holdout.after, best.holdout.unit)} with it, and "
+            f"{error_words(best.holdout.before, best.holdout.unit)} without. "
             + (
                 "Yet parts of these drives do not agree on it, or chance could do as much: look "
                 "there first, and drive more."
-                if best.holdout.after < 0.5 * best.holdout.before
+                if diagnosis.explained_by(best.effect)
                 else "The above explains far more than it does, so that is not what it is."
             )
         )
