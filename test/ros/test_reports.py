@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+import time
 from collections.abc import Callable
 from itertools import pairwise
 from typing import Any
@@ -27,10 +28,16 @@ def status(node: Any) -> list[Any]:
     return node.keep(DiagnosticStatus, "odom_node/status")
 
 
+def told_since_now(node: Any, status: list[Any]) -> None:
+    """Until a status has come that was made from now on."""
+    before = len(status)
+    node.until(lambda: len(status) >= before + 2, "status")
+
+
 def test_status_is_plain_to_read(node: Any, status: list[Any]) -> None:
     node.reset()
     node.drive(LINE)
-    node.rest(0.5)
+    told_since_now(node, status)
     values = {item.key: item.value for item in status[-1].values}
     assert status[-1].name == "odom_node: estimate"
     assert status[-1].message == (
@@ -41,7 +48,7 @@ def test_status_is_plain_to_read(node: Any, status: list[Any]) -> None:
     assert values["piece turn"] == values["heading"] == "0.0 deg"
     assert values["piece radius"] == "straight"
     node.drive(SPIN)
-    node.rest(0.5)
+    told_since_now(node, status)
     values = {item.key: item.value for item in status[-1].values}
     assert status[-1].message.startswith("spin 90.0 deg to the left; 0.94 m driven; 1 sigma ")
     assert values["piece"] == "spin"
@@ -52,9 +59,10 @@ def test_status_is_plain_to_read(node: Any, status: list[Any]) -> None:
 
 
 def test_status_comes_five_times_a_second(node: Any, status: list[Any]) -> None:
-    before = len(status)
-    node.rest(1.0)
-    assert 4 <= len(status) - before <= 6
+    told_since_now(node, status)
+    before, since = len(status), time.monotonic()
+    node.until(lambda: len(status) >= before + 10, "ten of them", 10.0)
+    assert time.monotonic() - since == pytest.approx(2.0, abs=0.6)
 
 
 def test_diagnostics_say_the_rates(node: Any) -> None:
@@ -159,6 +167,7 @@ def test_the_number_of_markers_is_bounded_and_a_late_viewer_sees_them_all(
     newest = max(number for _, number in paths)
     assert newest == 258
     late = node.keep(type(early[0]), "odom_node/pieces")
+    node.until(lambda: any(each.markers for each in late), "the pieces again")
     node.rest(1.0)
     again: dict[tuple[str, int], Any] = {}
     show(again, late)
