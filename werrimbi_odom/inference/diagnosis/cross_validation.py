@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
-from werrimbi_odom.inference.rules import FOLD_PARTS, FOLDS, USELESS_NUMBER
+from werrimbi_odom.inference.rules import FOLD_PARTS, FOLD_TELLS, FOLDS, USELESS_NUMBER
 
 _RANK = 1e-6
 
@@ -28,22 +28,26 @@ def cross_validated_cost(runs: Concatenated, fit: Fitted) -> float:
 
     What the other folds cannot determine at all (the phase of a run that lies in one fold) is
     fitted to the fold itself, and each such number costs 2 (Akaike): one that the fit took from
-    the noise, one that it would take from new noise.
+    the noise, one that it would take from new noise. So is a run's own number of which the fold
+    tells more than all others do: it would cost more than that where it is carried over, by the
+    noise alone (`FOLD_TELLS`).
     """
     white, slopes = fit.design.flat()
     rows = np.repeat(fold_of_leg(runs), 3)
     size = np.sqrt(np.sum(slopes**2, axis=0))
     scaled = slopes[:, size > 0.0] / size[size > 0.0]
+    of_run = np.array([run >= 0 for _, run in fit.design.columns])[size > 0.0]
     change = 0.0
     for fold in range(FOLDS):
         here = rows == fold
         if not here.any():
             continue
         learnt, seen = scaled[~here], scaled[here]
-        told = np.sqrt(np.sum(learnt**2, axis=0)) > _RANK
-        step = np.linalg.lstsq(learnt[:, told], -white[~here], rcond=_RANK)[0]
-        left = white[here] + seen[:, told] @ step
-        own = seen[:, ~told]
+        told = np.sum(learnt**2, axis=0)
+        here_alone = (told <= _RANK**2) | (of_run & (told < 1.0 - FOLD_TELLS))
+        step = np.linalg.lstsq(learnt, -white[~here], rcond=_RANK)[0]
+        left = white[here] + seen[:, ~here_alone] @ step[~here_alone]
+        own = seen[:, here_alone]
         if own.shape[1]:
             taken = np.linalg.lstsq(own, -left, rcond=_RANK)
             left = left + own @ taken[0]

@@ -53,6 +53,12 @@ FOLD_PARTS = 4
 """Of a drive in each fold: 20 parts of a drive of a minute are three seconds each, longer than
 errors of neighbouring legs are alike."""
 
+FOLD_TELLS = 0.5
+"""Share of what all legs tell of a number above which one fold knows it better than the others. Of
+a number of which the others tell q, carried over to a fold that tells p, the noise costs 1 + p / q
+on average: the two of `USELESS_NUMBER` where both tell half, and a thousand where a drive's first
+heading, seen by positions alone, is asked of the drive's end (a robot in a labyrinth)."""
+
 HALF_PARTS = 10
 """Of a drive, that go to odd and even halves in turn."""
 
