@@ -33,6 +33,7 @@ VOCABULARY = {
     "tyre_squash": 0.0,
     "load_transfer": 0.0,
     "longitudinal_slip": 0.0,
+    "coulomb_slip": 0.0,
     "lateral_slip": 0.0,
     "turn_dependent_track": 0.0,
     "skid_steer": 0.0,  # its offsets; its multiplier, being the base, is 1

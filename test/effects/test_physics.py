@@ -154,6 +154,16 @@ def test_slip_is_behind_at_speed_and_not_at_rest(sense: float) -> None:
     assert gone.end[0] == pytest.approx(plain.end[0], abs=1e-9)
 
 
+@pytest.mark.parametrize("rate", [50.0, 200.0])
+def test_friction_gives_way_in_hard_starts_alone(rate: float) -> None:
+    c, above, v = 0.1, 0.5, 0.8
+    law = find("coulomb_slip").using(coefficient=c, above=above)
+    for speed, share in ((0.15, 0.0), (v, 1.0 - above / (v / 0.5))):
+        way = plan(*line(4.0, speed))
+        behind = track(way, rate=rate).at(3.0)[0] - track(way, law, rate=rate).at(3.0)[0]
+        assert behind == pytest.approx(share * c * v**2 / 2, rel=0.05, abs=1e-4)
+
+
 def test_lateral_slip_vanishes_on_lines_and_spins() -> None:
     law = find("lateral_slip").using(creep=0.05)
     way = plan(*line(3.0), *turn(4.0), *line(-1.0))

@@ -51,7 +51,7 @@ FAMILIES = (
         "left_tread_bump",
         "right_tread_bump",
     ),
-    ("longitudinal_slip", "load_transfer"),
+    ("longitudinal_slip", "coulomb_slip", "load_transfer"),
     ("lateral_slip",),
     ("sideways_drift", "reference_yaw_offset"),
     ("floor_slope", "anisotropic_floor"),

@@ -26,6 +26,7 @@ _VALUES: dict[str, Callable[[Given], dict[str, float]]] = {
     "eccentric_left_wheel": lambda it: {"amplitude": it["amplitude"]},
     "eccentric_right_wheel": lambda it: {"amplitude": it["amplitude"]},
     "longitudinal_slip": lambda it: {"coefficient": it["coefficient"]},
+    "coulomb_slip": lambda it: {"coefficient": it["coefficient"], "above": it["above"]},
     "lateral_slip": lambda it: {"creep": it["creep"]},
     "turn_dependent_track": lambda it: {
         name: it["coefficient"] * (it["on"] == name) for name in ("sharpness", "sense")

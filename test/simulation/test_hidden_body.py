@@ -29,6 +29,7 @@ from werrimbi_odom.simulation import (
 from werrimbi_odom.simulation.chassis import SKID_BEHIND
 from werrimbi_odom.simulation.hidden.creep import (
     CastorKick,
+    CoulombSlip,
     LateralSlip,
     LongitudinalSlip,
     TurnDependentTrack,
@@ -231,6 +232,20 @@ def test_slip_loses_way_while_accelerating_and_gains_it_back_while_braking() -> 
     assert position[half_way] == pytest.approx(c * v**2 / 2, rel=0.02)
     assert position[-1] < 0.02 * c * v**2 / 2
     assert heading.max() < 1e-5
+
+
+@pytest.mark.parametrize(("acceleration", "share"), [(0.4, 0.0), (1.0, 0.5)])
+def test_friction_holds_below_a_force_and_gives_way_above(
+    acceleration: float, share: float
+) -> None:
+    """Over a ramp to speed v the loss is c v^2 / 2, less the share that the threshold holds."""
+    c, v = 0.1, 0.8
+    pace = Pace(speed=v, acceleration=acceleration, pause=1.0)
+    path = drive(CoulombSlip(c, above=0.5), moves("line", [(4.0, 0.0)], pace)).true_path
+    left, right = rolled(path)
+    position, _ = errors(path, left, right)
+    half_way = np.searchsorted(left - left[0], 2.0)
+    assert position[half_way] == pytest.approx(share * c * v**2 / 2, rel=0.05, abs=1e-3)
 
 
 def test_slip_does_not_care_which_way_is_forwards() -> None:

@@ -14,7 +14,18 @@ import numpy as np
 from werrimbi_odom.model.motion import Number, sinc
 from werrimbi_odom.model.pose import wrap, wrap_all
 
-__all__ = ["cos", "exp", "limited", "saturated", "share", "sin", "sinc", "within_half_a_turn"]
+__all__ = [
+    "cos",
+    "exp",
+    "limited",
+    "log",
+    "saturated",
+    "share",
+    "sign",
+    "sin",
+    "sinc",
+    "within_half_a_turn",
+]
 
 
 def cos(angle: Number) -> Number:
@@ -30,6 +41,16 @@ def sin(angle: Number) -> Number:
 def exp(x: Number) -> Number:
     """Exponential function."""
     return np.exp(x) if isinstance(x, np.ndarray) else math.exp(x)
+
+
+def log(x: Number) -> Number:
+    """Natural logarithm, of what is positive."""
+    return np.log(x) if isinstance(x, np.ndarray) else math.log(x)
+
+
+def sign(x: Number) -> Number:
+    """+1, -1, and 0 of nothing."""
+    return np.sign(x) if isinstance(x, np.ndarray) else float((x > 0.0) - (x < 0.0))
 
 
 def limited(x: Number, low: Number | float, high: Number | float) -> Number:

@@ -7,6 +7,7 @@ from __future__ import annotations
 from werrimbi_odom.effects.anisotropic_floor import anisotropic_floor
 from werrimbi_odom.effects.backlash import left_backlash, right_backlash
 from werrimbi_odom.effects.castor_kick import castor_kick
+from werrimbi_odom.effects.coulomb_slip import coulomb_slip
 from werrimbi_odom.effects.eccentric_wheel import eccentric_left_wheel, eccentric_right_wheel
 from werrimbi_odom.effects.encoder_skew import encoder_skew
 from werrimbi_odom.effects.floor_slope import floor_slope
@@ -50,6 +51,7 @@ LIBRARY: tuple[Effect, ...] = (
     tyre_squash,
     load_transfer,
     longitudinal_slip,
+    coulomb_slip,
     lateral_slip,
     turn_dependent_track,
     skid_steer,

@@ -124,6 +124,7 @@ DRAWINGS: Mapping[str, int] = {
     "shrinking": 0,
     "sideways": 0,
     "skid": 0,
+    "slip_above": 0,
     "slip_ahead": 0,
     "slip_outwards": 0,
     "slope": 0,

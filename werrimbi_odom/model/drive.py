@@ -19,6 +19,10 @@ ROLLBACK = 1.5e-3
 """A wheel that goes back by no more than this [m] has not reversed: whatever the counters resolve,
 a stopped wheel is still settled by its controller, by some tenths of a millimetre to and fro."""
 
+SMOOTHING = 0.015
+"""Time constant of a wheel's smooth speed [s]: counters step, so that the difference of two speeds
+is no acceleration. At 50 messages a second it is late by less than a message is long."""
+
 
 class Span(NamedTuple, Generic[Number]):
     """A quantity at the start and at the end of a step."""
@@ -56,6 +60,11 @@ class Drive(Generic[Number]):
     """Of the left wheel's rim [m/s], likewise."""
     right_speed: Span[Number]
     """Of the right wheel's rim [m/s], likewise."""
+    left_smooth_speed: Span[Number]
+    """Of the left wheel's rim behind a low pass of `SMOOTHING` [m/s]: in a step it goes towards the
+    step's speed, so `left_speed.end` less it, over `SMOOTHING`, is the rim's acceleration."""
+    right_smooth_speed: Span[Number]
+    """Of the right wheel's rim, likewise."""
     left_angle: Span[Number]
     """Of the left wheel, from its counter's zero [rad]."""
     right_angle: Span[Number]

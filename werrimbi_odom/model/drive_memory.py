@@ -4,11 +4,12 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from werrimbi_odom.model.drive import ROLLBACK, Drive, RawStep, Span
+from werrimbi_odom.model.drive import ROLLBACK, SMOOTHING, Drive, RawStep, Span
 from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Pose
 
@@ -20,6 +21,11 @@ class _Means(NamedTuple):
     yaw_rate: float
     left: float
     right: float
+
+
+def smoothed(before: float, speed: float, duration: float) -> float:
+    """A speed behind a low pass of `SMOOTHING`, after a step at one speed [m/s]."""
+    return speed + (before - speed) * math.exp(-duration / SMOOTHING)
 
 
 @dataclass(slots=True)
@@ -75,6 +81,7 @@ class DriveMemory:
     _time: float = 0.0
     _distance: float = 0.0
     _means: _Means | None = None
+    _smooth: tuple[float, float] = (0.0, 0.0)
     _left: _Shuttle = field(init=False)
     _right: _Shuttle = field(init=False)
     _middle: _Shuttle = field(init=False)
@@ -99,6 +106,11 @@ class DriveMemory:
             raw.right / raw.duration,
         )
         speed, yaw_rate, left_speed, right_speed = map(Span, self._means or means, means)
+        before = self._smooth if self._means else (means.left, means.right)
+        after = (
+            smoothed(before[0], means.left, raw.duration),
+            smoothed(before[1], means.right, raw.duration),
+        )
         left_angle = Span(self.left_angle, self.left_angle + raw.left_angle)
         right_angle = Span(self.right_angle, self.right_angle + raw.right_angle)
         left, right = self._left.step(raw.left), self._right.step(raw.right)
@@ -106,7 +118,7 @@ class DriveMemory:
         x, y, heading = pose
         dx, dy = displacement(BodyMotion(raw.along, 0.0, raw.turn), heading)
         self._time, self._distance = time.end, distance.end
-        self._means = means
+        self._means, self._smooth = means, after
         self.left_angle, self.right_angle = left_angle.end, right_angle.end
         return Drive(
             duration=raw.duration,
@@ -115,6 +127,8 @@ class DriveMemory:
             yaw_rate=yaw_rate,
             left_speed=left_speed,
             right_speed=right_speed,
+            left_smooth_speed=Span(before[0], after[0]),
+            right_smooth_speed=Span(before[1], after[1]),
             left_angle=left_angle,
             right_angle=right_angle,
             distance=distance,

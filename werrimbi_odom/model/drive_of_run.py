@@ -12,7 +12,7 @@ from typing import Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.model.drive import ROLLBACK, Drive, Span
+from werrimbi_odom.model.drive import ROLLBACK, SMOOTHING, Drive, Span
 from werrimbi_odom.model.motion import BodyMotion, displacement
 from werrimbi_odom.model.pose import Floats
 
@@ -100,6 +100,8 @@ def drive_of_run(
             "yaw_rate": lambda: _lagged(turn / duration),
             "left_speed": lambda: _lagged(left / duration),
             "right_speed": lambda: _lagged(right / duration),
+            "left_smooth_speed": lambda: _smooth(left / duration, duration),
+            "right_smooth_speed": lambda: _smooth(right / duration, duration),
             "left_angle": lambda: _grown(first_angles[0], left_angle),
             "right_angle": lambda: _grown(first_angles[1], right_angle),
             "distance": lambda: _grown(0.0, np.abs(along)),
@@ -135,15 +137,19 @@ def with_wheels_of_messages(drive: DriveOfRun, message: NDArray[np.intp]) -> Dri
     """
     message = message - message[0]
 
-    def of_messages(name: str) -> Span[Floats]:
+    def mean(name: str) -> Floats:
         duration = drive.found("duration")
         lasted = np.bincount(message, duration)
         gone = np.bincount(message, drive.found(name).end * duration)
-        return _lagged((gone / np.where(lasted > 0.0, lasted, 1.0))[message])
+        return np.asarray((gone / np.where(lasted > 0.0, lasted, 1.0))[message])
 
-    works = {name: partial(drive.found, name) for name in QUANTITIES}
-    sides = ("left_speed", "right_speed")
-    return DriveOfRun.by(works | {name: partial(of_messages, name) for name in sides})
+    works = {name: partial(drive.found, name) for name in QUANTITIES} | {
+        "left_speed": lambda: _lagged(mean("left_speed")),
+        "right_speed": lambda: _lagged(mean("right_speed")),
+        "left_smooth_speed": lambda: _smooth(mean("left_speed"), drive.found("duration")),
+        "right_smooth_speed": lambda: _smooth(mean("right_speed"), drive.found("duration")),
+    }
+    return DriveOfRun.by(works)
 
 
 class _Shuttled(NamedTuple):
@@ -163,6 +169,23 @@ def _lagged(means: Floats) -> Span[Floats]:
     """Mean of the step before, and of the step; the first step has none before it."""
     both = np.concatenate([means[:1], means])
     return Span(both[:-1], both[1:])
+
+
+def _smooth(means: Floats, duration: Floats) -> Span[Floats]:
+    """Behind a low pass, as `drive_memory.smoothed` has it step by step.
+
+    A step is a line of what was before it, `kept * before + rest`; lines put into one another make
+    those of two steps, four, eight, until nothing is kept.
+    """
+    kept = np.exp(-duration / SMOOTHING)
+    rest = (1.0 - kept) * means
+    steps = 1
+    while steps < means.size and np.any(kept[steps:] > 0.0):
+        rest[steps:] += kept[steps:] * rest[:-steps]
+        kept[steps:] = kept[steps:] * kept[:-steps]
+        steps *= 2
+    after = rest + kept * means[0]
+    return Span(np.concatenate([means[:1], after[:-1]]), after)
 
 
 def _shuttled(travel: Floats, flicker: float) -> _Shuttled:

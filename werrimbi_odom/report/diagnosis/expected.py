@@ -155,6 +155,12 @@ def _bump(height: float) -> str:
     return f"{_length(height)} {'less' if height > 0.0 else 'more'} there, on a sixth of the turn"
 
 
+def _spun(values: Values, robot: Robot) -> str:
+    hard = 2.0 * values["above"]
+    lost = values["coefficient"] * 0.25 * FAST**2
+    return f"{_length(lost)} at {FAST} m/s after a start of {hard:.2g} m/s^2"
+
+
 def _missed(values: Values, robot: Robot) -> str:
     speed = f"above {values['above']:.2f} m/s"
     return f"{100.0 * values['fraction']:.2g} turns too few of a hundred {speed}"
@@ -191,6 +197,7 @@ _EXPECTED: dict[str, Callable[[Values, Robot], str]] = {
     "longitudinal_slip": lambda values, robot: (
         f"{_length(0.5 * values['coefficient'] * FAST**2)} at {FAST} m/s"
     ),
+    "coulomb_slip": _spun,
     "lateral_slip": lambda values, robot: (
         f"{_length(2.0 * values['creep'] * (FAST - SLOW))} between {SLOW} and {FAST} m/s"
     ),

@@ -127,6 +127,20 @@ def _longitudinal_slip() -> Parts:
     ]
 
 
+def _slip_above() -> Parts:
+    return [
+        line((50, 120), (335, 120), colour=GREY),
+        line((50, 120), (50, 25), colour=GREY),
+        line((50, 120), (180, 120), colour=GREEN),
+        line((180, 120), (310, 40)),
+        line((180, 126), (180, 30), colour=GREY, dash=DASH),
+        words(115, 108, "it holds", colour=GREEN),
+        words(236, 62, "it slips", colour=ORANGE, anchor="end"),
+        words(192, 138, "acceleration", colour=GREY, anchor="start"),
+        words(58, 32, "lost", colour=GREY, anchor="start"),
+    ]
+
+
 def _lateral_slip() -> Parts:
     return [
         arc(150, 190, 130, 130, 50, colour=GREY, dash=DASH),
@@ -239,6 +253,7 @@ DRAWINGS: Mapping[str, Callable[..., Parts]] = {
     "squash": _squash,
     "load": _load,
     "by_channel": _by_channel,
+    "slip_above": _slip_above,
     "slip_ahead": _longitudinal_slip,
     "slip_outwards": _lateral_slip,
     "two_bases": _turn_dependent,

@@ -13,7 +13,7 @@ from typing import Literal
 import numpy as np
 
 from .counters import EncoderSkew, MissedTicks, WheelReversed, WheelsSwapped
-from .creep import CastorKick, LateralSlip, LongitudinalSlip, TurnDependentTrack
+from .creep import CastorKick, CoulombSlip, LateralSlip, LongitudinalSlip, TurnDependentTrack
 from .floor import CablePull, FloorSlope, GrainedFloor, SlipperySpot
 from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
 from .knocks import Knock, ReferenceJump
@@ -229,6 +229,9 @@ CATALOGUE: tuple[Entry, ...] = (
             "thickness of a bump on the right tread, or depth of a flat"),
     Entry("reference_gyro_drift", lambda s, rng: WarmingGyro(s), "rad/s^2", 1e-5, 1e-4,
             "growth of the bias of the reference's heading", signed=False),
+    Entry("coulomb_slip", lambda s, rng: CoulombSlip(s, float(rng.uniform(0.3, 0.6))), "s^2/m",
+            0.02, 0.15, "share of a wheel's travel lost per acceleration above a threshold",
+            signed=False),
     _mistake("wheels_swapped", lambda rng: WheelsSwapped(), "left and right exchanged"),
     _mistake("left_wheel_reversed", lambda rng: WheelReversed("left"),
              "left counter with the wrong sign"),

@@ -46,6 +46,37 @@ class LongitudinalSlip(Peculiarity):
 
 
 @dataclass(frozen=True)
+class CoulombSlip(Peculiarity):
+    """A wheel holds up to a force and slips above it.
+
+    Parameters
+    ----------
+    coefficient : float
+        Share of the travel that is lost per acceleration above the threshold [s^2/m].
+    above : float
+        Acceleration of the wheel up to which it holds [m/s^2].
+    """
+
+    coefficient: float
+    above: float
+
+    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+        """Each wheel falls back by coefficient * (|acceleration| - above) * path."""
+        before = np.zeros(2)
+
+        def shift(stride: Stride) -> Shift:
+            nonlocal before
+            travel = np.array((stride.left, stride.right))
+            acceleration = (travel - before) / stride.period**2
+            before = travel
+            beyond = np.sign(acceleration) * np.maximum(np.abs(acceleration) - self.above, 0.0)
+            left, right = -self.coefficient * beyond * np.abs(travel)
+            return Shift((left + right) / 2, 0.0, (right - left) / robot.wheel_separation)
+
+        return shift
+
+
+@dataclass(frozen=True)
 class LateralSlip(Peculiarity):
     """In a curve the tyres creep outwards.
 
