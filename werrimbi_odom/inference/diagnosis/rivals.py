@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 
 from werrimbi_odom.effects.collection import find
 from werrimbi_odom.inference.calibration_sizes import sizes_of
@@ -36,6 +36,7 @@ def rivals_of(
         named = [first, *_sizes_in_place_of(first, final)]
         limit = final.total + RIVAL * final.scatter
         named += [item.effect for item in instead if item.total < limit]
+        named = list(dict.fromkeys((*named, *_in_place_of_a_size(first, rounds, final))))
         return tuple(named) if len(named) > 1 else ()
     for this in rounds:
         if any(fit.names[-1] == first and not fit.at_bound for fit in this.tried):
@@ -65,6 +66,18 @@ def _sizes_in_place_of(name: str, final: Fitted) -> tuple[str, ...]:
     """Sizes of the robot that explain as much without one."""
     others = {other for subset in final.alternatives for other in subset if name not in subset}
     return tuple(other for other in CALIBRATED if other in others)
+
+
+def _in_place_of_a_size(name: str, rounds: tuple[Round, ...], final: Fitted) -> Iterator[str]:
+    """Effects beside which a size is needless, and all in all as likely: it may be theirs."""
+    last = rounds[-1]
+    if last.before.names != final.names:
+        return
+    limit = final.total + RIVAL * final.scatter
+    for fit in last.tried:
+        fewer = len(fit.calibrated) < len(final.calibrated) and name not in fit.calibrated
+        if fewer and not fit.at_bound and fit.total < limit:
+            yield fit.names[-1]
 
 
 def _near(name: str, this: Round) -> tuple[str, ...]:
