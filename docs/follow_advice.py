@@ -1,20 +1,22 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Real robots mended by the tool's own advice alone: diagnose, add what it names, again.
+"""Real robots mended by the tool's own advice alone: diagnose, add what it says, again.
 
-Prints the table of the README and of docs/real_robots.md. Nobody chooses: the first effect named is
-added, until nothing is named or the addition is refused.
+Prints the table of the README and of docs/real_robots.md. Nobody chooses: what the first `werrimbi
+add` names that `diagnose` prints is added, until none is printed or the addition is refused.
 """
 
 from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -25,6 +27,7 @@ ROOT = Path(__file__).parents[1]
 ROBOTS = Path(os.environ.get("WERRIMBI_DATA", ROOT / "recordings")) / "robots"
 MOST = 6
 """Rounds, at the most."""
+_ADD = re.compile(r"^ +werrimbi add (\S+)", re.MULTILINE)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,54 +67,75 @@ CASES = (
 )
 
 
-def werrimbi(*words: str) -> int:
-    """Run a command; its exit code."""
+@dataclass(frozen=True, slots=True)
+class Step:
+    """What was said of a robot file, and what was added because of it."""
+
+    robot: Path
+    words: str
+    answer: dict[str, Any]
+    added: str | None
+    refused: str = ""
+    """Why not, in the words of `add`."""
+
+
+def werrimbi(*words: str) -> subprocess.CompletedProcess[str]:
+    """Run a command."""
     command = [sys.executable, "-m", "werrimbi_odom.cli.main", *words]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    return done.returncode
+    return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
 
 
-def followed(case: Case, folder: Path) -> tuple[Path, list[str], str]:
-    """The robot file at the end, the effects added, and the last verdict."""
+def drives_of(case: Case, patterns: tuple[str, ...]) -> list[str]:
+    """The folders of some drives of a robot."""
     home = ROBOTS / case.robot
-    fitted = [str(path) for pattern in case.fitted for path in sorted(home.glob(pattern))]
-    judged = [str(path) for pattern in case.judged for path in sorted(home.glob(pattern))]
-    drives = [*fitted, *(["--holdout", *judged] if judged else []), *case.options]
-    robot, added, verdict = home / "robot.yaml", [], ""
+    return [str(path) for pattern in patterns for path in sorted(home.glob(pattern))]
+
+
+def followed(case: Case, folder: Path) -> list[Step]:
+    """All that was said, and done because of it; the last step adds nothing."""
+    judged = drives_of(case, case.judged)
+    drives = drives_of(case, case.fitted)
+    drives += [*(["--holdout", *judged] if judged else []), *case.options]
+    robot, steps = ROBOTS / case.robot / "robot.yaml", []
     for number in range(MOST):
-        said = folder / f"{number}.json"
-        assert werrimbi("diagnose", "--robot", str(robot), *drives, "--json", str(said)) == 0
+        said, better = folder / f"{number}.json", folder / f"{number}.yaml"
+        done = werrimbi("diagnose", "--robot", str(robot), *drives, "--json", str(said))
+        assert done.returncode == 0, done.stderr
         answer = json.loads(said.read_text())
-        verdict, effect = answer["verdict"], answer["effect"]
-        better = folder / f"{number}.yaml"
-        if effect is None:
-            break
-        if werrimbi("add", effect, "--robot", str(robot), *drives, "--out", str(better)) != 0:
-            break
-        robot, added = better, [*added, effect]
-    return robot, added, verdict
+        printed = _ADD.search(done.stdout)
+        if printed is None:
+            return [*steps, Step(robot, done.stdout, answer, None)]
+        effect = printed[1]
+        tried = werrimbi("add", effect, "--robot", str(robot), *drives, "--out", str(better))
+        if tried.returncode != 0:
+            return [*steps, Step(robot, done.stdout, answer, None, tried.stderr or tried.stdout)]
+        steps.append(Step(robot, done.stdout, answer, effect))
+        robot = better
+    return steps
 
 
 def error(case: Case, robot: Path, folder: Path) -> float:
     """The figure of the case [m]."""
-    home = ROBOTS / case.robot
     if case.judged:
-        judged = [str(path) for pattern in case.judged for path in sorted(home.glob(pattern))]
-        said = folder / "compare.json"
-        code = werrimbi(
-            "compare", "--robot", str(robot), *judged, *case.options, "--json", str(said)
-        )
-        assert code == 0
-        return float(json.loads(said.read_text())["legs"]["median_position_m"])
-    return whole_drive(home / case.fitted[0], robot, folder)
+        return float(compared(case, robot, folder)["legs"]["median_position_m"])
+    return whole_drive(Path(drives_of(case, case.fitted)[0]), robot, folder)
+
+
+def compared(case: Case, robot: Path, folder: Path) -> dict[str, Any]:
+    """What `compare` says of the drives that took no part, or of all where all did."""
+    said = folder / "compare.json"
+    drives = drives_of(case, case.judged or case.fitted)
+    done = werrimbi("compare", "--robot", str(robot), *drives, *case.options, "--json", str(said))
+    assert done.returncode == 0, done.stderr
+    return dict(json.loads(said.read_text()))
 
 
 def whole_drive(run: Path, robot: Path, folder: Path) -> float:
     """Root mean square of the position over a drive, its start pose fitted [m]."""
     out = folder / "odom.csv"
     out.unlink(missing_ok=True)
-    code = werrimbi("odom", "--robot", str(robot), str(run), "--as-reference", "--out", str(out))
-    assert code == 0
+    done = werrimbi("odom", "--robot", str(robot), str(run), "--as-reference", "--out", str(out))
+    assert done.returncode == 0, done.stderr
     path = np.genfromtxt(out, delimiter=",", names=True)
     reference = read_run(run, read_robot_file(robot)).reference
     assert reference is not None
@@ -129,11 +153,13 @@ def row(case: Case) -> str:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         before = error(case, ROBOTS / case.robot / "robot.yaml", folder)
-        robot, added, verdict = followed(case, folder)
-        after = error(case, robot, folder)
-    effects = ", ".join(f"`{effect}`" for effect in added)
+        steps = followed(case, folder)
+        after = error(case, steps[-1].robot, folder)
+    effects = ", ".join(
+        f"`{name}`" for step in steps if step.added for name in step.added.split(",")
+    )
     figures = f"{1e3 * before:.1f} mm | {effects} | {1e3 * after:.1f} mm"
-    return f"| {case.told} | {figures} | {verdict} |"
+    return f"| {case.told} | {figures} | {steps[-1].answer['verdict']} |"
 
 
 if __name__ == "__main__":

@@ -103,12 +103,12 @@ def test_no_effects_are_none_at_all(tmp_path: Path) -> None:
 
 
 def test_names_are_looked_up_in_the_collection_that_is_given(tmp_path: Path) -> None:
-    mine = Effect("my_slip", "body", SLIP.parameters, SLIP.apply, SLIP.doc)
+    mine = Effect("outward", "body", SLIP.parameters, SLIP.apply, SLIP.doc)
     path = tmp_path / "robot.yaml"
-    path.write_text(BARE + "    effects: [my_slip]\n    my_slip: {creep: 0.01}\n")
+    path.write_text(BARE + "    effects: [outward]\n    outward: {creep: 0.01}\n")
     assert read_robot_file(path, Collection((mine,))).effects == (mine.using(creep=0.01),)
     with pytest.raises(
-        InputError, match=r"line 7: unknown effect my_slip \(.*--effects FILE, or pip"
+        InputError, match=r"line 7: unknown effect outward \(.*--effects FILE, or pip"
     ):
         read_robot_file(path)
 

@@ -51,6 +51,6 @@ def test_the_tools_advice_comes_within_a_fifth_of_what_can_be_had(
 ) -> None:
     advice = _advice()
     case = next(case for case in advice.CASES if case.robot == robot)
-    file, added, _ = advice.followed(case, tmp_path)
-    assert added
-    assert advice.error(case, file, tmp_path) < 1.2 * ATTAINABLE[robot]
+    steps = advice.followed(case, tmp_path)
+    assert steps[0].added
+    assert advice.error(case, steps[-1].robot, tmp_path) < 1.2 * ATTAINABLE[robot]

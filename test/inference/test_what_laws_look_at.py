@@ -7,7 +7,7 @@ from __future__ import annotations
 import functools
 import operator
 from collections.abc import Callable
-from dataclasses import astuple, replace
+from dataclasses import astuple, fields, replace
 from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
@@ -24,6 +24,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, predict_all
 from werrimbi_odom.inference.legs.cutting import match
+from werrimbi_odom.model.drive import Drive
 from werrimbi_odom.model.effect import Effect, Parameter, body_effect, wheel_effect
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.pose import Pose
@@ -72,6 +73,9 @@ def only_when_fast(drive: Any) -> Any:
     return np.where(np.abs(drive.speed.end) < 0.1, 0.0, 1.0) * sway(drive)
 
 
+HEADING = [field.name for field in fields(Drive)].index("heading")
+"""Place of it among all."""
+
 WAYS: dict[str, Callable[[Any], Any]] = {
     "a closure": lambda drive: mean_sin(drive.heading),
     "a helper": lambda drive: sway(drive),
@@ -82,14 +86,12 @@ WAYS: dict[str, Callable[[Any], Any]] = {
     "an attrgetter, cached": lambda drive: mean_sin(reader("heading")(drive)),
     "a computed name": lambda drive: mean_sin(getattr(drive, "".join(PARTS))),
     "a copy of the drive": lambda drive: sway(replace(drive, duration=drive.duration)),
-    "all fields of the drive": lambda drive: mean_sin(astuple(drive)[18]),
+    "all fields of the drive": lambda drive: mean_sin(astuple(drive)[HEADING]),
     "a match": lambda drive: _matched(drive),
 }
 
 
 def _matched(drive: Any) -> Any:
-    from werrimbi_odom.model.drive import Drive
-
     match drive:
         case Drive(heading=seen):
             return mean_sin(seen)

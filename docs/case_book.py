@@ -1,0 +1,200 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Writes docs/robots/: a page for each real robot, followed to its end by the tool's own advice.
+
+    python docs/case_book.py [ROBOT...]
+
+Some minutes a robot. Recordings are those of docs/real_robots.md; a robot that is not there is
+passed over, and its page stays.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import sys
+import tempfile
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from follow_advice import CASES, ROBOTS, ROOT, Case, Step, compared, followed
+
+sys.path.insert(0, str(ROOT))
+from test.recorded_robots.robots import ROBOTS as RECORDED
+from werrimbi_odom.files.replacing import replacing
+
+PAGES = ROOT / "docs/robots"
+GYRO = ("--reference-kind", "incremental")
+BOOK = (
+    *CASES,
+    Case("lego", "Lego robot", ("drive*",), ()),
+    Case("kobuki_sound", "Kobuki, no fault", ("part_0", "part_1"), ("part_2",), GYRO),
+    Case(
+        "kobuki_left_taped",
+        "Kobuki, tape on a quarter of the left tread",
+        ("part_[1-4]",),
+        ("part_0",),
+        GYRO,
+    ),
+    Case("upenn_skid_gyro", "Skid steer by its gyro", ("drive_20",), ("drive_21",), GYRO),
+    Case("upenn_skid_icp", "Skid steer by a scan matcher", ("drive_20",), ("drive_21",), GYRO),
+)
+
+
+def page_of(case: Case) -> str:
+    """The page of a robot."""
+    (recorded,) = (robot for robot in RECORDED if robot.folder == case.robot)
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        steps = followed(case, folder)
+        judged = [compared(case, step.robot, folder) for step in steps]
+        lines = [
+            f"# {re.sub(', (median|rms) .*', '', case.told)}: `{case.robot}`",
+            "",
+            f"{recorded.source.name}, {recorded.source.commit[:12]}; {recorded.source.licence}. "
+            f"{'; '.join(recorded.remarks)}.",
+            "",
+            f"Fitted on {' '.join(case.fitted)}; judged on "
+            f"{' '.join(case.judged) or 'parts put aside, and in the tables on all of it'}. "
+            "Written by `python docs/case_book.py`.",
+            "",
+            "## The way",
+            "",
+            *_table(steps, judged),
+            "",
+            *_what_is_left(steps[-1], judged[-1]),
+            "",
+            *_words(case, steps, folder),
+        ]
+    return "\n".join(lines) + "\n"
+
+
+def _table(steps: list[Step], judged: list[dict[str, Any]]) -> Iterator[str]:
+    """Errors on the drives that took no part, from step to step."""
+    length = judged[0]["leg_m"]
+    yield f"| added | legs of {length:g} m | rms | median | rms, heading | NEES | inside 95 % |"
+    yield "| --- | --- | --- | --- | --- | --- | --- |"
+    names = ["nothing", *(f"`{step.added}`" for step in steps[:-1])]
+    for name, said in zip(names, judged, strict=True):
+        legs = said["legs"]
+        place, middle = (_mm(legs[f"{key}_position_m"]) for key in ("rmse", "median"))
+        yaw, nees, inside = legs["rmse_yaw_rad"], legs["nees"], legs["coverage_95"]
+        heading = "-" if yaw is None else f"{math.degrees(yaw):.2f}°"
+        yield (
+            f"| {name} | {legs['count']} | {place} | {middle} | {heading} | {nees:.3g} "
+            f"| {100.0 * inside:.0f} % |"
+        )
+
+
+def _mm(metres: float | None) -> str:
+    return "-" if metres is None else f"{1e3 * metres:.1f} mm"
+
+
+def _what_is_left(last: Step, judged: dict[str, Any]) -> Iterator[str]:
+    """The verdict, and what is left against the reference's own noise; whether it is white."""
+    legs, seen = judged["legs"], judged["reference"][0]
+    yield "## What is left"
+    yield ""
+    yield f"- Verdict: *{last.answer['verdict']}*."
+    if last.refused:
+        yield f"- `add` refuses what is named: {' '.join(last.refused.split())}"
+    yield (
+        f"- Errors are {math.sqrt(legs['nees']):.2g} times what model and reference promise "
+        f"together (root of NEES; {legs['outliers']} outlying legs left out)."
+    )
+    told = {"estimated": "by its own small differences", "assumed": "assumed", "given": "as given"}
+    if seen["measures"] != "heading":
+        yield f"- The reference's noise, {told.get(seen['xy_told'], seen['xy_told'])}: " + (
+            f"{_mm(seen['sigma_xy'])} each pose."
+        )
+    if seen["measures"] != "position":
+        yield f"- Its heading's, {told.get(seen['yaw_told'], seen['yaw_told'])}: " + (
+            f"{math.degrees(seen['sigma_yaw']):.2g}° each reading."
+        )
+    correlations = _correlations(judged["each_leg"])
+    if correlations:
+        yield "- From a leg to the next they " + "; ".join(correlations) + "."
+
+
+def _correlations(legs: dict[str, Any]) -> list[str]:
+    """Of errors of neighbouring legs, over what is promised for each; white noise has none."""
+    said = []
+    for channel in ("along", "sideways", "heading"):
+        unit = "rad" if channel == "heading" else "m"
+        error = np.array(legs[f"error_{channel}_{unit}"], dtype=float)
+        sigma = np.array(legs[f"sigma_{channel}_{unit}"], dtype=float)
+        run = np.array(legs["run"])
+        sound = ~np.array(legs["outlier"], dtype=bool) & np.isfinite(error) & (sigma > 0.0)
+        pairs = sound[:-1] & sound[1:] & (run[:-1] == run[1:])
+        if pairs.sum() < 10:
+            continue
+        white = error / np.where(sigma > 0.0, sigma, 1.0)
+        one, other = (part - part.mean() for part in (white[:-1][pairs], white[1:][pairs]))
+        found = float(np.sum(one * other) / math.sqrt(np.sum(one**2) * np.sum(other**2)))
+        limit = 1.96 / math.sqrt(float(pairs.sum()))
+        word = "correlate" if abs(found) > limit else "are white"
+        said.append(f"{word} {channel} ({found:+.2f}, chance to ±{limit:.2f})")
+    return said
+
+
+def _words(case: Case, steps: list[Step], folder: Path) -> Iterator[str]:
+    """All that `diagnose` said before its tables."""
+    for number, step in enumerate(steps):
+        yield "## As its file says" if number == 0 else f"## With `{steps[number - 1].added}`"
+        yield ""
+        yield "```"
+        words = step.words.partition("\n\n")[0]
+        for place, name in ((str(ROBOTS / case.robot), case.robot), (str(folder), "out")):
+            words = words.replace(place, name)
+        yield words.strip()
+        yield "```"
+        yield ""
+
+
+def index() -> str:
+    """The list of all pages that there are, made from them."""
+    lines = [
+        "# Case book",
+        "",
+        "Each real robot of [real_robots.md](../real_robots.md) followed to its end by the commands",
+        "that `werrimbi diagnose` prints, on drives that took no part in any fit where there are",
+        "such. Written by `python docs/case_book.py`. *Left* is what the errors are times what model",
+        "and reference promise together (root of NEES): 1 is nothing but noise.",
+        "",
+        "| robot | added | then | left |",
+        "| --- | --- | --- | --- |",
+    ]
+    for case in BOOK:
+        place = PAGES / f"{case.robot}.md"
+        if place.exists():
+            text = place.read_text(encoding="utf-8")
+            title = text.partition(":")[0].removeprefix("# ")
+            added = [name for name in re.findall(r"^\| (\S+) \|", text, re.M) if "`" in name]
+            (verdict,) = re.findall(r"^- Verdict: \*(.*)\*", text, re.M)
+            (left,) = re.findall(r"^- Errors are (\S+) times", text, re.M)
+            words = ", then ".join(added) or "nothing"
+            lines.append(f"| [{title}]({case.robot}.md) | {words} | {verdict} | {left} |")
+    return "\n".join(lines) + "\n"
+
+
+def main() -> None:
+    """Write the pages of the robots asked for; of all, where none is."""
+    PAGES.mkdir(exist_ok=True)
+    for case in BOOK:
+        if sys.argv[1:] and case.robot not in sys.argv[1:]:
+            continue
+        if not (ROBOTS / case.robot).exists():
+            print(f"{case.robot}: not there; `make recordings` fetches it")
+            continue
+        page = page_of(case)
+        with replacing(PAGES / f"{case.robot}.md") as file:
+            file.write(page)
+        print(f"{case.robot}: written", flush=True)
+    with replacing(PAGES / "README.md") as file:
+        file.write(index())
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,40 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A diagnosis begins with the robot file as it is: of one that is right it finds that again."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import pytest
+
+from test.recorded_robots import ROBOTS, with_recordings
+from werrimbi_odom.effects import find
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.run_folder import read_run_folder
+from werrimbi_odom.inference.diagnosis.search import first_fit
+from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
+from werrimbi_odom.inference.legs.cutting import match_finely
+
+
+@with_recordings
+def test_what_happened_once_does_not_lead_away_from_a_file_that_is_right() -> None:
+    """A Kobuki with tape on its left tread, by its gyro; once it was turned by 3.4 degrees."""
+    taped = ROBOTS / "kobuki_left_taped"
+    robot = replace(
+        read_robot_file(taped / "robot.yaml").robot,
+        wheel_separation_multiplier=1.0635,
+        left_wheel_noise=2.1e-3,
+        effects=(
+            find("reference_delay").using(delay=0.0824),
+            replace(find("left_tread_bump").using(height=1.02e-3), unknown=("place",)),
+        ),
+    )
+    runs = [read_run_folder(taped / f"part_{number}") for number in (1, 2, 3, 4)]
+    laid = concatenated(match_finely(runs, robot, leg=1.0))
+    fit = first_fit(laid, robot, EvaluationOptions(reference_kind="incremental"))
+    delay, bump = fit.point.model.robot.effects
+    assert delay.values["delay"] == pytest.approx(0.0824, abs=0.01)
+    assert bump.values["height"] == pytest.approx(1.02e-3, abs=3e-4)
+    assert not fit.calibrated, "no size is news"
