@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Real robots mended by the tool's own advice alone: diagnose, add what it says, again.
+"""Real robots mended by the tool's own advice alone: diagnose, add what it names, again.
 
-Prints the table of the README and of docs/real_robots.md. Nobody chooses: what the first `werrimbi
-add` names that `diagnose` prints is added, until none is printed or the addition is refused.
+Prints the table of the README and of docs/real_robots.md. Nobody chooses: the first effect named is
+added, until nothing is named or the addition is refused.
 """
 
 from __future__ import annotations
@@ -91,8 +91,14 @@ def drives_of(case: Case, patterns: tuple[str, ...]) -> list[str]:
     return [str(path) for pattern in patterns for path in sorted(home.glob(pattern))]
 
 
-def followed(case: Case, folder: Path) -> list[Step]:
-    """All that was said, and done because of it; the last step adds nothing."""
+def followed(case: Case, folder: Path, *, as_printed: bool = False) -> list[Step]:
+    """All that was said, and done because of it; the last step adds nothing.
+
+    Parameters
+    ----------
+    as_printed
+        Add all that the printed command names, not its first effect alone.
+    """
     judged = drives_of(case, case.judged)
     drives = drives_of(case, case.fitted)
     drives += [*(["--holdout", *judged] if judged else []), *case.options]
@@ -105,7 +111,7 @@ def followed(case: Case, folder: Path) -> list[Step]:
         printed = _ADD.search(done.stdout)
         if printed is None:
             return [*steps, Step(robot, done.stdout, answer, None)]
-        effect = printed[1]
+        effect = printed[1] if as_printed else answer["effect"] or printed[1]
         tried = werrimbi("add", effect, "--robot", str(robot), *drives, "--out", str(better))
         if tried.returncode != 0:
             return [*steps, Step(robot, done.stdout, answer, None, tried.stderr or tried.stdout)]
