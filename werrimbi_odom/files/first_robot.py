@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.drivers import DRIVERS
+from werrimbi_odom.files.wheel_joints import SIDES, TURN, is_no_wheel
 from werrimbi_odom.model.pose import Floats
 
-SIDES = ("left", "right")
 _LONGEST = 10_000_000
 """Characters of a URDF; robots with all their sensors have a hundredth of it."""
 _UNKNOWN_TICKS = 4096.0
@@ -136,7 +136,9 @@ def _wheels(robot: ElementTree.Element) -> Iterator[_Wheel]:
     links = {each.get("name"): each for each in robot.iter("link")}
     for child, joint in joints.items():
         name = joint.get("name", "")
-        if joint.get("type") not in ("continuous", "revolute") or "cast" in name.lower():
+        if joint.get("type") not in ("continuous", "revolute") or is_no_wheel(name):
+            continue
+        if _has_stops(joint):
             continue
         place = _pose_of(child, joints)
         axis_of = joint.find("axis")
@@ -144,6 +146,18 @@ def _wheels(robot: ElementTree.Element) -> Iterator[_Wheel]:
         if abs(float((place[:3, :3] @ axis)[1])) < _AXLE * float(np.linalg.norm(axis)):
             continue
         yield _Wheel(name, place[:3, 3], _radius(links.get(child)))
+
+
+def _has_stops(joint: ElementTree.Element) -> bool:
+    """Whether a joint stays within two turns, as an arm's does and no wheel's."""
+    limit = joint.find("limit")
+    if (
+        joint.get("type") != "revolute"
+        or limit is None
+        or not {"lower", "upper"} & set(limit.keys())
+    ):
+        return False
+    return float(limit.get("upper", "0")) - float(limit.get("lower", "0")) <= 2.0 * TURN
 
 
 def _whole(joint: ElementTree.Element) -> bool:
@@ -269,24 +283,6 @@ def _names(value: Any) -> tuple[str, ...]:
 
 def _is_text(value: object) -> bool:
     return isinstance(value, str)
-
-
-def of_names(joints: Sequence[str]) -> FirstRobot:
-    """Wheels by the names of the joints alone."""
-    wheels = [name for name in joints if "wheel" in name.lower()] or list(joints)
-    sides = [tuple(name for name in wheels if _is_of(name, side)) for side in SIDES]
-    return FirstRobot(left=sides[0], right=sides[1]) if all(sides) else FirstRobot()
-
-
-def _is_of(name: str, side: str) -> bool:
-    parts = name.lower().replace("-", "_").split("_")
-    return (
-        side in name.lower()
-        or side[0] in parts
-        or any(
-            part in (f"f{side[0]}", f"r{side[0]}", f"{side[0]}f", f"{side[0]}r") for part in parts
-        )
-    )
 
 
 def with_driver(first: FirstRobot, kind: str) -> FirstRobot:

@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
 
@@ -12,6 +12,7 @@ from werrimbi_odom.files.bag_contents import Contents, Measured, Wheels
 from werrimbi_odom.files.first_robot import FirstRobot
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.stamps import Stamps
+from werrimbi_odom.files.wheel_joints import WheelJoints
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.spans import Driven
 from werrimbi_odom.inference.rules import (
@@ -39,6 +40,8 @@ class Held:
     """Read by these; None where it cannot be."""
     problem: str
     """Why not."""
+    joints: WheelJoints = field(default_factory=WheelJoints)
+    """Of the wheels' topic: which of them are wheels."""
     driven: Driven | None = None
     left_out: tuple[LeftOut, ...] = ()
     restamped: float = 0.0

@@ -10,21 +10,16 @@ from collections.abc import Iterator
 from dataclasses import asdict
 from typing import Any
 
-from werrimbi_odom.files.bag_contents import SCAN, Measured
+from werrimbi_odom.files.bag_contents import SCAN, Measured, Wheels
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.spans import Driven
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of
 from werrimbi_odom.report.document import Document, Paragraph, paragraphs
+from werrimbi_odom.report.info_wheels import no_wheels_words, rate_words, wheels_words
 from werrimbi_odom.report.numbers import TIME_OF_DAY, listed
 from werrimbi_odom.report.phrases import left_out_json, left_out_words
 
-_GIVES = {
-    "counts": "counters",
-    "positions": "angles of the wheels",
-    "velocities": "speeds of the wheels, which are integrated",
-    "odometry": "the robot's own odometry, turned back into travel of its wheels",
-}
 _MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"}
 _WANDERS = 0.1  # of stamps against receipt, from which on it is worth saying [s]
 
@@ -44,7 +39,8 @@ def _of_one(held: Held, found: Info) -> list[Paragraph]:
 
 def _lines(held: Held, found: Info) -> Iterator[str]:
     if held.contents is not None:
-        yield _wheels(held)
+        yield wheels_words(held)
+        yield from no_wheels_words(held.joints)
         yield from _references(held)
         yield from _stamps(held)
     else:
@@ -76,24 +72,11 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
     yield from (f"It cannot show {each}." for each in cannot)
 
 
-def _wheels(held: Held) -> str:
-    wheels = held.wheels
-    if wheels is None:
-        return "Wheels: nothing in the bag tells how they turned."
-    joints = f", joints {listed(wheels.joints)}" if wheels.joints else ""
-    return f"Wheels: {wheels.name}, {_GIVES[wheels.gives]}{_rate(held, wheels.name)}{joints}."
-
-
-def _rate(held: Held, name: str) -> str:
-    stamps = held.stamps.get(name.split(",")[0].partition(":")[0])
-    return "" if stamps is None or name.startswith("/tf") else f" at {stamps.rate:.3g} Hz"
-
-
 def _references(held: Held) -> Iterator[str]:
     assert held.contents is not None
     for each in held.contents.references:
         taken = " It is taken." if each == held.reference else ""
-        kind = f"{each.name}: {_MEASURES[each.measures]}{_rate(held, each.name)}"
+        kind = f"{each.name}: {_MEASURES[each.measures]}{rate_words(held, each.name)}"
         if each.independent:
             yield f"Reference {kind} ({each.why}).{taken}"
             if taken and each.kind == SCAN and held.run is not None:
@@ -275,9 +258,11 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
         if contents is None
         else [
             {"topic": each.name, "type": each.kind, "gives": each.gives, "joints": each.joints}
-            | {"messages": each.messages, "taken": each == held.wheels}
+            | {"messages": each.messages, "taken": each.name == _name(held.wheels)}
             for each in contents.wheels
         ],
+        "wheel_joints": {"left": held.joints.left, "right": held.joints.right}
+        | {"no_wheels": held.joints.others},
         "references": [_reference(each, held) for each in contents.references]
         if contents is not None
         else [{"topic": "reference.csv", "measures": measures_of(held), "taken": True}],
@@ -297,6 +282,10 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
         "can_show": can,
         "cannot_show": cannot,
     }
+
+
+def _name(wheels: Wheels | None) -> str:
+    return "" if wheels is None else wheels.name
 
 
 def _reference(each: Measured, held: Held) -> dict[str, Any]:

@@ -1,0 +1,54 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a recording has of the wheels, in words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
+from werrimbi_odom.inference.recording_info import Held
+from werrimbi_odom.report.numbers import listed
+
+_GIVES = {
+    "counts": "counters",
+    "positions": "angles of the wheels",
+    "velocities": "speeds of the wheels, which are integrated",
+    "odometry": "the robot's own odometry, turned back into travel of its wheels",
+}
+
+
+def wheels_words(held: Held) -> str:
+    """The topic, what it gives, and the wheels on each side."""
+    wheels = held.wheels
+    if wheels is None:
+        return "Wheels: nothing in the bag tells how they turned."
+    joints, told = held.joints, ""
+    if joints.left:
+        told = f", on the left {listed(joints.left)}, on the right {listed(joints.right)}"
+    elif wheels.joints:
+        told = f"; no name says which joint is a wheel: {listed(wheels.joints)}"
+    return f"Wheels: {wheels.name}, {_GIVES[wheels.gives]}{rate_words(held, wheels.name)}{told}."
+
+
+def no_wheels_words(joints: WheelJoints) -> Iterator[str]:
+    """Joints that are taken for no wheels, and why."""
+    named = [name for name in joints.others if is_no_wheel(name)]
+    rolled = [name for name in joints.rolled if name not in named]
+    stayed = [name for name in joints.others if name not in (*named, *rolled)]
+    if named:
+        yield f"No wheels by their names: {listed(named)}."
+    if stayed and (joints.left or rolled):
+        yield f"Not taken for wheels, as nothing says that they are: {listed(stayed)}."
+    if rolled:
+        yield (
+            f"Not taken for wheels, though they turned by more than a turn: {listed(rolled)}. If "
+            "they are, name them in a robot file (left_wheel_names, right_wheel_names), and give "
+            "it with --robot."
+        )
+
+
+def rate_words(held: Held, name: str) -> str:
+    """How often a topic's messages come, after its name."""
+    stamps = held.stamps.get(name.split(",")[0].partition(":")[0])
+    return "" if stamps is None or name.startswith("/tf") else f" at {stamps.rate:.3g} Hz"
