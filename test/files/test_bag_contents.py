@@ -111,3 +111,39 @@ def test_speeds_alone_are_told_from_angles(tmp_path: Path, ros: Any) -> None:
 )
 def test_names(topic: str, kind: str, parent: str, child: str, from_wheels: bool) -> None:
     assert bool(why_from_wheels(topic, kind, parent, child)) is from_wheels
+
+
+def test_the_joints_of_the_robot_are_no_references(tmp_path: Path, ros: Any) -> None:
+    """A robot_state_publisher tells where wheels and arm are on the robot; no odometry is sent."""
+    joints = (("base_link", "left_wheel"), ("base_link", "lift"), ("upper_arm", "forearm"))
+    entries = []
+    for n in range(1, 50):
+        turned = [
+            ros.transform(n * MS, joints[0], 0.0, 0.3, 0.01 * n),
+            ros.transform(n * MS, joints[1], 0.001 * n, 0.0, 0.0),
+            ros.transform(n * MS, joints[2], 0.2, 0.0, 0.01 * n),
+        ]
+        entries.append(("/tf", n, ros.transforms(*turned)))
+    assert contents(ros.write(tmp_path / "bag", entries)).references == ()
+
+
+def test_a_tracker_without_a_base_is_still_a_reference(tmp_path: Path, ros: Any) -> None:
+    entries = [
+        ("/tf", n, ros.transforms(ros.transform(n * MS, ("world", "rigid_body_1"), 0.1 * n, 0, 0)))
+        for n in range(1, 50)
+    ]
+    held = contents(ros.write(tmp_path / "bag", entries))
+    assert [each.name for each in held.independent] == ["/tf:world:rigid_body_1"]
+
+
+def test_what_moves_within_the_robot_is_no_measurement(tmp_path: Path, ros: Any) -> None:
+    """Map and odom stand for nothing, and the pose is sent between two frames of the base."""
+    entries = []
+    for n in range(1, 50):
+        sent = [
+            ros.transform(n * MS, ("map", "odom"), 0.0, 0.0, 0.0),
+            ros.transform(n * MS, ("odom", "base_footprint"), 0.0, 0.0, 0.0),
+            ros.transform(n * MS, ("base_footprint", "base_link"), 0.1 * n, 0.0, 0.0),
+        ]
+        entries.append(("/tf", n, ros.transforms(*sent)))
+    assert contents(ros.write(tmp_path / "bag", entries)).independent == ()
