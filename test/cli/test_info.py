@@ -249,6 +249,20 @@ def test_steps_of_the_angles_tell_the_counts_of_a_turn(ticks: int) -> None:
     assert with_steps(first, [smooth, smooth]).ticks is None
 
 
+def test_the_speeds_of_a_simulator_are_no_counts() -> None:
+    """Without inertia a robot holds three speeds, and turns the same in each message."""
+    steps = np.repeat([0.0, 0.135191, 0.0, 0.045064, 0.228225, 0.0], [80, 90, 30, 20, 60, 70])
+    angles = np.cumsum(steps)
+    assert with_steps(of_urdf(urdf()), [angles, angles]).ticks is None
+
+
+def test_coarse_counts_at_one_speed_are_counts() -> None:
+    """Twenty counts a turn: none or one in a message, as it comes."""
+    counts = np.floor(np.arange(0.0, 100.0, 0.3))
+    found = with_steps(of_urdf(urdf()), [2.0 * math.pi * counts / 20.0] * 2)
+    assert found.ticks == 20.0
+
+
 def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -22,6 +22,9 @@ from werrimbi_odom.model.pose import Floats
 _LONGEST = 10_000_000
 """Characters of a URDF; robots with all their sensors have a hundredth of it."""
 _UNKNOWN_TICKS = 4096.0
+_OFTEN, _BY_ONE, _NEIGHBOURS = 0.05, 0.1, 5
+"""Share of messages with another number of counts than the one before, and of those with one more
+or less, from which on angles are counted; or so many numbers of counts that differ by one."""
 _AXLE = 0.9
 """Cosine between a wheel's axis and the robot's y axis, from which on it rolls forwards."""
 
@@ -302,13 +305,31 @@ def with_steps(first: FirstRobot, angles: Sequence[Floats]) -> FirstRobot:
     angles
         Of the left and the right wheel, shape (n,) each [rad].
     """
-    steps = _steps_of_a_turn(np.abs(np.concatenate([np.diff(each) for each in angles])))
+    moved = [np.diff(each) for each in angles]
+    steps = _steps_of_a_turn(np.abs(np.concatenate(moved)))
+    if steps is not None and not _is_counted(moved, 2.0 * math.pi / steps):
+        steps = None
     words = (
         "from the steps in which the joint angles come"
         if steps
         else "joint angles come without steps: so many are assumed"
     )
     return replace(first, ticks=steps, told={**(first.told or {}), "ticks": words})
+
+
+def _is_counted(moved: Sequence[Floats], quantum: float) -> bool:
+    """Whether steps are those of a counter, and not those of a few speeds that a simulator holds.
+
+    A wheel that turns evenly is counted one more or one less from message to message; over many
+    speeds, all numbers of counts occur.
+    """
+    counts = [np.rint(each[np.isfinite(each)] / quantum) for each in moved]
+    changes = np.concatenate([np.abs(np.diff(each)) for each in counts])
+    changed = changes[changes > 0.0]
+    by_one = float(np.mean(changed == 1.0)) if changed.size else 0.0
+    neighbours = np.diff(np.unique(np.abs(np.concatenate(counts)))) == 1.0
+    often = changed.size > _OFTEN * changes.size
+    return (often and by_one > _BY_ONE) or int(neighbours.sum()) >= _NEIGHBOURS
 
 
 def _steps_of_a_turn(steps: NDArray[np.float64]) -> float | None:
