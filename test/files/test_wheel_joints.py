@@ -131,3 +131,17 @@ def test_an_arm_in_a_urdf_moves_neither_base_nor_radius() -> None:
     robot = of_urdf(f'<robot name="r"><link name="base_link"/>{"".join(parts)}</robot>')
     assert (robot.left, robot.right) == (("left",), ("right",))
     assert (robot.separation, robot.radius) == (0.4, 0.1)
+
+
+def test_without_wheels_it_says_what_lacks_and_what_is_not_read(tmp_path: Path, ros: Any) -> None:
+    """Another reference would not help: no command is printed."""
+    entries = []
+    for n in range(1, 60):
+        entries.append(("/ticks", n, ("std_msgs/msg/Int32", ros.make("std_msgs/msg/Int32", n))))
+        entries.append(("/imu", n, ros.imu(10 * n * MS, 0.1)))
+        entries.append(("/mocap", n, ros.pose(10 * n * MS, 0.01 * n, 0.0, 0.0)))
+    result = wo.info(ros.write(tmp_path / "bag", entries))
+    said = " ".join(result.summary().split())
+    assert "By name /ticks (std_msgs/msg/Int32) may, but is of no type that is read." in said
+    assert "Record how the wheels turned as well" in said
+    assert result.to_dict()["next"] is None

@@ -16,7 +16,12 @@ from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.spans import Driven
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of
 from werrimbi_odom.report.document import Document, Paragraph, paragraphs
-from werrimbi_odom.report.info_wheels import no_wheels_words, rate_words, wheels_words
+from werrimbi_odom.report.info_wheels import (
+    WITHOUT_WHEELS,
+    no_wheels_words,
+    rate_words,
+    wheels_words,
+)
 from werrimbi_odom.report.numbers import TIME_OF_DAY, listed
 from werrimbi_odom.report.phrases import left_out_json, left_out_words
 
@@ -200,7 +205,9 @@ def _next(found: Info) -> tuple[str, str]:
 
 
 def _otherwise(found: Info) -> tuple[str, str]:
-    """Where nothing can be judged by what was taken: what else measures the robot, the first."""
+    """Where nothing can be judged by what was taken: what lacks, or what else may do."""
+    if all(held.contents is not None and held.wheels is None for held in found.held):
+        return WITHOUT_WHEELS, ""
     for held in found.held:
         if held.contents is None or held.reference is None:
             continue

@@ -16,19 +16,37 @@ _GIVES = {
     "velocities": "speeds of the wheels, which are integrated",
     "odometry": "the robot's own odometry, turned back into travel of its wheels",
 }
+_OF_WHEELS = ("wheel", "encoder", "tick", "motor", "odom", "joint")
+WITHOUT_WHEELS = (
+    "Record how the wheels turned as well: /joint_states with their angles, the driver's counters "
+    "(docs/recordings.md lists the types that are read), or at least its /odom."
+)
 
 
 def wheels_words(held: Held) -> str:
     """The topic, what it gives, and the wheels on each side."""
     wheels = held.wheels
     if wheels is None:
-        return "Wheels: nothing in the bag tells how they turned."
+        return f"Wheels: nothing that is read in the bag tells how they turned.{_unread(held)}"
     joints, told = held.joints, ""
     if joints.left:
         told = f", on the left {listed(joints.left)}, on the right {listed(joints.right)}"
     elif wheels.joints:
         told = f"; no name says which joint is a wheel: {listed(wheels.joints)}"
     return f"Wheels: {wheels.name}, {_GIVES[wheels.gives]}{rate_words(held, wheels.name)}{told}."
+
+
+def _unread(held: Held) -> str:
+    """Topics that by their names may tell it, and that are of no type that is read."""
+    assert held.contents is not None
+    known = {each.name for each in held.contents.references}
+    may = [
+        f"{each.name} ({each.kind})"
+        for each in held.contents.topics
+        if each.name not in known and any(word in each.name.lower() for word in _OF_WHEELS)
+    ]
+    verb = "is" if len(may) == 1 else "are"
+    return f" By name {listed(may)} may, but {verb} of no type that is read." if may else ""
 
 
 def no_wheels_words(joints: WheelJoints) -> Iterator[str]:
