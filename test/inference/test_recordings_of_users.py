@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from test.inference.driven import run_of, runs_of
-from test.model.drives import ROBOT
+from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.effects.collection import load_file
 from werrimbi_odom.files.evaluation import EvaluationOptions
-from werrimbi_odom.files.run import Run, Ticks
+from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.drafting import draft_effect
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.leg_errors import statistics
@@ -202,3 +202,24 @@ def test_a_radius_that_falls_with_speed_is_drafted_backwards_too(tmp_path: Path)
     assert (cell.name, found.form, cell.amount.per) == ("wheel_speed", "square", "travel")
     applied = found.fit.point.model.robot.effects[-1]
     assert applied.values["growth"] == pytest.approx(-0.08, rel=0.03)
+
+
+def test_a_gyro_without_noise_does_not_jump_where_a_model_errs() -> None:
+    """A simulator's: the robot stands for most of it, and trembles by a ten-thousandth of a degree
+    as it drives, which its wheels do not show.
+    """
+    rate, seconds = 50.0, 120.0
+    time = np.arange(0.0, seconds, 1.0 / rate)
+    speed = np.where((time > 50.0) & (time < 70.0), 0.15, 0.0)
+    yaw_rate = sum(
+        np.where((time > begin) & (time < begin + 0.4), 0.3, 0.0) for begin in (52.0, 57.0, 64.0)
+    )
+    ticks = read(as_turning(ROBOT, 1.1), rate, speed, yaw_rate)
+    trembles = np.random.default_rng(1).normal(0.0, 2e-6, time.size) * (speed > 0.0)
+    heading = np.cumsum(np.append(0.0, yaw_rate / rate + trembles))
+    nothing = np.full(heading.size, np.nan)
+    reference = Reference(ticks.time, nothing, nothing, heading, kind="incremental")
+    run = Run("run", Path("run"), Ticks(ticks.time, ticks.left, ticks.right, {}), reference)
+    options = EvaluationOptions(reference_kind="incremental", leg=0.25)
+    found = compare((run,), ROBOT, options).main.all
+    assert (found.outliers, found.figures.count) == (0, 12)
