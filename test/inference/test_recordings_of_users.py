@@ -205,9 +205,7 @@ def test_a_radius_that_falls_with_speed_is_drafted_backwards_too(tmp_path: Path)
 
 
 def test_a_gyro_without_noise_does_not_jump_where_a_model_errs() -> None:
-    """A simulator's: the robot stands for most of it, and trembles by a ten-thousandth of a degree
-    as it drives, which its wheels do not show.
-    """
+    """A simulator's: the robot stands for most of it, and trembles by little as it drives."""
     rate, seconds = 50.0, 120.0
     time = np.arange(0.0, seconds, 1.0 / rate)
     speed = np.where((time > 50.0) & (time < 70.0), 0.15, 0.0)

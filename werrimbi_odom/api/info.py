@@ -53,7 +53,8 @@ def info(
     InputError
         When a recording cannot be read at all, or a robot file cannot be written.
     """
-    from werrimbi_odom.report.info import document_of, info_json
+    from werrimbi_odom.report.info import document_of
+    from werrimbi_odom.report.info_json import info_json
 
     paths = [Path(each) for each in ([runs] if isinstance(runs, str | Path) else runs)]
     found = _look(paths, None if robot is None else Path(robot), ticks_topic, reference_topic)

@@ -108,15 +108,17 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
         else:
             cannot.append(f"{what}: {lacking}")
 
-    told(drive.turned >= TURN_SHOWS, "the base", "too little turning")
-    long = drive.turned >= TURN_SHOWS or drive.way >= WAY_SHOWS
-    told(long, "the ratio of the radii", "too little driving")
     far = measures in ("poses", "positions")
-    told(
-        far and drive.way >= WAY_SHOWS,
-        "the size of the radii",
-        "the way is too short" if far else "no heading tells a distance; tape one",
-    )
+    if sizes:  # else nobody knows how far it went, nor whether both wheels count forwards
+        told(drive.turned >= TURN_SHOWS, "the base", "too little turning")
+        long = drive.turned >= TURN_SHOWS or drive.way >= WAY_SHOWS
+        told(long, "the ratio of the radii", "too little driving")
+    if sizes or not far:
+        told(
+            far and drive.way >= WAY_SHOWS,
+            "the size of the radii",
+            "the way is too short" if far else "no heading tells a distance; tape one",
+        )
     told(
         far,
         "what goes sideways (slip, slope, how the reference is mounted)",

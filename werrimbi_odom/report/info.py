@@ -7,10 +7,9 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Iterator
-from dataclasses import asdict
 from typing import Any
 
-from werrimbi_odom.files.bag_contents import SCAN, Measured, Wheels
+from werrimbi_odom.files.bag_contents import SCAN
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.spans import Driven
@@ -23,7 +22,7 @@ from werrimbi_odom.report.info_wheels import (
     wheels_words,
 )
 from werrimbi_odom.report.numbers import TIME_OF_DAY, listed
-from werrimbi_odom.report.phrases import left_out_json, left_out_words
+from werrimbi_odom.report.phrases import left_out_words
 
 _MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"}
 _WANDERS = 0.1  # of stamps against receipt, from which on it is worth saying [s]
@@ -32,7 +31,7 @@ _WANDERS = 0.1  # of stamps against receipt, from which on it is worth saying [s
 def document_of(found: Info) -> Document:
     """Everything that is told."""
     words = [part for each in found.held for part in _of_one(each, found)]
-    step, command = _next(found)
+    step, command = next_step(found)
     words += [Paragraph(step, apart=True), *([Paragraph(command, "command")] if command else [])]
     return Document(title="What the recordings hold", words=words)
 
@@ -75,6 +74,8 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
     if can:
         yield f"It can show {listed(can)}."
     yield from (f"It cannot show {each}." for each in cannot)
+    if held.driven is not None and not found.sizes and measures_of(held) != "nothing":
+        yield "Whether it can show base and radii is told once their sizes are known."
 
 
 def _references(held: Held) -> Iterator[str]:
@@ -184,7 +185,7 @@ def _driven(held: Held, drive: Driven, sizes: bool) -> str:
     return f"In {whole:.1f} s the robot {listed(told) if told else 'did nothing'}.{way}"
 
 
-def _next(found: Info) -> tuple[str, str]:
+def next_step(found: Info) -> tuple[str, str]:
     """The next step, and its command; "" where it has none."""
     usable = [each for each in found.held if not each.problem and each.run is not None]
     if not usable:
@@ -234,74 +235,3 @@ def command_of(found: Info) -> str:
     if held.contents is not None and held.wheels is not None and held.reference is not None:
         words += ["--ticks-topic", held.wheels.name, "--reference-topic", held.reference.name]
     return shlex.join([*words, *paths])
-
-
-def info_json(found: Info) -> dict[str, Any]:
-    """For programs; times in each run's own clock [s]."""
-    robot = found.given or found.written
-    return {
-        "runs": [_json_of(each, found) for each in found.held],
-        "robot": None if robot is None else str(robot),
-        "first_robot": {
-            "wheel_radius": found.first.radius,
-            "wheel_separation": found.first.separation,
-            "ticks_per_revolution": found.first.ticks,
-            "left_wheel_names": list(found.first.left),
-            "right_wheel_names": list(found.first.right),
-        }
-        if found.given is None
-        else None,
-        "next": _next(found)[1] or None,
-    }
-
-
-def _json_of(held: Held, found: Info) -> dict[str, Any]:
-    contents, drive = held.contents, held.driven
-    can, cannot = can_tell(held, found.sizes)
-    return {
-        "run": str(held.path),
-        "problem": held.problem or None,
-        "wheels": []
-        if contents is None
-        else [
-            {"topic": each.name, "type": each.kind, "gives": each.gives, "joints": each.joints}
-            | {"messages": each.messages, "taken": each.name == _name(held.wheels)}
-            for each in contents.wheels
-        ],
-        "wheel_joints": {"left": held.joints.left, "right": held.joints.right}
-        | {"no_wheels": held.joints.others},
-        "references": [_reference(each, held) for each in contents.references]
-        if contents is not None
-        else [{"topic": "reference.csv", "measures": measures_of(held), "taken": True}],
-        "stamps": {
-            name: asdict(each) | {"believed": each.believed} for name, each in held.stamps.items()
-        },
-        "spans": [
-            {"from_s": span.begin, "to_s": span.end, "what": span.what} for span in drive.spans
-        ]
-        if drive is not None
-        else [],
-        "distance_m": drive.way if drive is not None and found.sizes else None,
-        "turned_rad": drive.turned if drive is not None and found.sizes else None,
-        "left_out": left_out_json(held.left_out),
-        "restamped_s": held.restamped,
-        "scans_restamped_s": held.scans_restamped,
-        "can_show": can,
-        "cannot_show": cannot,
-    }
-
-
-def _name(wheels: Wheels | None) -> str:
-    return "" if wheels is None else wheels.name
-
-
-def _reference(each: Measured, held: Held) -> dict[str, Any]:
-    return {
-        "topic": each.name,
-        "type": each.kind,
-        "measures": each.measures,
-        "independent": each.independent,
-        "why": each.why,
-        "messages": each.messages,
-        "taken": each == held.reference,
-    }
