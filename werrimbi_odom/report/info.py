@@ -85,9 +85,12 @@ def _references(held: Held) -> Iterator[str]:
         kind = f"{each.name}: {_MEASURES[each.measures]}{rate_words(held, each.name)}"
         if each.independent:
             yield f"Reference {kind} ({each.why}).{taken}"
-            if taken and each.kind == SCAN and held.run is not None:
+            if taken and held.run is not None:
                 yield from (
-                    f"R{note[1:]}." for note in held.run.notes if note.startswith("reference ")
+                    f"R{note[1:]}."
+                    for note in held.run.notes
+                    if note.startswith("reference ")
+                    and (each.kind == SCAN or "accelerometer" in note)
                 )
         else:
             yield f"No reference: {each.name}, {each.why}."
