@@ -29,6 +29,7 @@ from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.rules import DRIFT_LEGS
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, strength_words
 
 
@@ -219,5 +220,8 @@ def test_a_gyro_without_noise_does_not_jump_where_a_model_errs() -> None:
     reference = Reference(ticks.time, nothing, nothing, heading, kind="incremental")
     run = Run("run", Path("run"), Ticks(ticks.time, ticks.left, ticks.right, {}), reference)
     options = EvaluationOptions(reference_kind="incremental", leg=0.25)
-    found = compare((run,), ROBOT, options).main.all
+    compared = compare((run,), ROBOT, options)
+    found = compared.main.all
     assert (found.outliers, found.figures.count) == (0, 12)
+    said = [part.text for part in words_of(compared)]
+    assert any("noise (headings alone) is too small to tell" in text for text in said)

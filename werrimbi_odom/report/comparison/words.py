@@ -196,6 +196,9 @@ def _run_told(comparison: Comparison, index: int) -> str:
     )
 
 
+_NO_NOISE = 1e-7  # rad; no gyro has so little, and digits of it would be those of a remainder
+
+
 def _reference(comparison: Comparison) -> list[str]:
     lines = []
     each = "interval" if comparison.prepared.options.reference_kind == "incremental" else "pose"
@@ -214,6 +217,12 @@ def _reference(comparison: Comparison) -> list[str]:
             "given": "as given",
         }.get(told, told)
         what = {"pose": "", "position": " (positions alone)", "heading": " (headings alone)"}
+        if measure == "heading" and told == "estimated" and noise.sigma_yaw < _NO_NOISE:
+            lines.append(
+                "The reference's own noise (headings alone) is too small to tell: its small "
+                "differences scatter no more than reading the counters makes."
+            )
+            continue
         lines.append(f"The reference's own noise{what[measure]}, {values} each {each}, is {how}.")
         if wanders:
             lines[-1] += (
