@@ -225,3 +225,38 @@ def test_a_gyro_without_noise_does_not_jump_where_a_model_errs() -> None:
     assert (found.outliers, found.figures.count) == (0, 12)
     said = [part.text for part in words_of(compared)]
     assert any("noise (headings alone) is too small to tell" in text for text in said)
+
+
+def by_gps(noise: float, stated: bool = True) -> Run:
+    """Six minutes of a sound robot, seen by satellites twice a second."""
+    run = run_of(ROBOT, 5, 360)
+    reference = run.reference
+    assert reference is not None
+    random = np.random.default_rng(5)
+    size = reference.time.size
+    x, y = (part + random.normal(0.0, noise, size) for part in (reference.x, reference.y))
+    sigma = np.full(size, noise) if stated else None
+    seen = replace(reference, x=x, y=y, yaw=np.full(size, np.nan), sigma_xy=sigma)
+    return replace(run, reference=seen.chosen(np.arange(size) % 2 == 0))
+
+
+def test_legs_that_are_shorter_than_gps_errs_say_nothing_of_the_robot() -> None:
+    """It was grossly wrong, and went backward where the model says forward."""
+    compared = compare((by_gps(0.9),), ROBOT, EvaluationOptions(leg=1.0))
+    said = [part.text for part in words_of(compared)]
+    assert said[0].startswith("Legs of 1 m are too short for this reference")
+    assert said[0].endswith("Try --leg 9.")
+    assert not any("grossly" in text or "backward" in text for text in said)
+
+
+@pytest.mark.parametrize("leg", [9.0, 20.0])
+def test_a_sound_robot_before_gps_is_not_grossly_wrong(leg: float) -> None:
+    compared = compare((by_gps(0.9),), ROBOT, EvaluationOptions(leg=leg))
+    assert "grossly" not in words_of(compared)[0].text
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_a_robot_of_half_or_twice_the_radius_is_grossly_wrong_before_gps_too(factor: float) -> None:
+    wrong = replace(ROBOT, wheel_radius=factor * ROBOT.wheel_radius)
+    compared = compare((by_gps(0.1),), wrong, EvaluationOptions(leg=1.0))
+    assert "grossly" in words_of(compared)[0].text

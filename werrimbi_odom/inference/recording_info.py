@@ -4,9 +4,12 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
+
+import numpy as np
 
 from werrimbi_odom.files.bag_contents import Contents, Measured, Wheels
 from werrimbi_odom.files.first_robot import FirstRobot
@@ -17,6 +20,7 @@ from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.spans import Driven
 from werrimbi_odom.inference.rules import (
     FEWEST_LEGS,
+    LEG_OF_POSITIONS,
     LEGS_ENOUGH,
     QUARTER_TURN,
     SHORT_LEG,
@@ -78,8 +82,27 @@ class Info:
 
     @property
     def leg(self) -> float:
-        """Length of a leg that the drives are long enough for [m]."""
+        """Length of a leg that the drives are long enough for, and the reference good [m]."""
+        longer = max((_needed(each) for each in self.held), default=0.0)
+        if longer > 1.0:
+            return longer
         return SHORT_LEG if self.sizes and self.legs < LEGS_ENOUGH else 1.0
+
+
+def leg_of_positions(noise: float) -> float:
+    """Length of a leg whose chord is a heading, by positions of some noise [m], to one digit."""
+    least = LEG_OF_POSITIONS * noise
+    digit = 10.0 ** math.floor(math.log10(least))
+    return float(f"{math.ceil(round(least / digit, 6)) * digit:g}")
+
+
+def _needed(held: Held) -> float:
+    """Length of a leg that positions alone need, by the noise that they state [m]."""
+    reference = held.run.reference if held.run is not None else None
+    if reference is None or reference.sigma_xy is None or measures_of(held) != "positions":
+        return 0.0
+    noise = float(np.nanmedian(reference.sigma_xy))
+    return leg_of_positions(noise) if noise > 0.0 else 0.0
 
 
 def measures_of(held: Held) -> Literal["poses", "positions", "yaw", "nothing"]:

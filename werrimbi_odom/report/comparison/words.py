@@ -10,6 +10,7 @@ from werrimbi_odom.inference.calibration_sizes import skidding
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
 from werrimbi_odom.inference.comparison.reference_noise import Measure
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
+from werrimbi_odom.inference.recording_info import leg_of_positions
 from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
 from werrimbi_odom.report.document import Paragraph, paragraphs
@@ -58,6 +59,13 @@ def words_of(
 def headline(comparison: Comparison, verdict: Verdict) -> str:
     """Whether the model is good, in a sentence."""
     count = comparison.main.all.figures.count
+    if verdict.too_short:
+        longer = leg_of_positions(verdict.too_short)
+        return (
+            f"Legs of {comparison.main.leg:g} m are too short for this reference: its positions "
+            f"err by {two_digits(1e3 * verdict.too_short)} mm each, and that is what is seen. Try "
+            f"--leg {longer:g}."
+        )
     if not verdict.enough:
         return (
             f"Too little to judge: {counted(count, 'leg')} of "
