@@ -60,6 +60,21 @@ def test_an_accelerometer_that_says_nothing_is_not_asked(force: tuple[float, ...
     assert words == ""
 
 
+def test_a_gyro_of_one_axis_is_read(tmp_path: Path, ros: Any, robot: MakeRobot) -> None:
+    """Its driver leaves x and y unsaid."""
+    names = ["left_wheel_joint", "right_wheel_joint"]
+    entries = []
+    for n in range(1, 100):
+        kind, message = ros.imu(20 * n * MS, 0.5)
+        message.angular_velocity = ros.make("geometry_msgs/msg/Vector3", math.nan, math.nan, 0.5)
+        entries.append(("/imu", 20 * n * MS, (kind, message)))
+        joints = ros.joints(20 * n * MS, names, [0.1 * n, 0.1 * n])
+        entries.append(("/joint_states", 20 * n * MS, joints))
+    run = read_run(ros.write(tmp_path / "bag", entries), robot(), reference_topic="/imu")
+    assert run.reference is not None
+    assert run.reference.yaw[-1] == pytest.approx(0.5 * 0.02 * 98)
+
+
 def test_in_a_bag_it_is_read_so_and_said(tmp_path: Path, ros: Any, robot: MakeRobot) -> None:
     rate, rates, forces = mounted(np.array([0.0, 1.0, 0.0]))
     entries = []

@@ -164,9 +164,11 @@ def _transform(message: Message, content: Any) -> _Row:
 def _of_imu(message: Message) -> Iterator[_Row]:
     """Rates about x, y and z stand in a pose's place until it is known which way is up."""
     turning = message.content.angular_velocity
-    rates = float(turning.x), float(turning.y), float(turning.z)
+    # Gyros of one axis leave the others unsaid.
+    x, y = (each if math.isfinite(each) else 0.0 for each in (float(turning.x), float(turning.y)))
+    rates = x, y, float(turning.z)
     unknown = float(message.content.angular_velocity_covariance[0]) == -1.0
-    if not unknown and all(map(math.isfinite, rates)):
+    if not unknown and math.isfinite(rates[2]):
         name = frame(message.content.header.frame_id)
         yield _Row(("", name), (stamp_of(message), *rates, NAN, NAN))
 
