@@ -5,14 +5,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
 import werrimbi_odom as wo
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import opened_bag
 from werrimbi_odom.files.first_robot import of_urdf
 from werrimbi_odom.files.wheel_joints import joints_told_apart, turned_joints
@@ -93,6 +95,21 @@ def test_speeds_alone_are_integrated(tmp_path: Path, ros: Any) -> None:
         assert turned_joints(bag, "/joint_states") == pytest.approx(
             {WHEELS[1]: 19.9, WHEELS[2]: 0.0}
         )
+
+
+def test_a_message_that_cannot_be_read_ends_the_look_and_raises_nothing() -> None:
+    """Who reads the wheels afterwards tells of it, with topic and type."""
+
+    class Spoilt:
+        def messages(self, topics: list[str]) -> Iterator[Any]:
+            stamp = SimpleNamespace(sec=1, nanosec=0)
+            header = SimpleNamespace(stamp=stamp)
+            for angle in (0.0, 9.0):
+                content = SimpleNamespace(header=header, name=["a"], position=[angle], velocity=[])
+                yield SimpleNamespace(content=content, received=1)
+            raise InputError(f"a message of {topics[0]} cannot be read")
+
+    assert turned_joints(Spoilt(), "/joint_states") == {"a": 9.0}  # type: ignore[arg-type]
 
 
 def test_info_lists_wheels_and_says_what_is_none(tmp_path: Path, ros: Any) -> None:

@@ -6,11 +6,13 @@ from __future__ import annotations
 
 from array import array
 from collections.abc import Sequence
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import stamp_of
 from werrimbi_odom.files.made_from_wheels import ODOMETRY, names_a_sensor
 
@@ -47,9 +49,10 @@ def copies(bag: Bag, references: Sequence[Measured]) -> dict[str, str]:
         return {}
     kinds = {each.name: each.kind for each in there}
     rows: dict[str, array[float]] = {name: array("d") for name in (*own, *others)}
-    for message in bag.messages([*own, *others]):
-        place: Any = _POSES[kinds[message.topic]](message.content)
-        rows[message.topic].extend((stamp_of(message), float(place.x), float(place.y)))
+    with suppress(InputError):  # of a message that cannot be read whoever reads the topic tells
+        for message in bag.messages([*own, *others]):
+            place: Any = _POSES[kinds[message.topic]](message.content)
+            rows[message.topic].extend((stamp_of(message), float(place.x), float(place.y)))
     paths = {name: np.array(values).reshape(-1, 3) for name, values in rows.items()}
     found = {}
     for name in others:

@@ -12,11 +12,13 @@ import math
 import re
 from array import array
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import stamp_of
 from werrimbi_odom.model.pose import Floats
 
@@ -122,19 +124,21 @@ def is_of(name: str, side: str) -> bool:
 def turned_joints(bag: Bag, topic: str) -> dict[str, float]:
     """How far each joint of a topic got from where it had been, at the most [rad].
 
-    All messages are asked, for several nodes may send to one topic, each its own joints. Where
-    there are speeds alone they are integrated.
+    All messages are asked, for several nodes may send to one topic, each its own joints; up to one
+    that cannot be read, of which whoever reads the wheels will tell. Where there are speeds alone
+    they are integrated.
     """
     angles: dict[str, _Values] = {}
     speeds: dict[str, _Values] = {}
-    for message in bag.messages([topic]):
-        content = message.content
-        time = stamp_of(message)
-        for found, values in ((angles, content.position), (speeds, content.velocity)):
-            for name, value in zip(content.name, values, strict=False):
-                found.setdefault(name, _Values()).add(time, float(value))
-        for name in content.name:
-            angles.setdefault(name, _Values())
+    with suppress(InputError):
+        for message in bag.messages([topic]):
+            content = message.content
+            time = stamp_of(message)
+            for found, values in ((angles, content.position), (speeds, content.velocity)):
+                for name, value in zip(content.name, values, strict=False):
+                    found.setdefault(name, _Values()).add(time, float(value))
+            for name in content.name:
+                angles.setdefault(name, _Values())
     return {
         name: _range(each.values) or (_integrated(speeds[name]) if name in speeds else 0.0)
         for name, each in angles.items()
