@@ -249,6 +249,34 @@ def test_steps_of_the_angles_tell_the_counts_of_a_turn(ticks: int) -> None:
     assert with_steps(first, [smooth, smooth]).ticks is None
 
 
+def test_without_sizes_nothing_is_claimed_of_base_and_radii(tmp_path: Path) -> None:
+    """A drive without a turn; by a size that nobody gave it would be any number of turns."""
+    ros = Messages()
+    entries = []
+    for n in range(600):
+        stamp = (DAY * 10 + n) * 10**8
+        entries.append(("/joint_states", stamp, ros.joints(stamp, JOINTS, [0.2 * n, -0.2 * n])))
+        entries.append(("/pose", stamp, ros.pose(stamp, 0.01 * n, 0.0, 0.0)))
+    said = " ".join(wo.info(ros.write(tmp_path / "bag", entries)).summary().split())
+    assert "show the base" not in said
+    assert "show the ratio" not in said
+    assert "Whether it can show base and radii is told once their sizes are known." in said
+
+
+def test_the_speeds_of_a_simulator_are_no_counts() -> None:
+    """Without inertia a robot holds three speeds, and turns the same in each message."""
+    steps = np.repeat([0.0, 0.135191, 0.0, 0.045064, 0.228225, 0.0], [80, 90, 30, 20, 60, 70])
+    angles = np.cumsum(steps)
+    assert with_steps(of_urdf(urdf()), [angles, angles]).ticks is None
+
+
+def test_coarse_counts_at_one_speed_are_counts() -> None:
+    """Twenty counts a turn: none or one in a message, as it comes."""
+    counts = np.floor(np.arange(0.0, 100.0, 0.3))
+    found = with_steps(of_urdf(urdf()), [2.0 * math.pi * counts / 20.0] * 2)
+    assert found.ticks == 20.0
+
+
 def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -272,7 +300,9 @@ def test_where_the_scans_are_of_no_use_the_gyro_is_the_next(
     printed = capsys.readouterr().out
     assert "By /scan nothing can be judged" in " ".join(printed.split())
     assert main(shlex.split(printed.splitlines()[-1].strip())[1:]) == 0
-    assert "It can show the base" in " ".join(capsys.readouterr().out.split())
+    said = " ".join(capsys.readouterr().out.split())
+    assert "its yaw rate is integrated). It is taken." in said
+    assert "It can show what happens at reversals" in said
 
 
 def test_a_cloud_of_points_is_told_with_what_makes_a_reference_of_it(

@@ -61,8 +61,9 @@ def test_what_the_odometry_carries_on_comes_after_what_was_seen(tmp_path: Path, 
     entries = []
     for n in range(1, 60):
         entries.append(("/odom", n, ros.odometry(n * MS, 0.1 * n, 0.0, 0.0)))
-        entries.append(("/marker_pose_continuous", n, ros.pose(n * MS, 0.1 * n, 0.0, 0.0)))
-        entries.append(("/marker_pose", n, ros.pose(n * MS + 7, 0.1 * n, 0.0, 0.0)))
+        seen = 0.1 * n, 0.001 * n * n, 0.0
+        entries.append(("/marker_pose_continuous", n, ros.pose(n * MS, *seen)))
+        entries.append(("/marker_pose", n, ros.pose(n * MS + 7, *seen)))
     held = contents(ros.write(tmp_path / "bag", entries))
     assert [each.name for each in held.independent] == ["/marker_pose", "/marker_pose_continuous"]
     seen, carried_on = held.independent
@@ -111,3 +112,92 @@ def test_speeds_alone_are_told_from_angles(tmp_path: Path, ros: Any) -> None:
 )
 def test_names(topic: str, kind: str, parent: str, child: str, from_wheels: bool) -> None:
     assert bool(why_from_wheels(topic, kind, parent, child)) is from_wheels
+
+
+def turning(ros: Any, other: str, apart: float, drift: float) -> list[Any]:
+    """Odometry of a curved way, and of the same under another name, laid elsewhere and turned."""
+    entries = []
+    for n in range(1, 200):
+        time, heading = 20 * n * MS, 0.02 * n
+        pose = 2.0 * np.sin(heading), 2.0 - 2.0 * np.cos(heading), heading
+        entries.append(("/odom", time, ros.odometry(time, *pose)))
+        seen = complex(*pose[:2]) * np.exp(1j * (0.7 + drift * n)) + (3.0 - 1.0j)
+        stamp = time + round(apart * MS)
+        entries.append((other, time + 1, ros.pose(stamp, seen.real, seen.imag, heading)))
+    return entries
+
+
+@pytest.mark.parametrize("apart", [0.0, 7.0])
+def test_odometry_under_another_name_is_no_reference(
+    tmp_path: Path, ros: Any, apart: float
+) -> None:
+    """A simulator's plugin sends the wheels' odometry once more; its name tells nothing."""
+    entries = turning(ros, "/gazebo_odom", 0.0, 0.0)
+    if apart:  # sent between the others: as far on as it was then
+        entries = [
+            each if each[0] == "/odom" else (*each[:2], between(ros, each[2], apart))
+            for each in entries
+        ]
+    held = contents(ros.write(tmp_path / "bag", entries))
+    assert held.independent == ()
+    copied = next(each for each in held.references if each.name == "/gazebo_odom")
+    assert copied.why.startswith("the same poses as /odom, and odom -> base_link is the robot's")
+
+
+def between(ros: Any, sent: tuple[str, Any], apart: float) -> tuple[str, Any]:
+    """The same path, so many milliseconds later."""
+    stamp = sent[1].header.stamp.sec * 10**9 + sent[1].header.stamp.nanosec + round(apart * MS)
+    heading = 0.001 * stamp / MS
+    place = complex(2.0 * np.sin(heading), 2.0 - 2.0 * np.cos(heading)) * np.exp(0.7j)
+    return ros.pose(stamp, place.real + 3.0, place.imag - 1.0, heading)
+
+
+@pytest.mark.parametrize("name", ["/gazebo_odom", "/robot_pose"])
+def test_what_drifts_from_the_odometry_is_a_reference(tmp_path: Path, ros: Any, name: str) -> None:
+    """By a hundredth of a degree in each message."""
+    held = contents(ros.write(tmp_path / "bag", turning(ros, name, 0.0, 0.0002)))
+    assert [each.name for each in held.independent] == [name]
+
+
+def test_a_sensors_poses_that_are_sent_on_as_odometry_too_are_its_own(
+    tmp_path: Path, ros: Any
+) -> None:
+    """A scan matcher's: what is on /odom is not made from wheels then."""
+    held = contents(ros.write(tmp_path / "bag", turning(ros, "/odom_rf2o", 0.0, 0.0)))
+    assert [each.name for each in held.independent] == ["/odom_rf2o"]
+
+
+def test_the_joints_of_the_robot_are_no_references(tmp_path: Path, ros: Any) -> None:
+    """A robot_state_publisher tells where wheels and arm are on the robot; no odometry is sent."""
+    joints = (("base_link", "left_wheel"), ("base_link", "lift"), ("upper_arm", "forearm"))
+    entries = []
+    for n in range(1, 50):
+        turned = [
+            ros.transform(n * MS, joints[0], 0.0, 0.3, 0.01 * n),
+            ros.transform(n * MS, joints[1], 0.001 * n, 0.0, 0.0),
+            ros.transform(n * MS, joints[2], 0.2, 0.0, 0.01 * n),
+        ]
+        entries.append(("/tf", n, ros.transforms(*turned)))
+    assert contents(ros.write(tmp_path / "bag", entries)).references == ()
+
+
+def test_a_tracker_without_a_base_is_still_a_reference(tmp_path: Path, ros: Any) -> None:
+    entries = [
+        ("/tf", n, ros.transforms(ros.transform(n * MS, ("world", "rigid_body_1"), 0.1 * n, 0, 0)))
+        for n in range(1, 50)
+    ]
+    held = contents(ros.write(tmp_path / "bag", entries))
+    assert [each.name for each in held.independent] == ["/tf:world:rigid_body_1"]
+
+
+def test_what_moves_within_the_robot_is_no_measurement(tmp_path: Path, ros: Any) -> None:
+    """Map and odom stand for nothing, and the pose is sent between two frames of the base."""
+    entries = []
+    for n in range(1, 50):
+        sent = [
+            ros.transform(n * MS, ("map", "odom"), 0.0, 0.0, 0.0),
+            ros.transform(n * MS, ("odom", "base_footprint"), 0.0, 0.0, 0.0),
+            ros.transform(n * MS, ("base_footprint", "base_link"), 0.1 * n, 0.0, 0.0),
+        ]
+        entries.append(("/tf", n, ros.transforms(*sent)))
+    assert contents(ros.write(tmp_path / "bag", entries)).independent == ()

@@ -73,6 +73,47 @@ def test_what_was_measured_is_never_refused(seed: int, noise: float) -> None:
         assert refuse_circle(measured, ROBOT) == ""
 
 
+def unrounded(seed: int) -> tuple[Run, np.ndarray]:
+    """Angles as a simulator has them, without counts, and the true poses between their stamps."""
+    time, left, right, x, y, yaw = driven(seed)
+    every = slice(None, None, 10)
+    seen = np.arange(0.013, 59.0, 0.1)
+    truth = np.stack([np.interp(seen, time, each) for each in (x, y, yaw)])
+    ticks = Ticks(time[every], left[every], right[every])
+    return Run("run", Path("run"), ticks, Reference(seen, *truth)), truth
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("robot", [ROBOT, OTHER])
+def test_odometry_from_angles_without_counts_is_refused_by_its_numbers(
+    seed: int, robot: Robot
+) -> None:
+    """Whatever its topic is called: a reference.csv has no name at all."""
+    run, _ = unrounded(seed)
+    odometry = own_odometry(run, robot)
+    between = np.arange(0.007, 59.0, 0.033)
+    parts = (odometry.x, odometry.y, odometry.yaw)
+    sent = Reference(between, *(np.interp(between, odometry.time, part) for part in parts))
+    for reference in (odometry, odometry.chosen(np.arange(odometry.time.size) % 3 == 1), sent):
+        circle = replace(run, reference=reference)
+        with pytest.raises(InputError, match="closer than anything measures"):
+            refuse_circle(circle, ROBOT)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("noise", [0.0002, 0.001, 0.01])
+def test_what_was_measured_of_angles_without_counts_is_never_refused(
+    seed: int, noise: float
+) -> None:
+    run, truth = unrounded(seed)
+    rng = np.random.default_rng(seed)
+    assert run.reference is not None
+    x, y = (each + rng.normal(0.0, noise, each.size) for each in truth[:2])
+    for yaw in (truth[2], np.full(x.size, np.nan)):
+        measured = replace(run, reference=Reference(run.reference.time, x, y, yaw))
+        assert refuse_circle(measured, ROBOT) == ""
+
+
 def test_a_filter_is_refused_by_its_name_and_by_being_close() -> None:
     """It lags by two messages, by more or less, and has the heading of a gyro."""
     run, _ = recorded(5)

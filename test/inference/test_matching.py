@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from test.model.drives import ROBOT
+from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.fitting.prediction import predict
 from werrimbi_odom.inference.legs.cutting import (
@@ -19,9 +21,11 @@ from werrimbi_odom.inference.legs.cutting import (
     cut_finely,
     divided,
     every_pose,
+    match,
     record_of,
 )
 from werrimbi_odom.inference.rules import RATE_OF_FIT
+from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 
 
@@ -92,3 +96,18 @@ def test_a_fit_takes_fast_messages_together_and_its_legs_stay(hertz: float, toge
     shown, plainly = (predict(ROBOT, run, None).relative for run in (found, every))
     assert np.abs(shown - plainly)[:, :2].max() < 2e-5
     assert np.abs(shown - plainly)[:, 2].max() < 1e-9
+
+
+def test_legs_are_as_long_as_the_way_of_a_robot_whose_wheel_counts_backwards() -> None:
+    """By its counters alone it spins; what the file says of them is heard."""
+    time = np.arange(0.0, 40.0, 0.05)
+    counts = 0.15 * time / ROBOT.left_tick
+    seen = np.arange(0.0, 39.9, 0.1)
+    reference = Reference(seen, 0.15 * seen, np.zeros(seen.size), np.zeros(seen.size))
+    reversed_one = AppliedEffect(find("right_wheel_reversed"), {})
+    robots = ROBOT, replace(ROBOT, effects=(reversed_one,))
+    legs = []
+    for robot, right in zip(robots, (counts, -counts), strict=True):
+        run = Run("run", Path("run"), Ticks(time, counts, right, {}), reference)
+        legs.append(match(run, robot, 0.25).rows.size - 1)
+    assert legs[0] == legs[1] == pytest.approx(0.15 * 39.8 / 0.25, abs=1.0)

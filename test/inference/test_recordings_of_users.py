@@ -11,11 +11,11 @@ import numpy as np
 import pytest
 
 from test.inference.driven import run_of, runs_of
-from test.model.drives import ROBOT
+from test.model.drives import ROBOT, read
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.effects.collection import load_file
 from werrimbi_odom.files.evaluation import EvaluationOptions
-from werrimbi_odom.files.run import Run, Ticks
+from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.adding.drafting import draft_effect
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.leg_errors import statistics
@@ -29,6 +29,7 @@ from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.rules import DRIFT_LEGS
 from werrimbi_odom.inference.set_up.search import look_for_mistakes
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, strength_words
 
 
@@ -202,3 +203,60 @@ def test_a_radius_that_falls_with_speed_is_drafted_backwards_too(tmp_path: Path)
     assert (cell.name, found.form, cell.amount.per) == ("wheel_speed", "square", "travel")
     applied = found.fit.point.model.robot.effects[-1]
     assert applied.values["growth"] == pytest.approx(-0.08, rel=0.03)
+
+
+def test_a_gyro_without_noise_does_not_jump_where_a_model_errs() -> None:
+    """A simulator's: the robot stands for most of it, and trembles by little as it drives."""
+    rate, seconds = 50.0, 120.0
+    time = np.arange(0.0, seconds, 1.0 / rate)
+    speed = np.where((time > 50.0) & (time < 70.0), 0.15, 0.0)
+    yaw_rate = sum(
+        np.where((time > begin) & (time < begin + 0.4), 0.3, 0.0) for begin in (52.0, 57.0, 64.0)
+    )
+    ticks = read(as_turning(ROBOT, 1.1), rate, speed, yaw_rate)
+    trembles = np.random.default_rng(1).normal(0.0, 2e-6, time.size) * (speed > 0.0)
+    heading = np.cumsum(np.append(0.0, yaw_rate / rate + trembles))
+    nothing = np.full(heading.size, np.nan)
+    reference = Reference(ticks.time, nothing, nothing, heading, kind="incremental")
+    run = Run("run", Path("run"), Ticks(ticks.time, ticks.left, ticks.right, {}), reference)
+    options = EvaluationOptions(reference_kind="incremental", leg=0.25)
+    compared = compare((run,), ROBOT, options)
+    found = compared.main.all
+    assert (found.outliers, found.figures.count) == (0, 12)
+    said = [part.text for part in words_of(compared)]
+    assert any("noise (headings alone) is too small to tell" in text for text in said)
+
+
+def by_gps(noise: float, stated: bool = True) -> Run:
+    """Six minutes of a sound robot, seen by satellites twice a second."""
+    run = run_of(ROBOT, 5, 360)
+    reference = run.reference
+    assert reference is not None
+    random = np.random.default_rng(5)
+    size = reference.time.size
+    x, y = (part + random.normal(0.0, noise, size) for part in (reference.x, reference.y))
+    sigma = np.full(size, noise) if stated else None
+    seen = replace(reference, x=x, y=y, yaw=np.full(size, np.nan), sigma_xy=sigma)
+    return replace(run, reference=seen.chosen(np.arange(size) % 2 == 0))
+
+
+def test_legs_that_are_shorter_than_gps_errs_say_nothing_of_the_robot() -> None:
+    """It was grossly wrong, and went backward where the model says forward."""
+    compared = compare((by_gps(0.9),), ROBOT, EvaluationOptions(leg=1.0))
+    said = [part.text for part in words_of(compared)]
+    assert said[0].startswith("Legs of 1 m are too short for this reference")
+    assert said[0].endswith("Try --leg 9.")
+    assert not any("grossly" in text or "backward" in text for text in said)
+
+
+@pytest.mark.parametrize("leg", [9.0, 20.0])
+def test_a_sound_robot_before_gps_is_not_grossly_wrong(leg: float) -> None:
+    compared = compare((by_gps(0.9),), ROBOT, EvaluationOptions(leg=leg))
+    assert "grossly" not in words_of(compared)[0].text
+
+
+@pytest.mark.parametrize("factor", [0.5, 2.0])
+def test_a_robot_of_half_or_twice_the_radius_is_grossly_wrong_before_gps_too(factor: float) -> None:
+    wrong = replace(ROBOT, wheel_radius=factor * ROBOT.wheel_radius)
+    compared = compare((by_gps(0.1),), wrong, EvaluationOptions(leg=1.0))
+    assert "grossly" in words_of(compared)[0].text

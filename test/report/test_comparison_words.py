@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 import re
 from itertools import pairwise
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -22,6 +23,7 @@ from werrimbi_odom.inference.comparison.consistency import (
 from werrimbi_odom.inference.comparison.systematic import NoiseFactor, Systematic
 from werrimbi_odom.inference.comparison.verdict import Noise, Verdict
 from werrimbi_odom.inference.rules import FEWEST_LEGS, HONEST_CHANCE, HONEST_WITHIN
+from werrimbi_odom.report.adding.words import _rest
 from werrimbi_odom.report.comparison.phrases import covariance_words
 from werrimbi_odom.report.numbers import from_start
 
@@ -142,3 +144,21 @@ def test_a_covariance_is_honest_only_where_it_is_so_at_every_length() -> None:
     assert of_all([*good, AtLength(16.0, 100, 28.8, 300)]) == "too small"
     assert of_all([*good, AtLength(16.0, FEWEST_LEGS - 1, 28.8, 27)]) == "honest"
     assert of_all([]) == "unknown"
+
+
+def test_what_is_still_missing_is_told_in_words_and_not_by_a_variables_name() -> None:
+    cell = SimpleNamespace(
+        amount=SimpleNamespace(channel="along", per="travel"),
+        variable=SimpleNamespace(name="yaw_rate_size"),
+        p_value=4e-16,
+    )
+    figures = SimpleNamespace(nees=10.96)
+    added = SimpleNamespace(
+        verdict=None,
+        compared=SimpleNamespace(main=SimpleNamespace(all=SimpleNamespace(figures=figures))),
+        misfit=SimpleNamespace(cell=cell, only_in=None, effect=None),
+    )
+    assert _rest(added) == (  # type: ignore[arg-type]
+        "Something is still missing: how far both wheels roll goes with the size of the rate of "
+        "turning (p = 4e-16; NEES 10.96, honest is 1)."
+    )

@@ -53,7 +53,8 @@ def info(
     InputError
         When a recording cannot be read at all, or a robot file cannot be written.
     """
-    from werrimbi_odom.report.info import document_of, info_json
+    from werrimbi_odom.report.info import document_of
+    from werrimbi_odom.report.info_json import info_json
 
     paths = [Path(each) for each in ([runs] if isinstance(runs, str | Path) else runs)]
     found = _look(paths, None if robot is None else Path(robot), ticks_topic, reference_topic)
@@ -129,37 +130,30 @@ def _of_bag(
     """What a bag holds, and what it says of the robot."""
     from werrimbi_odom.files.bag import opened_bag
     from werrimbi_odom.files.bag_contents import contents_of
-    from werrimbi_odom.files.first_robot import of_names, of_urdf, with_driver
+    from werrimbi_odom.files.first_robot import of_urdf, with_driver
     from werrimbi_odom.files.stamps import stamps_of
+    from werrimbi_odom.files.wheel_choice import chosen_wheels
+    from werrimbi_odom.files.wheel_joints import joints_told_apart
     from werrimbi_odom.inference.recording_info import Held
 
     with opened_bag(bag) as opened:
         base = "" if source is None else str(source.values["base_frame_id"])
         contents = contents_of(opened, base)
-        names = {each.name for each in contents.wheels}
-        wheels = next(
-            (
-                each
-                for each in sorted(contents.wheels, key=lambda each: each.gives == "odometry")
-                if each.name == ticks_topic or ticks_topic not in names
-            ),
-            None,
-        )
-        joints = wheels.joints if wheels else ()
+        wheels, joints = chosen_wheels(opened, contents, ticks_topic, source)
         if source is None and not first.has_sizes:
             text = opened.firsts([DESCRIPTION]).get(DESCRIPTION)
-            first = of_urdf(getattr(text, "data", ""), joints)
+            first = of_urdf(getattr(text, "data", ""), tuple(joints.turned or ()))
         if source is None and wheels:
             first = with_driver(first, wheels.kind)
-            recorded = set(first.left + first.right) <= set(joints)
-            if joints and not (first.left and recorded):
-                named = of_names(joints)
-                first = replace(first, left=named.left, right=named.right)
+        if source is None and joints.turned:
+            known = (first.left, first.right)
+            joints = joints_told_apart(tuple(joints.turned), joints.turned, known)
+            first = replace(first, left=joints.left, right=joints.right)
         reference = _best(contents.references, reference_topic)
         listed = [wheels, *contents.references]
         topics = {name for each in listed if each for name in _topics(each)}
         stamps = stamps_of(opened, sorted(topics))
-    return Held(path, contents, wheels, reference, stamps, None, ""), first
+    return Held(path, contents, wheels, reference, stamps, None, "", joints), first
 
 
 def _topics(each: Wheels | Measured) -> list[str]:

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from werrimbi_odom.files.bag import Bag, Topic
+from werrimbi_odom.files.copied_references import copies
 from werrimbi_odom.files.derived_references import second_hand
 from werrimbi_odom.files.drivers import DRIVERS
 from werrimbi_odom.files.frames import KINDS as TRANSFORMS
@@ -124,6 +125,15 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
         *(_measured(each, firsts.get(each.name)) for each in bag.topics if each.kind in POSES),
     ]
     references = [each for each in references if not is_asked_for(each.name)]
+    whys = {each.name: each.why for each in references}
+    for name, odometry in copies(bag, references).items():
+        whys[name] = f"the same poses as {odometry}, and {whys[odometry]}"
+    references = [
+        replace(each, independent=False, why=whys[each.name])
+        if whys[each.name] != each.why
+        else each
+        for each in references
+    ]
     made_of = second_hand(bag, references) if choosing else {}
     references = [
         replace(each, why=f"{each.why}; {made_of[each.name]}") if each.name in made_of else each

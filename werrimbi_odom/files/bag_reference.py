@@ -16,6 +16,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, stamp_of
 from werrimbi_odom.files.bag_contents import FIX, IMU, SCAN, Measured
 from werrimbi_odom.files.frames import frame
+from werrimbi_odom.files.gyro import yaw_rate
 from werrimbi_odom.files.local_plane import east_and_north
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference, ReferenceKind
@@ -55,9 +56,13 @@ class ReferenceCollector:
         self._base = str(robot_file.values["base_frame_id"])
         self._rows = _ROWS[source.kind]
         self._found: dict[tuple[str, str], array[float]] = {}
+        self._forces = array("d")
 
     def take(self, message: Message) -> None:
         """Take a message of the source's topic."""
+        if self._source.kind == IMU and message.content.linear_acceleration_covariance[0] != -1.0:
+            force = message.content.linear_acceleration
+            self._forces.extend((float(force.x), float(force.y), float(force.z)))
         for row in self._rows(message):
             self._found.setdefault(row.frames, array("d")).extend(row.values)
 
@@ -70,9 +75,10 @@ class ReferenceCollector:
             When nothing was measured, or several frames are there and none is named.
         """
         parent, child = self._frames()
-        table = np.array(self._found[parent, child]).reshape(-1, 6)
+        table, mounted = np.array(self._found[parent, child]).reshape(-1, 6), ""
         if self._source.kind == IMU:
-            table[:, 3] = _integrated(table[:, 0], table[:, 3])
+            rate, mounted = yaw_rate(table[:, 1:4], np.array(self._forces).reshape(-1, 3))
+            table[:, 1:3], table[:, 3] = NAN, _integrated(table[:, 0], rate)
         if self._source.kind == FIX:
             table[:, 1], table[:, 2] = east_and_north(self._place, *table[:, 1:4].T)
             table[:, 3] = NAN
@@ -81,6 +87,7 @@ class ReferenceCollector:
             raise InputError(f"{self._place}: no message holds a finite pose")
         sigmas = (each if np.isfinite(each).any() else None for each in (sigma_xy, sigma_yaw))
         told = f"{parent} -> {child}" if parent and child else f"frame {parent or child}"
+        told = f"{told}, {mounted}" if mounted else told
         kind: ReferenceKind | None = "incremental" if self._source.kind == IMU else None
         if self._source.kind == LOCALISED and parent == "map":
             kind = "local_map"  # AMCL, SLAM: what they err by wanders
@@ -155,12 +162,15 @@ def _transform(message: Message, content: Any) -> _Row:
 
 
 def _of_imu(message: Message) -> Iterator[_Row]:
-    """The yaw rate stands in the yaw's place until all are there to be integrated."""
-    rate = float(message.content.angular_velocity.z)
+    """Rates about x, y and z stand in a pose's place until it is known which way is up."""
+    turning = message.content.angular_velocity
+    # Gyros of one axis leave the others unsaid.
+    x, y = (each if math.isfinite(each) else 0.0 for each in (float(turning.x), float(turning.y)))
+    rates = x, y, float(turning.z)
     unknown = float(message.content.angular_velocity_covariance[0]) == -1.0
-    if not unknown and math.isfinite(rate):
+    if not unknown and math.isfinite(rates[2]):
         name = frame(message.content.header.frame_id)
-        yield _Row(("", name), (stamp_of(message), NAN, NAN, rate, NAN, NAN))
+        yield _Row(("", name), (stamp_of(message), *rates, NAN, NAN))
 
 
 def _of_point(message: Message) -> Iterator[_Row]:

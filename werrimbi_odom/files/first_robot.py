@@ -16,12 +16,15 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.drivers import DRIVERS
+from werrimbi_odom.files.wheel_joints import SIDES, TURN, is_no_wheel
 from werrimbi_odom.model.pose import Floats
 
-SIDES = ("left", "right")
 _LONGEST = 10_000_000
 """Characters of a URDF; robots with all their sensors have a hundredth of it."""
 _UNKNOWN_TICKS = 4096.0
+_OFTEN, _BY_ONE, _NEIGHBOURS = 0.05, 0.1, 5
+"""Share of messages with another number of counts than the one before, and of those with one more
+or less, from which on angles are counted; or so many numbers of counts that differ by one."""
 _AXLE = 0.9
 """Cosine between a wheel's axis and the robot's y axis, from which on it rolls forwards."""
 
@@ -136,7 +139,9 @@ def _wheels(robot: ElementTree.Element) -> Iterator[_Wheel]:
     links = {each.get("name"): each for each in robot.iter("link")}
     for child, joint in joints.items():
         name = joint.get("name", "")
-        if joint.get("type") not in ("continuous", "revolute") or "cast" in name.lower():
+        if joint.get("type") not in ("continuous", "revolute") or is_no_wheel(name):
+            continue
+        if _has_stops(joint):
             continue
         place = _pose_of(child, joints)
         axis_of = joint.find("axis")
@@ -144,6 +149,18 @@ def _wheels(robot: ElementTree.Element) -> Iterator[_Wheel]:
         if abs(float((place[:3, :3] @ axis)[1])) < _AXLE * float(np.linalg.norm(axis)):
             continue
         yield _Wheel(name, place[:3, 3], _radius(links.get(child)))
+
+
+def _has_stops(joint: ElementTree.Element) -> bool:
+    """Whether a joint stays within two turns, as an arm's does and no wheel's."""
+    limit = joint.find("limit")
+    if (
+        joint.get("type") != "revolute"
+        or limit is None
+        or not {"lower", "upper"} & set(limit.keys())
+    ):
+        return False
+    return float(limit.get("upper", "0")) - float(limit.get("lower", "0")) <= 2.0 * TURN
 
 
 def _whole(joint: ElementTree.Element) -> bool:
@@ -271,24 +288,6 @@ def _is_text(value: object) -> bool:
     return isinstance(value, str)
 
 
-def of_names(joints: Sequence[str]) -> FirstRobot:
-    """Wheels by the names of the joints alone."""
-    wheels = [name for name in joints if "wheel" in name.lower()] or list(joints)
-    sides = [tuple(name for name in wheels if _is_of(name, side)) for side in SIDES]
-    return FirstRobot(left=sides[0], right=sides[1]) if all(sides) else FirstRobot()
-
-
-def _is_of(name: str, side: str) -> bool:
-    parts = name.lower().replace("-", "_").split("_")
-    return (
-        side in name.lower()
-        or side[0] in parts
-        or any(
-            part in (f"f{side[0]}", f"r{side[0]}", f"{side[0]}f", f"{side[0]}r") for part in parts
-        )
-    )
-
-
 def with_driver(first: FirstRobot, kind: str) -> FirstRobot:
     """What a driver's message says by its type."""
     driver = DRIVERS.get(kind)
@@ -306,13 +305,31 @@ def with_steps(first: FirstRobot, angles: Sequence[Floats]) -> FirstRobot:
     angles
         Of the left and the right wheel, shape (n,) each [rad].
     """
-    steps = _steps_of_a_turn(np.abs(np.concatenate([np.diff(each) for each in angles])))
+    moved = [np.diff(each) for each in angles]
+    steps = _steps_of_a_turn(np.abs(np.concatenate(moved)))
+    if steps is not None and not _is_counted(moved, 2.0 * math.pi / steps):
+        steps = None
     words = (
         "from the steps in which the joint angles come"
         if steps
         else "joint angles come without steps: so many are assumed"
     )
     return replace(first, ticks=steps, told={**(first.told or {}), "ticks": words})
+
+
+def _is_counted(moved: Sequence[Floats], quantum: float) -> bool:
+    """Whether steps are those of a counter, and not those of a few speeds that a simulator holds.
+
+    A wheel that turns evenly is counted one more or one less from message to message; over many
+    speeds, all numbers of counts occur.
+    """
+    counts = [np.rint(each[np.isfinite(each)] / quantum) for each in moved]
+    changes = np.concatenate([np.abs(np.diff(each)) for each in counts])
+    changed = changes[changes > 0.0]
+    by_one = float(np.mean(changed == 1.0)) if changed.size else 0.0
+    neighbours = np.diff(np.unique(np.abs(np.concatenate(counts)))) == 1.0
+    often = changed.size > _OFTEN * changes.size
+    return (often and by_one > _BY_ONE) or int(neighbours.sum()) >= _NEIGHBOURS
 
 
 def _steps_of_a_turn(steps: NDArray[np.float64]) -> float | None:

@@ -31,12 +31,16 @@ class Edge:
     """Published once, for good."""
     changes: bool
     """Whether it ever was another than its first."""
+    shifts: bool = True
+    """Whether the child ever was in another place than at first; a joint that turns never is."""
 
     @property
     def made_from_wheels(self) -> str:
-        """Why it is the robot's own odometry; "" where it is not."""
+        """Why it measures nothing of how the robot goes; "" where it may."""
         if self.static:
             return ""
+        if is_base(self.parent) and is_base(self.child):
+            return f"{self.parent} -> {self.child} is within the robot, and no sensor's"
         return why_from_wheels("", "", self.parent, self.child)
 
 
@@ -91,6 +95,7 @@ class EdgeCollector:
         self._first: dict[tuple[str, str, str], tuple[float, ...]] = {}
         self._count: dict[tuple[str, str, str], int] = {}
         self._changed: set[tuple[str, str, str]] = set()
+        self._shifted: set[tuple[str, str, str]] = set()
 
     def take(self, topic: str, transforms: Sequence[Any]) -> None:
         """Take what a message holds."""
@@ -98,18 +103,21 @@ class EdgeCollector:
             parent, child = frame(each.header.frame_id), frame(each.child_frame_id)
             key = (parent, child, topic)
             self._count[key] = self._count.get(key, 0) + 1
-            if key in self._changed:
+            if key in self._shifted:
                 continue
             where, turn = each.transform.translation, each.transform.rotation
             values = (where.x, where.y, turn.x, turn.y, turn.z, turn.w)
             first = self._first.setdefault(key, values)
-            if any(abs(a - b) > MOVED for a, b in zip(first, values, strict=True)):
+            differ = [abs(a - b) > MOVED for a, b in zip(first, values, strict=True)]
+            if any(differ):
                 self._changed.add(key)
+            if any(differ[:2]):
+                self._shifted.add(key)
 
     def edges(self) -> tuple[Edge, ...]:
         """All that were seen."""
         return tuple(
-            Edge(*key, count, is_static(key[2]), key in self._changed)
+            Edge(*key, count, is_static(key[2]), key in self._changed, key in self._shifted)
             for key, count in self._count.items()
         )
 
@@ -160,7 +168,8 @@ def chains_to_base(edges: Sequence[Edge], base: str = "") -> list[Chain]:
     -------
     list of Chain
         From every frame above the base, with a transform on the way that is not static. Where no
-        frame is called a base: the moving transforms, each by itself.
+        frame is called a base: the moving transforms, each by itself, but for the robot's own
+        joints, which a robot_state_publisher tells: they hang from its base, or turn in one place.
     """
     children = {edge.child for edge in edges}
     bases = [base] if base in children else sorted(filter(is_base, children), key=_as_usual)
@@ -175,8 +184,14 @@ def chains_to_base(edges: Sequence[Edge], base: str = "") -> list[Chain]:
         found += sorted(moving, key=lambda each: -len(each.steps))
     if found:
         return found
-    free = [edge for edge in edges if not edge.static and edge.changes]
+    own = {edge.parent for edge in edges if _on_the_robot(edges, edge.parent)}
+    free = [edge for edge in edges if not edge.static and edge.shifts and edge.parent not in own]
     return [Chain((edge,), (False,), edge.parent, edge.child) for edge in free]
+
+
+def _on_the_robot(edges: Sequence[Edge], name: str) -> bool:
+    """Whether a frame is the robot's base, or hangs from it."""
+    return any(is_base(each) for each in (name, *_above(edges, name)))
 
 
 def _as_usual(name: str) -> tuple[bool, str]:

@@ -50,6 +50,11 @@ def why_from_wheels(topic: str, kind: str, parent: str, child: str) -> str:
     return ""
 
 
+def names_a_sensor(topic: str) -> bool:
+    """Whether a topic's name says what looked at the robot; a simulator's name alone does not."""
+    return bool(_words(topic) & (SENSORS - {"gazebo"}))
+
+
 def is_asked_for(topic: str) -> bool:
     """Whether poses of a topic are where the robot should be, not where it is."""
     return any(word in topic.lower() for word in NO_MEASUREMENT)

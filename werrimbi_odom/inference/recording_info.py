@@ -4,18 +4,23 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import math
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
+
+import numpy as np
 
 from werrimbi_odom.files.bag_contents import Contents, Measured, Wheels
 from werrimbi_odom.files.first_robot import FirstRobot
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.stamps import Stamps
+from werrimbi_odom.files.wheel_joints import WheelJoints
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.inference.legs.spans import Driven
 from werrimbi_odom.inference.rules import (
     FEWEST_LEGS,
+    LEG_OF_POSITIONS,
     LEGS_ENOUGH,
     QUARTER_TURN,
     SHORT_LEG,
@@ -39,6 +44,8 @@ class Held:
     """Read by these; None where it cannot be."""
     problem: str
     """Why not."""
+    joints: WheelJoints = field(default_factory=WheelJoints)
+    """Of the wheels' topic: which of them are wheels."""
     driven: Driven | None = None
     left_out: tuple[LeftOut, ...] = ()
     restamped: float = 0.0
@@ -75,8 +82,27 @@ class Info:
 
     @property
     def leg(self) -> float:
-        """Length of a leg that the drives are long enough for [m]."""
+        """Length of a leg that the drives are long enough for, and the reference good [m]."""
+        longer = max((_needed(each) for each in self.held), default=0.0)
+        if longer > 1.0:
+            return longer
         return SHORT_LEG if self.sizes and self.legs < LEGS_ENOUGH else 1.0
+
+
+def leg_of_positions(noise: float) -> float:
+    """Length of a leg whose chord is a heading, by positions of some noise [m], to one digit."""
+    least = LEG_OF_POSITIONS * noise
+    digit = 10.0 ** math.floor(math.log10(least))
+    return float(f"{math.ceil(round(least / digit, 6)) * digit:g}")
+
+
+def _needed(held: Held) -> float:
+    """Length of a leg that positions alone need, by the noise that they state [m]."""
+    reference = held.run.reference if held.run is not None else None
+    if reference is None or reference.sigma_xy is None or measures_of(held) != "positions":
+        return 0.0
+    noise = float(np.nanmedian(reference.sigma_xy))
+    return leg_of_positions(noise) if noise > 0.0 else 0.0
 
 
 def measures_of(held: Held) -> Literal["poses", "positions", "yaw", "nothing"]:
@@ -105,15 +131,17 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
         else:
             cannot.append(f"{what}: {lacking}")
 
-    told(drive.turned >= TURN_SHOWS, "the base", "too little turning")
-    long = drive.turned >= TURN_SHOWS or drive.way >= WAY_SHOWS
-    told(long, "the ratio of the radii", "too little driving")
     far = measures in ("poses", "positions")
-    told(
-        far and drive.way >= WAY_SHOWS,
-        "the size of the radii",
-        "the way is too short" if far else "no heading tells a distance; tape one",
-    )
+    if sizes:  # else nobody knows how far it went, nor whether both wheels count forwards
+        told(drive.turned >= TURN_SHOWS, "the base", "too little turning")
+        long = drive.turned >= TURN_SHOWS or drive.way >= WAY_SHOWS
+        told(long, "the ratio of the radii", "too little driving")
+    if sizes or not far:
+        told(
+            far and drive.way >= WAY_SHOWS,
+            "the size of the radii",
+            "the way is too short" if far else "no heading tells a distance; tape one",
+        )
     told(
         far,
         "what goes sideways (slip, slope, how the reference is mounted)",

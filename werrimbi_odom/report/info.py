@@ -7,24 +7,23 @@ from __future__ import annotations
 import math
 import shlex
 from collections.abc import Iterator
-from dataclasses import asdict
 from typing import Any
 
-from werrimbi_odom.files.bag_contents import SCAN, Measured
+from werrimbi_odom.files.bag_contents import SCAN
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.inference.legs.spans import Driven
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of
 from werrimbi_odom.report.document import Document, Paragraph, paragraphs
+from werrimbi_odom.report.info_wheels import (
+    WITHOUT_WHEELS,
+    no_wheels_words,
+    rate_words,
+    wheels_words,
+)
 from werrimbi_odom.report.numbers import TIME_OF_DAY, listed
-from werrimbi_odom.report.phrases import left_out_json, left_out_words
+from werrimbi_odom.report.phrases import left_out_words
 
-_GIVES = {
-    "counts": "counters",
-    "positions": "angles of the wheels",
-    "velocities": "speeds of the wheels, which are integrated",
-    "odometry": "the robot's own odometry, turned back into travel of its wheels",
-}
 _MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"}
 _WANDERS = 0.1  # of stamps against receipt, from which on it is worth saying [s]
 
@@ -32,7 +31,7 @@ _WANDERS = 0.1  # of stamps against receipt, from which on it is worth saying [s
 def document_of(found: Info) -> Document:
     """Everything that is told."""
     words = [part for each in found.held for part in _of_one(each, found)]
-    step, command = _next(found)
+    step, command = next_step(found)
     words += [Paragraph(step, apart=True), *([Paragraph(command, "command")] if command else [])]
     return Document(title="What the recordings hold", words=words)
 
@@ -44,7 +43,8 @@ def _of_one(held: Held, found: Info) -> list[Paragraph]:
 
 def _lines(held: Held, found: Info) -> Iterator[str]:
     if held.contents is not None:
-        yield _wheels(held)
+        yield wheels_words(held)
+        yield from no_wheels_words(held.joints)
         yield from _references(held)
         yield from _stamps(held)
     else:
@@ -74,31 +74,23 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
     if can:
         yield f"It can show {listed(can)}."
     yield from (f"It cannot show {each}." for each in cannot)
-
-
-def _wheels(held: Held) -> str:
-    wheels = held.wheels
-    if wheels is None:
-        return "Wheels: nothing in the bag tells how they turned."
-    joints = f", joints {listed(wheels.joints)}" if wheels.joints else ""
-    return f"Wheels: {wheels.name}, {_GIVES[wheels.gives]}{_rate(held, wheels.name)}{joints}."
-
-
-def _rate(held: Held, name: str) -> str:
-    stamps = held.stamps.get(name.split(",")[0].partition(":")[0])
-    return "" if stamps is None or name.startswith("/tf") else f" at {stamps.rate:.3g} Hz"
+    if held.driven is not None and not found.sizes and measures_of(held) != "nothing":
+        yield "Whether it can show base and radii is told once their sizes are known."
 
 
 def _references(held: Held) -> Iterator[str]:
     assert held.contents is not None
     for each in held.contents.references:
         taken = " It is taken." if each == held.reference else ""
-        kind = f"{each.name}: {_MEASURES[each.measures]}{_rate(held, each.name)}"
+        kind = f"{each.name}: {_MEASURES[each.measures]}{rate_words(held, each.name)}"
         if each.independent:
             yield f"Reference {kind} ({each.why}).{taken}"
-            if taken and each.kind == SCAN and held.run is not None:
+            if taken and held.run is not None:
                 yield from (
-                    f"R{note[1:]}." for note in held.run.notes if note.startswith("reference ")
+                    f"R{note[1:]}."
+                    for note in held.run.notes
+                    if note.startswith("reference ")
+                    and (each.kind == SCAN or "accelerometer" in note)
                 )
         else:
             yield f"No reference: {each.name}, {each.why}."
@@ -196,7 +188,7 @@ def _driven(held: Held, drive: Driven, sizes: bool) -> str:
     return f"In {whole:.1f} s the robot {listed(told) if told else 'did nothing'}.{way}"
 
 
-def _next(found: Info) -> tuple[str, str]:
+def next_step(found: Info) -> tuple[str, str]:
     """The next step, and its command; "" where it has none."""
     usable = [each for each in found.held if not each.problem and each.run is not None]
     if not usable:
@@ -217,7 +209,9 @@ def _next(found: Info) -> tuple[str, str]:
 
 
 def _otherwise(found: Info) -> tuple[str, str]:
-    """Where nothing can be judged by what was taken: what else measures the robot, the first."""
+    """Where nothing can be judged by what was taken: what lacks, or what else may do."""
+    if all(held.contents is not None and held.wheels is None for held in found.held):
+        return WITHOUT_WHEELS, ""
     for held in found.held:
         if held.contents is None or held.reference is None:
             continue
@@ -244,68 +238,3 @@ def command_of(found: Info) -> str:
     if held.contents is not None and held.wheels is not None and held.reference is not None:
         words += ["--ticks-topic", held.wheels.name, "--reference-topic", held.reference.name]
     return shlex.join([*words, *paths])
-
-
-def info_json(found: Info) -> dict[str, Any]:
-    """For programs; times in each run's own clock [s]."""
-    robot = found.given or found.written
-    return {
-        "runs": [_json_of(each, found) for each in found.held],
-        "robot": None if robot is None else str(robot),
-        "first_robot": {
-            "wheel_radius": found.first.radius,
-            "wheel_separation": found.first.separation,
-            "ticks_per_revolution": found.first.ticks,
-            "left_wheel_names": list(found.first.left),
-            "right_wheel_names": list(found.first.right),
-        }
-        if found.given is None
-        else None,
-        "next": _next(found)[1] or None,
-    }
-
-
-def _json_of(held: Held, found: Info) -> dict[str, Any]:
-    contents, drive = held.contents, held.driven
-    can, cannot = can_tell(held, found.sizes)
-    return {
-        "run": str(held.path),
-        "problem": held.problem or None,
-        "wheels": []
-        if contents is None
-        else [
-            {"topic": each.name, "type": each.kind, "gives": each.gives, "joints": each.joints}
-            | {"messages": each.messages, "taken": each == held.wheels}
-            for each in contents.wheels
-        ],
-        "references": [_reference(each, held) for each in contents.references]
-        if contents is not None
-        else [{"topic": "reference.csv", "measures": measures_of(held), "taken": True}],
-        "stamps": {
-            name: asdict(each) | {"believed": each.believed} for name, each in held.stamps.items()
-        },
-        "spans": [
-            {"from_s": span.begin, "to_s": span.end, "what": span.what} for span in drive.spans
-        ]
-        if drive is not None
-        else [],
-        "distance_m": drive.way if drive is not None and found.sizes else None,
-        "turned_rad": drive.turned if drive is not None and found.sizes else None,
-        "left_out": left_out_json(held.left_out),
-        "restamped_s": held.restamped,
-        "scans_restamped_s": held.scans_restamped,
-        "can_show": can,
-        "cannot_show": cannot,
-    }
-
-
-def _reference(each: Measured, held: Held) -> dict[str, Any]:
-    return {
-        "topic": each.name,
-        "type": each.kind,
-        "measures": each.measures,
-        "independent": each.independent,
-        "why": each.why,
-        "messages": each.messages,
-        "taken": each == held.reference,
-    }

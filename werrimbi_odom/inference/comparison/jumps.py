@@ -14,6 +14,7 @@ from werrimbi_odom.inference.rules import (
     JUMP_FEWEST,
     JUMP_LASTS,
     JUMP_LATE,
+    JUMP_LEAST_OF_A_GYRO,
     JUMP_NEIGHBOURS,
     JUMP_SCATTER,
     JUMP_SHARE,
@@ -45,6 +46,8 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
         # robot turns in it, and a start looks like a leap until base and clock are right.
         share[2] = JUMP_SHARE_OF_A_GYRO
     limit = np.maximum(JUMP_SCATTER * scatter, share * (driven + np.abs(usual)))
+    if not np.isfinite(item.measured).any():
+        limit[:, 2] = np.maximum(limit[:, 2], JUMP_LEAST_OF_A_GYRO)
     limit[:, :2] = np.hypot(limit[:, :2], 1e-9)
     wrong = (np.abs(left) > limit) & (np.abs(left) > 1e-9)
     return np.where(wrong, left, 0.0)

@@ -24,6 +24,7 @@ from werrimbi_odom.inference.rules import (
     CIRCLE_DELAYS,
     CIRCLE_EXACT,
     CIRCLE_FEWEST,
+    CIRCLE_FINEST,
     CIRCLE_STEPS,
     CIRCLE_WAY,
     CIRCLE_WHOLE,
@@ -67,6 +68,14 @@ def refuse_circle(run: Run, robot: Robot, limits: EncoderLimits | None = None) -
             f"{found.way:.2g} m, closer than their counts tell the way themselves "
             f"({_small(found.rounding)}): it was made from the same counts, and cannot judge them "
             "(--force takes it all the same)"
+        )
+    if found is not None and not found.rounding and found.apart < CIRCLE_FINEST * found.way:
+        what = run.circle or "the reference"
+        raise InputError(
+            f"{run.path}: {what}: it agrees with the wheels to {_small(found.apart)} in "
+            f"{found.way:.2g} m, closer than anything measures: it was made from the same angles "
+            "(or is a simulator's pose without noise), and cannot judge them (--force takes it all "
+            "the same)"
         )
     if not run.circle:
         return ""

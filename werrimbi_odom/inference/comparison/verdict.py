@@ -29,8 +29,10 @@ from werrimbi_odom.inference.rules import (
     HONEST_WITHIN,
     MANY_LEGS,
     QUARTER_TURN,
+    SHORTEST_OF_POSITIONS,
     SURE_OF_LEGS,
     WORST_OF,
+    WRONG_NEES,
     WRONG_OF_A_LEG,
     WRONG_SHARE,
 )
@@ -67,6 +69,8 @@ class Verdict:
     """Their length [m]."""
     gross: bool = False
     """Whether errors are those of a set-up mistake."""
+    too_short: float = 0.0
+    """Noise of positions alone for which the legs are too short to tell anything [m]; else 0."""
     few: float = 0.0
     """Share of the squared errors that the worst twentieth of the legs holds."""
     few_and_bad: tuple[str, ...] = ()
@@ -110,8 +114,11 @@ def verdict_of(comparison: Comparison) -> Verdict:
     enough = main.all.figures.count >= FEWEST_LEGS
     off = tuple(kind for kind in KINDS if _scatters(main.by_motion[kind]))
     cells = tuple(cell for cell in comparison.cells if cell.stands_out and _too_small(cell.figures))
-    if not enough:
-        return Verdict(enough=False, noise="unknown", factor=factor, judged_at=leg)
+    too_short = _too_short(comparison)
+    if not enough or too_short:
+        return Verdict(
+            enough=False, noise="unknown", factor=factor, judged_at=leg, too_short=too_short
+        )
     gross = _gross(main, systematic)
     few = _held_by_few(comparison)
     bad = tuple(kind for kind in KINDS if _bad(main.by_motion[kind]))
@@ -142,9 +149,20 @@ def _too_small(figures: LegStatistics) -> bool:
     return consistency(figures.nees, figures.freedom) == "too small"
 
 
+def _too_short(comparison: Comparison) -> float:
+    """Noise of positions alone whose chords over a leg are no heading [m]; else 0."""
+    noises = comparison.prepared.noises
+    if any(measure != "position" for measure, _ in noises):
+        return 0.0
+    noise = max((each.sigma_xy for _, each in noises), default=0.0)
+    return noise if comparison.main.leg < SHORTEST_OF_POSITIONS * noise else 0.0
+
+
 def _gross(main: OfLength, systematic: tuple[Systematic, ...]) -> bool:
     shares = {("along", "travel"), ("sideways", "travel"), ("heading", "turn")}
     figures = main.all.figures
+    if not figures.nees > WRONG_NEES:
+        return False
     return (
         any(
             (part.channel, part.per) in shares and abs(part.value) > WRONG_SHARE

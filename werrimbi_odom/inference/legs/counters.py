@@ -16,6 +16,7 @@ from werrimbi_odom.inference.legs.even_stamps import evened
 from werrimbi_odom.inference.legs.leaps import Leap, bridged
 from werrimbi_odom.inference.rules import EVEN_LEAST, EVEN_LEAST_BY_SCANS
 from werrimbi_odom.model.drive import Span
+from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.recorded_counts import wheel_steps
@@ -70,7 +71,8 @@ class Counters:
 
     def way(self, robot: Robot, leg: float, turn: float) -> Floats:
         """What was gone up to each message, in legs: path over `leg` [m], turning over `turn`."""
-        left, right = np.diff(self.left) * robot.left_tick, np.diff(self.right) * robot.right_tick
+        counts = wiring_of(robot.effects).wheels(np.diff(self.left), np.diff(self.right))
+        left, right = counts[0] * robot.left_tick, counts[1] * robot.right_tick
         path = np.abs(0.5 * (left + right)) / leg
         turned = np.abs(right - left) / robot.track / turn
         return summed(path + turned)

@@ -51,6 +51,15 @@ WRONG_OF_A_LEG = 0.1
 """Share of the leg that position errors have in the median, for the same. A base that is
 13 % wrong (`NEAR`) does that to a leg with a quarter turn: half of 0.13 pi / 2."""
 
+WRONG_NEES = 6.0
+"""NEES of all legs beyond which they may be: errors 2.4 times what is promised. Where a reference
+errs by as much as a leg is long (GPS, which is off by twice what it states), shares of a leg are
+its own. Half and twice the radius are beyond it by positions of 0.1 m over legs of 1 m."""
+
+SHORTEST_OF_POSITIONS, LEG_OF_POSITIONS = 5.0, 10.0
+"""Times the noise of positions alone, below which a leg tells nothing, and which is enough: the
+chord of a leg gives its heading, to 0.3 rad and to 0.14 rad."""
+
 WORST_OF = 20
 """One leg in so many is among the worst, of whose share of all squared errors is told. Of a normal
 scatter the worst twentieth has about a fifth (of two coordinates)."""

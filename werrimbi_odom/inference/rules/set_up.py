@@ -70,6 +70,11 @@ SURE_SIZE = 8.0
 sign decides of the wiring, and neighbouring cuts err alike, which makes deviations too small by
 some times."""
 
+MOST_CREEP = 0.35
+"""Rate [rad/s] at which a gyro creeps at the most: 20 degrees a second are what the cheapest state
+before they are calibrated. Without a limit a robot that drives straight at one speed on a reversed
+wheel is one that spins before a gyro that is off by just that rate."""
+
 ARM_TOLD = 0.02
 """Relative standard deviation of the base up to which a lever arm is fitted beside it: on circles
 base and arm are one, and neither would be told."""

@@ -55,18 +55,21 @@ class Moving:
     """Of a cut [m], outliers aside."""
 
 
-def turning(cuts: Cuts, *, with_bias: bool = False) -> Turning | None:
+def turning(cuts: Cuts, *, with_bias: bool = False, squares: bool = False) -> Turning | None:
     """Regress measured turns on the travel of both wheels; None where they do not tell.
 
     Parameters
     ----------
     with_bias : bool
         Let the heading also creep with time, as a gyro's does.
+    squares : bool
+        By least squares, outliers and all. Where a robot drives straight for nearly all of a drive
+        its few turns are the outliers, and all that tells the wheels apart.
     """
     columns = [cuts.summed(cuts.right), -cuts.summed(cuts.left)]
     if with_bias:
         columns.append(cuts.duration)
-    fit = robust(np.stack(columns, axis=-1), cuts.turn)
+    fit = (least_squares if squares else robust)(np.stack(columns, axis=-1), cuts.turn)
     if fit is None:
         return None
     value, std, scatter = fit
@@ -106,6 +109,19 @@ def errors(cuts: Cuts, left: float, right: float, half_base: complex, arm: compl
     gone, turn = swept(cuts, left, right)
     move = cuts.move - half_base * gone - arm * (np.exp(1j * turn) - 1.0)
     return np.stack([move, wrap_all(cuts.turn - turn).astype(complex)])
+
+
+def least_squares(columns: Floats, values: Floats) -> tuple[Floats, Floats, float] | None:
+    """Linear regression of all rows alike; as `robust` otherwise."""
+    known = np.isfinite(values) & np.isfinite(columns).all(axis=-1)
+    rows, aims = columns[known], values[known]
+    count, width = rows.shape
+    if count <= width + 1 or np.linalg.matrix_rank(rows) < width:
+        return None
+    value: Floats = np.linalg.lstsq(rows, aims, rcond=None)[0].astype(np.float64)
+    scatter = float(np.sqrt(np.sum((aims - rows @ value) ** 2) / (count - width)))
+    std = scatter * np.sqrt(np.diag(np.linalg.inv(rows.T @ rows)))
+    return value, std, scatter
 
 
 def robust(

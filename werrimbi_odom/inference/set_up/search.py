@@ -20,10 +20,16 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_sizes import skidding
 from werrimbi_odom.inference.legs.no_driving import looked_at
-from werrimbi_odom.inference.rules import FEWEST_CUTS, SURE_SIZE
+from werrimbi_odom.inference.rules import FEWEST_CUTS, MOST_CREEP, SURE_SIZE
 from werrimbi_odom.inference.set_up.delay import lag_of
 from werrimbi_odom.inference.set_up.explanation import Estimate, Setting, setting_of, wirings
-from werrimbi_odom.inference.set_up.findings import IN_DEGREES, SetUpFinding, as_skid, findings_of
+from werrimbi_odom.inference.set_up.findings import (
+    IN_DEGREES,
+    WIRING_WORDS,
+    SetUpFinding,
+    as_skid,
+    findings_of,
+)
 from werrimbi_odom.inference.set_up.poses import degrees_gain, search_poses
 from werrimbi_odom.inference.set_up.positions import search_positions
 from werrimbi_odom.inference.set_up.records import (
@@ -33,10 +39,10 @@ from werrimbi_odom.inference.set_up.records import (
     measured_by,
     record_of,
 )
-from werrimbi_odom.inference.set_up.regression import swept, turning
+from werrimbi_odom.inference.set_up.regression import Turning, swept, turning
 from werrimbi_odom.inference.set_up.robot import with_findings
 from werrimbi_odom.inference.set_up.sparse import is_sparse, search_sparse
-from werrimbi_odom.model.pose import wrap_all
+from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
 __all__ = ["IN_DEGREES", "SetUp", "SetUpFinding", "look_for_mistakes"]
@@ -133,10 +139,13 @@ def _search_headings(
     sizes are not measured, so the second is always None.
     """
     cuts = cut(records, robot, "heading")
-    fit = turning(cuts, with_bias=True) if cuts.count >= FEWEST_CUTS else None
-    if fit is None:
+    if cuts.count < FEWEST_CUTS:
         return [], None
-    if abs(fit.left) < SURE_SIZE * fit.left_std or abs(fit.right) < SURE_SIZE * fit.right_std:
+    fit = turning(cuts, with_bias=True)
+    signs_alone = not _is_sure(fit)
+    if signs_alone:
+        fit = turning(cuts, with_bias=True, squares=True)
+    if fit is None or not _is_sure(fit):
         return [], None
     track = effective_track(robot)
     estimate = Estimate(fit.left, fit.right, None, None)
@@ -146,12 +155,36 @@ def _search_headings(
     def misfit(tried: Setting) -> float:
         left, right, _, _ = tried.numbers(track)
         off = wrap_all(cuts.turn - swept(cuts, left, right)[1])
-        # A gyro's bias, as it would be seen with this set-up.
-        rate = float(np.median(off[cuts.duration > 0.0] / cuts.duration[cuts.duration > 0.0]))
-        off = off - rate * cuts.duration
+        off = off - _creep(off, cuts.duration) * cuts.duration
         return float(np.exp(0.5 * np.mean(np.log1p((off / fit.scatter) ** 2))))
 
-    return findings_of(setting, ways, misfit, yaw_alone=True), None
+    found = findings_of(setting, ways, misfit, yaw_alone=True)
+    # A few short turns tell which way the wheels count, and no size: a delay makes them smaller.
+    return [each for each in found if each.effect in WIRING_WORDS or not signs_alone], None
+
+
+def _creep(off: Floats, duration: Floats) -> float:
+    """A gyro's bias, as it would be seen with a set-up [rad/s].
+
+    The median over all of the time: what stands tells it best, and a robot that drives straight at
+    one speed on a reversed wheel would else pass for one that spins before a gyro of that bias.
+    """
+    known = np.isfinite(off) & (duration > 0.0)
+    rates, weights = off[known] / duration[known], duration[known]
+    order = np.argsort(rates)
+    until = np.cumsum(weights[order])
+    if until.size == 0:
+        return 0.0
+    middle = rates[order][np.searchsorted(until, 0.5 * until[-1])]
+    return float(np.clip(middle, -MOST_CREEP, MOST_CREEP))
+
+
+def _is_sure(fit: Turning | None) -> bool:
+    """Whether it is beyond doubt which way each wheel turns the robot."""
+    if fit is None:
+        return False
+    left, right = abs(fit.left) / SURE_SIZE, abs(fit.right) / SURE_SIZE
+    return left > fit.left_std and right > fit.right_std
 
 
 def _in_degrees(gain: float) -> SetUpFinding:

@@ -11,6 +11,7 @@ from werrimbi_odom.inference.adding.added import Added, Side
 from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.report.comparison.words import headline
+from werrimbi_odom.report.diagnosis.dependence import amount_words, variable_words
 from werrimbi_odom.report.document import Entry, Part, Table, paragraphs
 from werrimbi_odom.report.events import events_json, events_words
 from werrimbi_odom.report.numbers import listed, picked, quantity, scaled_with_std
@@ -163,19 +164,19 @@ def _rest(added: Added) -> str:
     first = misfit.cell
     if misfit.only_in is not None:
         return (
-            f"Drive {misfit.only_in} alone shows something more: in it the {first.channel} error "
-            f"goes with {first.name} (p = {first.p_value:.0e}); the others could show it and do "
-            "not."
+            f"Drive {misfit.only_in} alone shows something more: in it {amount_words(first)} goes "
+            f"with {variable_words(first)} (p = {first.p_value:.0e}); the others could show it "
+            "and do not."
         )
     if misfit.effect is not None:
         share = 100.0 * (misfit.share or 0.0)
         return (
-            f"The law of {misfit.effect} does not fit fully: what is left of the "
-            f"{first.channel} error goes with {first.name}, {share:.2g} % of what the law explains "
+            f"The law of {misfit.effect} does not fit fully: what is left in {amount_words(first)} "
+            f"goes with {variable_words(first)}, {share:.2g} % of what the law explains "
             f"(NEES {nees:.2f}, honest is 1)."
         )
     return (
-        f"Something is still missing: the {first.channel} error goes with {first.name} "
+        f"Something is still missing: {amount_words(first)} goes with {variable_words(first)} "
         f"(p = {first.p_value:.0e}; NEES {nees:.2f}, honest is 1)."
     )
 

@@ -10,6 +10,7 @@ from werrimbi_odom.inference.calibration_sizes import skidding
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures
 from werrimbi_odom.inference.comparison.reference_noise import Measure
 from werrimbi_odom.inference.comparison.verdict import Depends, Verdict, verdict_of
+from werrimbi_odom.inference.recording_info import leg_of_positions
 from werrimbi_odom.inference.rules import FEW_HOLD, FEWEST_LEGS, WORST_OF
 from werrimbi_odom.report.comparison.phrases import NAMES, covariance_words, systematic_told
 from werrimbi_odom.report.document import Paragraph, paragraphs
@@ -58,6 +59,13 @@ def words_of(
 def headline(comparison: Comparison, verdict: Verdict) -> str:
     """Whether the model is good, in a sentence."""
     count = comparison.main.all.figures.count
+    if verdict.too_short:
+        longer = leg_of_positions(verdict.too_short)
+        return (
+            f"Legs of {comparison.main.leg:g} m are too short for this reference: its positions "
+            f"err by {two_digits(1e3 * verdict.too_short)} mm each, and that is what is seen. Try "
+            f"--leg {longer:g}."
+        )
     if not verdict.enough:
         return (
             f"Too little to judge: {counted(count, 'leg')} of "
@@ -196,6 +204,9 @@ def _run_told(comparison: Comparison, index: int) -> str:
     )
 
 
+_NO_NOISE = 1e-7  # rad; no gyro has so little, and digits of it would be those of a remainder
+
+
 def _reference(comparison: Comparison) -> list[str]:
     lines = []
     each = "interval" if comparison.prepared.options.reference_kind == "incremental" else "pose"
@@ -214,6 +225,12 @@ def _reference(comparison: Comparison) -> list[str]:
             "given": "as given",
         }.get(told, told)
         what = {"pose": "", "position": " (positions alone)", "heading": " (headings alone)"}
+        if measure == "heading" and told == "estimated" and noise.sigma_yaw < _NO_NOISE:
+            lines.append(
+                "The reference's own noise (headings alone) is too small to tell: its small "
+                "differences scatter no more than reading the counters makes."
+            )
+            continue
         lines.append(f"The reference's own noise{what[measure]}, {values} each {each}, is {how}.")
         if wanders:
             lines[-1] += (

@@ -92,9 +92,14 @@ def variable_words(cell: Dependence) -> str:
     return _VARIABLES.get(cell.variable.name, f"the measured channel {cell.variable.name}")
 
 
+def amount_words(cell: Dependence) -> str:
+    """What errs."""
+    return _AMOUNTS[cell.amount.channel, cell.amount.per]
+
+
 def dependence_words(cell: Dependence) -> str:
     """The whole cell: "how far the left wheel rolls goes with ...: 0.4 % more ..."."""
-    what = _AMOUNTS[cell.amount.channel, cell.amount.per]
+    what = amount_words(cell)
     verb = "is wrong in proportion to" if cell.variable.name == CONSTANT else "goes with"
     strength = strength_words(cell)
     shape = "" if strength == _UNTOLD else _shape(cell)

@@ -1,0 +1,164 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Wheels are told from the joints of an arm that the same topic holds."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import werrimbi_odom as wo
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.bag import opened_bag
+from werrimbi_odom.files.first_robot import of_urdf
+from werrimbi_odom.files.wheel_joints import joints_told_apart, turned_joints
+
+MS = 10**6
+WHEELS = ("wheel_left_front", "wheel_left_back", "wheel_right_front", "wheel_right_back")
+ARM = ("arm_1_link_joint", "gripper_left_link_joint", "gripper_right_link_joint", "rh_p12_rn")
+
+
+def told(turned: Mapping[str, float]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    found = joints_told_apart(tuple(turned), turned)
+    return found.left, found.right
+
+
+def test_joints_of_an_arm_are_no_wheels() -> None:
+    turned = dict.fromkeys(ARM, 0.5) | dict.fromkeys(WHEELS, 40.0)
+    assert told(turned) == (WHEELS[:2], WHEELS[2:])
+
+
+def test_fingers_are_no_wheels_where_wheels_are_called_otherwise() -> None:
+    turned = {"gripper_left": 0.4, "gripper_right": 0.4, "drive_left": 30.0, "drive_right": 28.0}
+    assert told(turned) == (("drive_left",), ("drive_right",))
+
+
+def test_what_stays_within_a_turn_is_none_of_the_wheels_that_roll() -> None:
+    """A joint of a name that says nothing: it stands while the wheels drive."""
+    turned = {"left_a": 0.4, "right_a": 0.4, "left_b": 30.0, "right_b": 28.0}
+    assert told(turned) == (("left_b",), ("right_b",))
+
+
+def test_names_are_all_there_is_where_the_robot_hardly_moved() -> None:
+    assert told({"left_wheel": 0.5, "right_wheel": 0.0}) == (("left_wheel",), ("right_wheel",))
+
+
+@pytest.mark.parametrize("name", ["front_left_steering_wheel", "left_caster_wheel"])
+def test_castors_and_steering_are_not_driven(name: str) -> None:
+    turned = {name: 20.0, "left_wheel": 30.0, "right_wheel": 30.0}
+    assert told(turned) == (("left_wheel",), ("right_wheel",))
+
+
+def test_wheels_that_a_urdf_names_are_believed() -> None:
+    turned = {"axis_1": 30.0, "axis_2": 30.0, "axis_3": 0.1}
+    found = joints_told_apart(tuple(turned), turned, (("axis_2",), ("axis_1",)))
+    assert (found.left, found.right, found.others) == (("axis_2",), ("axis_1",), ("axis_3",))
+
+
+def test_without_names_those_that_roll_are_told() -> None:
+    turned = {"axis_1": 30.0, "axis_2": 30.0, "axis_3": 0.1}
+    assert joints_told_apart(tuple(turned), turned).rolled == ("axis_1", "axis_2")
+
+
+def sent(ros: Any, n: int) -> list[tuple[str, int, Any]]:
+    """An arm and wheels by nodes of their own, to one topic: the arm is the first to speak."""
+    angle = 0.02 * n
+    wrapped = math.remainder(2.0 * angle, 2.0 * math.pi)
+    arm = ros.joints(n * MS, ARM, [0.1 * math.sin(0.01 * n)] * 4)
+    wheels = ros.joints(n * MS + 5, WHEELS[1:3], [angle, wrapped])
+    return [("/joint_states", n * MS, arm), ("/joint_states", n * MS + 5, wheels)]
+
+
+def test_how_far_joints_turn_is_read_from_all_messages(tmp_path: Path, ros: Any) -> None:
+    entries = [each for n in range(1, 1000) for each in sent(ros, n)]
+    with opened_bag(ros.write(tmp_path / "bag", entries)) as bag:
+        turned = turned_joints(bag, "/joint_states")
+    assert list(turned) == [*ARM, *WHEELS[1:3]]
+    assert turned[ARM[0]] == pytest.approx(0.2, rel=0.01)
+    assert turned[WHEELS[1]] == pytest.approx(998 * 0.02)
+    assert turned[WHEELS[2]] == pytest.approx(998 * 0.04)  # it begins anew at each turn
+
+
+def test_speeds_alone_are_integrated(tmp_path: Path, ros: Any) -> None:
+    entries = []
+    for n in range(200):
+        kind, message = ros.joints((1000 + 100 * n) * MS, WHEELS[1:3], [0.0, 0.0])
+        message.velocity, message.position = np.array([1.0, 0.0]), np.zeros(0)
+        entries.append(("/joint_states", n + 1, (kind, message)))
+    with opened_bag(ros.write(tmp_path / "bag", entries)) as bag:
+        assert turned_joints(bag, "/joint_states") == pytest.approx(
+            {WHEELS[1]: 19.9, WHEELS[2]: 0.0}
+        )
+
+
+def test_a_message_that_cannot_be_read_ends_the_look_and_raises_nothing() -> None:
+    """Who reads the wheels afterwards tells of it, with topic and type."""
+
+    class Spoilt:
+        def messages(self, topics: list[str]) -> Iterator[Any]:
+            stamp = SimpleNamespace(sec=1, nanosec=0)
+            header = SimpleNamespace(stamp=stamp)
+            for angle in (0.0, 9.0):
+                content = SimpleNamespace(header=header, name=["a"], position=[angle], velocity=[])
+                yield SimpleNamespace(content=content, received=1)
+            raise InputError(f"a message of {topics[0]} cannot be read")
+
+    assert turned_joints(Spoilt(), "/joint_states") == {"a": 9.0}  # type: ignore[arg-type]
+
+
+def test_info_lists_wheels_and_says_what_is_none(tmp_path: Path, ros: Any) -> None:
+    entries = [each for n in range(1, 1000) for each in sent(ros, n)]
+    said = " ".join(wo.info(ros.write(tmp_path / "bag", entries)).summary().split())
+    assert f"on the left {WHEELS[1]}, on the right {WHEELS[2]}." in said
+    assert f"No wheels by their names: {', '.join(ARM[:2])} and {ARM[2]}." in said
+    assert f"Not taken for wheels, as nothing says that they are: {ARM[3]}." in said
+
+
+def test_a_topic_of_landmarks_is_not_taken_for_wheels(tmp_path: Path, ros: Any) -> None:
+    """Some put other things into a JointState, and that topic comes first."""
+    entries = []
+    for n in range(1, 500):
+        entries.append(("/a_landmark", n, ros.joints(n * MS, ["l1", "l2"], [1.0, 2.0])))
+        entries.append(("/joints", n, ros.joints(n * MS, ["left_wheel", "right_wheel"], [n, n])))
+    said = " ".join(wo.info(ros.write(tmp_path / "bag", entries)).summary().split())
+    assert "Wheels: /joints, angles of the wheels" in said
+
+
+ARM_JOINT = """<joint name="{name}" type="revolute">
+<parent link="base_link"/><child link="{name}_l"/>
+<origin xyz="0.1 {y} 0.2"/><axis xyz="0 1 0"/><limit lower="-1.5" upper="1.5"/></joint>
+<link name="{name}_l"><collision><geometry>
+<cylinder radius="0.5" length="1"/></geometry></collision></link>"""
+WHEEL = """<joint name="{name}" type="continuous">
+<parent link="base_link"/><child link="{name}_l"/>
+<origin xyz="0 {y} 0"/><axis xyz="0 1 0"/></joint><link name="{name}_l"><collision><geometry>
+<cylinder radius="0.1" length="0.1"/></geometry></collision></link>"""
+
+
+def test_an_arm_in_a_urdf_moves_neither_base_nor_radius() -> None:
+    """Its joints turn about the same axis as the wheels, but have stops."""
+    parts = [ARM_JOINT.format(name=name, y=y) for name, y in (("a", 0.3), ("b", -0.2))]
+    parts += [WHEEL.format(name=name, y=y) for name, y in (("left", 0.2), ("right", -0.2))]
+    robot = of_urdf(f'<robot name="r"><link name="base_link"/>{"".join(parts)}</robot>')
+    assert (robot.left, robot.right) == (("left",), ("right",))
+    assert (robot.separation, robot.radius) == (0.4, 0.1)
+
+
+def test_without_wheels_it_says_what_lacks_and_what_is_not_read(tmp_path: Path, ros: Any) -> None:
+    """Another reference would not help: no command is printed."""
+    entries = []
+    for n in range(1, 60):
+        entries.append(("/ticks", n, ("std_msgs/msg/Int32", ros.make("std_msgs/msg/Int32", n))))
+        entries.append(("/imu", n, ros.imu(10 * n * MS, 0.1)))
+        entries.append(("/mocap", n, ros.pose(10 * n * MS, 0.01 * n, 0.0, 0.0)))
+    result = wo.info(ros.write(tmp_path / "bag", entries))
+    said = " ".join(result.summary().split())
+    assert "By name /ticks (std_msgs/msg/Int32) may, but is of no type that is read." in said
+    assert "Record how the wheels turned as well" in said
+    assert result.to_dict()["next"] is None

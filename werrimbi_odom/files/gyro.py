@@ -1,0 +1,55 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The yaw rate of a gyro that may be mounted on its side."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.model.pose import Floats
+
+TILTED = math.radians(30.0)
+"""Angle between an IMU's z axis and the vertical, beyond which it is taken to be mounted on its
+side. Robots on wheels lean by less, and what is lost of a yaw rate at less is a gyro's scale, which
+is fitted. Upside down is not asked: too many drivers give the accelerometer the other sign."""
+GRAVITY = (5.0, 15.0)
+"""Mean specific forces [m/s^2] that are the floor's: half of it to half as much again. Others are
+in other units, or nothing was measured."""
+_FEWEST = 20
+_SIDES = ("x", "y", "z")
+
+
+def yaw_rate(rates: Floats, forces: NDArray[np.float64]) -> tuple[Floats, str]:
+    """Turning about what the accelerometer says is upwards.
+
+    Parameters
+    ----------
+    rates : ndarray, shape (n, 3)
+        Of the gyro [rad/s].
+    forces : ndarray, shape (m, 3)
+        Of the accelerometer [m/s^2]; m may be 0.
+
+    Returns
+    -------
+    (yaw rate (n,), words)
+        About the z axis where that is upwards, or nothing tells; the words are the end of a
+        sentence, "" where there is nothing to say.
+    """
+    known = forces[np.isfinite(forces).all(axis=1)]
+    if len(known) < _FEWEST:
+        return rates[:, 2], ""
+    up = np.median(known, axis=0)
+    size = float(np.linalg.norm(up))
+    if not GRAVITY[0] < size < GRAVITY[1] or abs(up[2]) / size > math.cos(TILTED):
+        return rates[:, 2], ""
+    main = int(np.argmax(np.abs(up)))
+    axis = f"{'minus ' if up[main] < 0.0 else ''}{_SIDES[main]}"
+    aside = math.degrees(math.acos(min(abs(up[main]) / size, 1.0)))
+    where = f"its {axis} axis" if aside < 10.0 else f"{aside:.0f}° from its {axis} axis"
+    words = (
+        f"mounted on its side: by its accelerometer upwards is {where}, and its turning about that"
+    )
+    return rates @ (up / size), f"{words} is taken"

@@ -1,0 +1,187 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Which joints of a JointState are driven wheels: by their names, and by how they turn.
+
+One topic often holds all joints of a robot: wheels, an arm, a gripper, a camera's pan and tilt. A
+gripper has a left and a right finger as well; but they stay within a turn, and wheels do not.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+from array import array
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.bag import stamp_of
+from werrimbi_odom.model.pose import Floats
+
+if TYPE_CHECKING:
+    from werrimbi_odom.files.bag import Bag
+
+_NO_WHEELS = """
+ankle arm blade brush camera cutter door elbow finger flipper foot forearm gimbal grip gripper hand
+head hip jaw knee knuckle leg lift mower neck pan pantilt propeller rotor shoulder thumb tilt torso
+trunk waist wrist
+"""
+NO_WHEELS = frozenset(_NO_WHEELS.split())
+"""Words of names of joints that roll on no floor."""
+
+UNDRIVEN = ("cast", "steer", "swivel", "suspension", "rocker", "bogie")
+"""Parts of names of joints about a wheel that no motor turns, or that do not roll."""
+
+SIDES = ("left", "right")
+TURN = 2.0 * math.pi
+_ROUNDING = 1e-3  # [rad], of angles that begin anew at each turn and so stay within one
+
+
+@dataclass(frozen=True)
+class WheelJoints:
+    """The joints of a recording, told apart."""
+
+    left: tuple[str, ...] = ()
+    right: tuple[str, ...] = ()
+    others: tuple[str, ...] = ()
+    """Joints that are no wheels, or are not taken for any."""
+    turned: Mapping[str, float] | None = None
+    """How far each joint got from where it had been, at the most [rad]; None where they were not
+    looked at."""
+
+    @property
+    def rolled(self) -> tuple[str, ...]:
+        """Those of the others that turned by more than a turn, as wheels do."""
+        return tuple(name for name in self.others if (self.turned or {}).get(name, 0.0) > TURN)
+
+
+def is_no_wheel(name: str) -> bool:
+    """Whether a joint's name says that it is no driven wheel."""
+    low = name.lower()
+    if any(part in low for part in UNDRIVEN):
+        return True
+    return "wheel" not in low and bool(_words(name) & NO_WHEELS)
+
+
+def joints_told_apart(
+    joints: Sequence[str],
+    turned: Mapping[str, float],
+    known: tuple[Sequence[str], Sequence[str]] = ((), ()),
+) -> WheelJoints:
+    """Wheels on the left and on the right, and what is neither.
+
+    Parameters
+    ----------
+    joints
+        Names of all.
+    turned
+        How far each got from where it had been, at the most [rad].
+    known
+        Wheels of both sides that a URDF or a robot file names: they are believed.
+    """
+    if all(known) and {*known[0], *known[1]} <= set(joints):
+        left, right = tuple(known[0]), tuple(known[1])
+    else:
+        left, right = _by_names(joints, turned)
+    taken = {*left, *right}
+    others = tuple(name for name in joints if name not in taken)
+    return WheelJoints(left, right, others, turned)
+
+
+def _by_names(
+    joints: Sequence[str], turned: Mapping[str, float]
+) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    able = [name for name in joints if not is_no_wheel(name)]
+    for named in ([name for name in able if "wheel" in name.lower()], able):
+        left, right = (tuple(name for name in named if is_of(name, side)) for side in SIDES)
+        if left and right:
+            rolled = [
+                tuple(name for name in side if turned.get(name, 0.0) > TURN)
+                for side in (left, right)
+            ]
+            # One that stays within a turn while others on both sides roll is none; where the robot
+            # hardly moved, none rolls, and names are all there is.
+            return (rolled[0], rolled[1]) if all(rolled) else (left, right)
+    return (), ()
+
+
+def is_of(name: str, side: str) -> bool:
+    """Whether a joint's name says that it is on a side."""
+    parts = name.lower().replace("-", "_").split("_")
+    return (
+        side in name.lower()
+        or side[0] in parts
+        or any(
+            part in (f"f{side[0]}", f"r{side[0]}", f"{side[0]}f", f"{side[0]}r") for part in parts
+        )
+    )
+
+
+def turned_joints(bag: Bag, topic: str) -> dict[str, float]:
+    """How far each joint of a topic got from where it had been, at the most [rad].
+
+    All messages are asked, for several nodes may send to one topic, each its own joints; up to one
+    that cannot be read, of which whoever reads the wheels will tell. Where there are speeds alone
+    they are integrated.
+    """
+    angles: dict[str, _Values] = {}
+    speeds: dict[str, _Values] = {}
+    with suppress(InputError):
+        for message in bag.messages([topic]):
+            content = message.content
+            time = stamp_of(message)
+            for found, values in ((angles, content.position), (speeds, content.velocity)):
+                for name, value in zip(content.name, values, strict=False):
+                    found.setdefault(name, _Values()).add(time, float(value))
+            for name in content.name:
+                angles.setdefault(name, _Values())
+    return {
+        name: _range(each.values) or (_integrated(speeds[name]) if name in speeds else 0.0)
+        for name, each in angles.items()
+    }
+
+
+class _Values:
+    """Times and values of a joint, those that are finite."""
+
+    def __init__(self) -> None:
+        self._time, self._values = array("d"), array("d")
+
+    def add(self, time: float, value: float) -> None:
+        if math.isfinite(value):
+            self._time.append(time)
+            self._values.append(value)
+
+    @property
+    def time(self) -> Floats:
+        return np.array(self._time)
+
+    @property
+    def values(self) -> Floats:
+        return np.array(self._values)
+
+
+def _range(angles: Floats) -> float:
+    """Of angles, unwrapped where they begin anew at each turn."""
+    if angles.size == 0:
+        return 0.0
+    within = float(np.ptp(angles))
+    leaps = np.abs(np.diff(angles)) > 0.75 * TURN
+    if within <= TURN + _ROUNDING and leaps.any():
+        return float(np.ptp(np.unwrap(angles)))
+    return within
+
+
+def _integrated(speeds: _Values) -> float:
+    time, values = np.maximum.accumulate(speeds.time), speeds.values
+    angles = np.cumsum(0.5 * (values[1:] + values[:-1]) * np.diff(time))
+    return float(np.ptp(np.append(0.0, angles)))
+
+
+def _words(name: str) -> set[str]:
+    parts = re.findall(r"[A-Z]?[a-z]+|[A-Z]+", name)
+    return {part.lower() for part in parts}
