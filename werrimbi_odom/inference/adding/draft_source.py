@@ -53,8 +53,9 @@ def source_of(name: str, amount: Amount, seen: Seen, form: Form, drives: int, st
     body = [f"@{kind}_effect("]
     if form.quadrature:
         body.append(f'{INDENT}quadrature=("{form.quadrature[0]}", "{form.quadrature[1]}"),')
-    if seen.channel is not None:
-        body.append(f'{INDENT}channels=("{seen.channel}",),')
+    if seen.channels:
+        names = ", ".join(f'"{name}"' for name in seen.channels)
+        body.append(f"{INDENT}channels=({names}{',' * (len(seen.channels) == 1)}),")
     body += [item.source() for item in form.parameters]
     body += [")", f"def {name}("]
     body += [f"{INDENT}{first}: {moved}[Number], drive: Drive[Number], {given}"]

@@ -1,0 +1,198 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Terms of a law of two variables: products, ratios, and what acts only where a gate is open.
+
+A term is what a share is in proportion to. It has values at every step, for the search, and a
+source, for the effect file; both are means over the step (`effects.shapes`), so that it does not
+matter how often counters are read. Terms may be added, since each has a coefficient of its own
+unit; nothing is divided by what comes near zero.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from typing import Literal
+
+import numpy as np
+
+from werrimbi_odom.effects.shapes import mean_product, mean_ratio, mean_step, steady
+from werrimbi_odom.inference.adding.draft_laws import unit_of
+from werrimbi_odom.inference.adding.draft_variables import Signal
+from werrimbi_odom.inference.diagnosis.evidence import Amount
+from werrimbi_odom.inference.rules import CLEAR_OF_ZERO, GATE_SPEEDS, GATE_WIDTH, ROLLS_BACKWARDS
+from werrimbi_odom.model.drive import Span
+from werrimbi_odom.model.pose import Floats
+
+Kind = Literal["line", "product", "ratio", "gated law"]
+
+
+@dataclass(frozen=True)
+class Term:
+    """What a share may be in proportion to, for the left and the right wheel alike or not."""
+
+    kind: Kind
+    formula: str
+    """As it is written by hand: v * payload_kg."""
+    signals: tuple[Signal, ...]
+    source: tuple[str, str]
+    """Python for its mean over a step, for left and right wheel."""
+    values: tuple[Floats, Floats]
+    """The same at every step, (n,); one array twice where both are the same."""
+    unit: dict[str, int]
+    """Powers of its units."""
+
+    @property
+    def variables(self) -> frozenset[str]:
+        """What is measured in it, whatever is made of that."""
+        return frozenset(signal.variable for signal in self.signals)
+
+    @property
+    def channels(self) -> tuple[str, ...]:
+        """Measured columns that it looks at."""
+        return tuple(signal.channel for signal in self.signals if signal.channel is not None)
+
+
+def terms_of(signals: Sequence[Signal]) -> list[Term]:
+    """All terms that the signals of one kind of amount make, the simplest first."""
+    found = [_line(one) for one in signals]
+    found += [
+        _product(one, other)
+        for one, other in combinations(signals, 2)
+        if one.variable != other.variable
+    ]
+    found += [
+        _ratio(one, other)
+        for other in signals
+        if _clear_of_zero(other)
+        for one in signals
+        if one.variable != other.variable
+    ]
+    (speed,) = (signal for signal in signals if signal.name == "v")
+    for gate in _gates(speed):
+        found.append(gate)
+        found += [_gated(one, gate) for one in signals if one.variable != speed.variable]
+    return [term for term in found if any(np.any(side) for side in term.values)]
+
+
+def is_of_two(term: Term, amount: Amount) -> bool:
+    """Whether no law of one variable says the same.
+
+    That laws of one variable know the size of a speed alone; per turn, its sign makes a product of
+    speed and yaw rate.
+    """
+    return term.kind != "line" or (term.formula == "v" and amount.per == "turn")
+
+
+def unit_of_coefficient(term: Term, amount: Amount) -> str:
+    """Of the number before a term: the share's unit over the term's."""
+    above, _, below = unit_of(amount).partition("/")
+    powers = dict.fromkeys((above, below), 0) | {name: -power for name, power in term.unit.items()}
+    powers[above] += 1
+    powers[below] -= 1
+    powers.pop("", None)
+    up, down = (
+        "*".join(
+            name if sign * power == 1 else f"{name}^{sign * power}"
+            for name, power in powers.items()
+            if sign * power > 0
+        )
+        for sign in (1, -1)
+    )
+    if not down:
+        return up
+    return f"{up or 1}/({down})" if "*" in down else f"{up or 1}/{down}"
+
+
+def _line(one: Signal) -> Term:
+    left, right = (_mean(one, side) for side in (0, 1))
+    return Term("line", one.name, (one,), (left[0], right[0]), (left[1], right[1]), one.unit)
+
+
+def _product(one: Signal, other: Signal) -> Term:
+    def on(side: int) -> tuple[str, Floats]:
+        if one.spans and other.spans:
+            values = mean_product(one.values[side], other.values[side])
+            return f"mean_product({one.source[side]}, {other.source[side]})", values
+        (first, a), (second, b) = _mean(one, side), _mean(other, side)
+        return f"{first} * {second}", a * b
+
+    (left, a), (right, b) = on(0), on(1)
+    unit = _times(one.unit, other.unit, 1)
+    formula = f"{one.name} * {other.name}"
+    return Term("product", formula, (one, other), (left, right), (a, b), unit)
+
+
+def _ratio(one: Signal, other: Signal) -> Term:
+    def on(side: int) -> tuple[str, Floats]:
+        above = one.source[side] if one.spans else f"steady({one.source[side]})"
+        values = mean_ratio(one.values[side], other.values[side])
+        return f"mean_ratio({above}, {other.source[side]})", values
+
+    (left, a), (right, b) = on(0), on(1)
+    unit = _times(one.unit, other.unit, -1)
+    formula = f"{one.name} / {other.name}"
+    return Term("ratio", formula, (one, other), (left, right), (a, b), unit)
+
+
+def _gates(speed: Signal) -> Iterator[Term]:
+    """Where something acts: rolling backwards, and above some speeds."""
+    sizes = np.abs(np.concatenate([side.start for side in speed.values]))
+    moving = sizes[sizes > ROLLS_BACKWARDS]
+    backwards = [(side.start < -ROLLS_BACKWARDS).astype(np.float64) for side in speed.values]
+    yield Term(
+        "gated law",
+        "(v < 0)",
+        (speed,),
+        (f"({speed.source[0]} < {-ROLLS_BACKWARDS})", f"({speed.source[1]} < {-ROLLS_BACKWARDS})"),
+        (backwards[0], backwards[1]),
+        {},
+    )
+    for share in GATE_SPEEDS if moving.size else ():
+        edge = float(f"{np.quantile(moving, share):.2g}")
+        width = float(f"{GATE_WIDTH * float(moving.max()):.1g}")
+        yield Term(
+            "gated law",
+            f"(|v| > {edge:g})",
+            (speed,),
+            (
+                f"mean_step(steady(abs({speed.source[0]})), {edge:g}, {width:g})",
+                f"mean_step(steady(abs({speed.source[1]})), {edge:g}, {width:g})",
+            ),
+            (
+                mean_step(steady(np.abs(speed.values[0].start)), edge, width),
+                mean_step(steady(np.abs(speed.values[1].start)), edge, width),
+            ),
+            {},
+        )
+
+
+def _gated(one: Signal, gate: Term) -> Term:
+    (left, a), (right, b) = _mean(one, 0), _mean(one, 1)
+    return Term(
+        "gated law",
+        f"{one.name} * {gate.formula}",
+        (one, *gate.signals),
+        (f"{left} * {gate.source[0]}", f"{right} * {gate.source[1]}"),
+        (a * gate.values[0], b * gate.values[1]),
+        one.unit,
+    )
+
+
+def _mean(one: Signal, side: int) -> tuple[str, Floats]:
+    source, values = one.source[side], one.values[side]
+    return (f"{source}.mean" if one.spans else source), np.asarray(values.mean)
+
+
+def _clear_of_zero(other: Signal) -> bool:
+    """Whether it may be divided by."""
+    spans: list[Span[Floats]] = list(other.values)
+    ends = np.concatenate([end for span in spans for end in span])
+    least = float(np.min(ends)) if np.all(ends > 0.0) else -float(np.max(ends))
+    return other.spans and least > CLEAR_OF_ZERO * float(np.max(np.abs(ends)))
+
+
+def _times(one: dict[str, int], other: dict[str, int], power: int) -> dict[str, int]:
+    names = dict.fromkeys((*one, *other))
+    return {name: one.get(name, 0) + power * other.get(name, 0) for name in names}
