@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
@@ -29,15 +30,20 @@ class LawOfTwo(NamedTuple):
     @property
     def variables(self) -> tuple[str, ...]:
         """Both of them; of one alone the second is what the error is in proportion to."""
-        names = dict.fromkeys(signal.variable for term in self.terms for signal in term.signals)
+        names = dict.fromkeys(self._of_share)
         if len(names) < 2 and self.amount.per in _MEASURED:
             names[_MEASURED[self.amount.per]] = None
         return tuple(names)
 
     @property
     def name(self) -> str:
-        """Of its variables, in words."""
-        return " and ".join(self.variables)
+        """Of its variables, in words; what acts only backwards goes with the direction."""
+        alone = set(self._of_share) == {"direction"}
+        return "direction" if alone else " and ".join(self.variables)
+
+    @property
+    def _of_share(self) -> list[str]:
+        return [signal.variable for term in self.terms for signal in term.signals]
 
     @property
     def kind(self) -> str:
@@ -55,6 +61,16 @@ class LawOfTwo(NamedTuple):
         first = f"{'-' if signs[0] == '-' else ''}{parts[0]}"
         rest = [f" {sign} {part}" for sign, part in zip(signs[1:], parts[1:], strict=True)]
         return f"{self.amount.channel} = {first}{''.join(rest)}"
+
+    def symbols(self, line: str) -> str:
+        """What the letters in a line are; "" where there are none."""
+        whose = " of that wheel" if self.amount.of_wheels else ""
+        words = []
+        if re.search(r"\bv\b", line):
+            words.append(f"v: speed{whose} [m/s], backwards negative")
+        if re.search(r"\bw\b", line):
+            words.append("w: yaw rate [rad/s]")
+        return "; ".join(words)
 
     @property
     def seen(self) -> Seen:
@@ -82,10 +98,11 @@ class LawOfTwo(NamedTuple):
                     0.0,
                     typical,
                     wide(typical),
-                    f"share for each unit of {term.formula}",
+                    _says(term),
                 )
             )
         sums = [f"{name} * {term.formula}" for name, term in zip(names, self.terms, strict=True)]
+        symbols = self.symbols(" ".join(sums))
 
         def expression(side: str) -> str:
             number = ("left", "right").index(side)
@@ -102,10 +119,17 @@ class LawOfTwo(NamedTuple):
             self.kind,
             tuple(declared),
             expression,
-            f"share = {' + '.join(sums)}",
+            f"share = {' + '.join(sums)}{f'  ({symbols})' if symbols else ''}",
             (),
             len(self.terms),
         )
+
+
+def _says(term: Term) -> str:
+    """What the number before a term is."""
+    of, _, gate = f" * {term.formula}".partition(" * (")
+    each = f" for each unit of {of.removeprefix(' * ')}" if of else ""
+    return f"share{each}{f' where {gate[:-1]}' if gate else ''}"
 
 
 def _place(factor: str) -> int:

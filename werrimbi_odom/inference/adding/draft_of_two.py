@@ -130,7 +130,7 @@ def draft_of_two(diagnosis: Diagnosis, one: Draft | None, show: Show = silent) -
             (option.plan.effect.name, option.plan.form.kind, option.fit.total - best.fit.total)
             for option in options
         ),
-        OfTwo(law.variables, line, tried, one),
+        OfTwo(law.variables, line, law.symbols(line), tried, one),
     )
 
 

@@ -11,7 +11,7 @@ unit; nothing is divided by what comes near zero.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import Literal
 
@@ -88,21 +88,17 @@ def is_of_two(term: Term, amount: Amount) -> bool:
 def unit_of_coefficient(term: Term, amount: Amount) -> str:
     """Of the number before a term: the share's unit over the term's."""
     above, _, below = unit_of(amount).partition("/")
-    powers = dict.fromkeys((above, below), 0) | {name: -power for name, power in term.unit.items()}
-    powers[above] += 1
-    powers[below] -= 1
+    powers: dict[str, int] = {}
+    for name, power in [(above, 1), (below, -1), *((name, -n) for name, n in term.unit.items())]:
+        powers[name] = powers.get(name, 0) + power
     powers.pop("", None)
-    up, down = (
-        "*".join(
-            name if sign * power == 1 else f"{name}^{sign * power}"
-            for name, power in powers.items()
-            if sign * power > 0
-        )
-        for sign in (1, -1)
-    )
-    if not down:
-        return up
-    return f"{up or 1}/({down})" if "*" in down else f"{up or 1}/{down}"
+    up = [_power(name, power) for name, power in powers.items() if power > 0]
+    down = [_power(name, -power) for name, power in powers.items() if power < 0]
+    return "/".join(["*".join(up) or "1", *down]) if up or down else ""
+
+
+def _power(name: str, power: int) -> str:
+    return name if power == 1 else f"{name}^{power}"
 
 
 def _line(one: Signal) -> Term:
@@ -144,7 +140,7 @@ def _gates(speed: Signal) -> Iterator[Term]:
     yield Term(
         "gated law",
         "(v < 0)",
-        (speed,),
+        (replace(speed, variable="direction"),),
         (f"({speed.source[0]} < {-ROLLS_BACKWARDS})", f"({speed.source[1]} < {-ROLLS_BACKWARDS})"),
         (backwards[0], backwards[1]),
         {},

@@ -72,6 +72,8 @@ class OfTwo:
     variables: tuple[str, ...]
     law: str
     """In rates, with its numbers: sideways = -0.011 * v * w."""
+    symbols: str
+    """What the letters in it are."""
     terms_tried: int
     one: Draft | None
     """None where no law of one variable could be drafted."""

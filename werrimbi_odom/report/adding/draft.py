@@ -41,9 +41,10 @@ def _what_it_goes_with(draft: Draft) -> str:
             "explains them best among the simple laws."
         )
     kind = "" if "sum" in draft.form else f", a {draft.form}"
+    symbols = f"; {two.symbols}" if two.symbols else ""
     text = (
-        f"Their {claim.channel} error goes with {claim.variable}{kind}: {two.law} "
-        "(each second; v is the speed, backwards negative, w the turning in radians)."
+        f"Their {claim.channel} error goes with {claim.variable}{kind}: {two.law} (each second"
+        f"{symbols})."
     )
     sides = two.held_out
     if sides is None:
