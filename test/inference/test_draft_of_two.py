@@ -194,7 +194,7 @@ def test_a_search_and_an_effect_file_mean_the_same() -> None:
         law = LawOfTwo(amount, (term,), (1e-3,), 1.0)
         effect = loaded(source_of("drafted", amount, law.seen, law.form, 7, "p = 1e-9"))
         moved = effect.apply(motion, drive, gain=0.01)
-        expected = 0.01 * term.values[0] * drive.duration
+        expected = 0.01 * term.values(0) * drive.duration
         assert moved.sideways - motion.sideways == pytest.approx(expected, abs=1e-12), term.formula
 
 

@@ -65,6 +65,8 @@ def draft(
 ) -> Drafted:
     """Where the verdict is unknown: an effect whose law is the dependence that the drives show.
 
+    A law of one variable, or of two where the drives held out want the second beyond chance.
+
     Parameters
     ----------
     force

@@ -12,8 +12,12 @@ must err less than the law of one variable does, by more than chance.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Collection
+from collections.abc import Callable, Collection, Iterator, Sequence
 from dataclasses import replace
+from itertools import islice
+from typing import NamedTuple
+
+import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.added import Added
@@ -39,7 +43,8 @@ from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS
 from werrimbi_odom.inference.diagnosis.paired_comparison import sides_of
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
-from werrimbi_odom.inference.rules import MOST_FITTED, RIVAL, SECOND_VARIABLE, WORTH_FITTING
+from werrimbi_odom.inference.fitting.likelihood import Variances
+from werrimbi_odom.inference.rules import MOST_FITTED, RIVAL, SEARCHES, WORTH_FITTING
 from werrimbi_odom.progress import Show, silent
 
 
@@ -86,56 +91,42 @@ def draft_of_two(diagnosis: Diagnosis, one: Draft | None, show: Show = silent) -
     """
     base = diagnosis.final
     drives = Drives(diagnosis.runs, base.point.excluded, base.point.options)
-    # As with laws of one: without a law the wheels' noise stands for it, and hides what tells.
-    noise = base.point.variances if one is None else one.fit.point.variances
-    show(0.0, "laws of two variables")
-    laws, tried = _searched(diagnosis, replace(base.point, variances=noise))
-    plans = []
-    for law in laws:
-        chance = in_any_of(tried, chi2_above(law.gain, len(law.terms)))
-        claim = Claim(law.amount, law.name, chance)
-        plans.append(planned(diagnosis, claim, law.seen, law.form))
-    ordered = [
-        plan for plan in by_score(diagnosis, drives, plans, noise) if keeps_laws(plan.effect)
-    ]
-    options: list[Option] = []
-    for number, plan in enumerate(ordered[:MOST_FITTED]):
-        if plan.excess > ordered[0].excess - WORTH_FITTING:
-            show((number + 1) / (MOST_FITTED + 1), f"{plan.claim.variable}: {plan.form.kind}")
-            options.append(fitted_plan(diagnosis, drives, plan))
-
-    def total(option: Option) -> float:
-        searched = _price_of_search(tried) * option.plan.form.numbers
-        return option.fit.total + searched * option.fit.scatter
-
-    best = min(options, key=total, default=None)
-    if best is None or total(best) > (base if one is None else one.fit).total - RIVAL:
+    noise = _as_calm(base.point.variances if one is None else one.fit.point.variances)
+    found: list[_Found] = []
+    for number in range(SEARCHES):
+        show(number / SEARCHES, "laws of two variables")
+        laws, tried = _searched(diagnosis, replace(base.point, variances=noise))
+        found += _fitted(diagnosis, drives, laws, tried, noise)
+        if not found:
+            return None
+        noise = min(found, key=lambda each: each.total).option.fit.point.variances
+    best = min(found, key=lambda each: each.total)
+    if best.total > (base if one is None else one.fit).total - RIVAL:
         return None
-    last = with_values(diagnosis, best)
-    law = next(
-        law for law, plan in zip(laws, plans, strict=True) if plan.effect is best.plan.effect
-    )
-    held = best.fit.point.model.robot.effects
-    applied = next(item for item in held if item.name == last.effect.name)
-    line = law.in_a_line([applied.values[item.name] for item in last.form.parameters])
+    last, fit = with_values(diagnosis, best.option), best.option.fit
+    applied = next(item for item in fit.point.model.robot.effects if item.name == last.effect.name)
+    line = best.law.in_a_line([applied.values[item.name] for item in last.form.parameters])
     return Draft(
         last.effect.name,
         last.source,
         last.effect,
         last.claim,
         last.form.kind,
-        best.fit,
+        fit,
         diagnosis,
         tuple(
-            (option.plan.effect.name, option.plan.form.kind, option.fit.total - best.fit.total)
-            for option in options
+            (each.option.plan.effect.name, each.option.plan.form.kind, each.total - best.total)
+            for each in found
         ),
-        OfTwo(law.variables, line, law.symbols(line), tried, one),
+        OfTwo(best.law.variables, line, best.law.symbols(line), best.tried, one),
     )
 
 
 def better_held_out(two: Draft, with_two: Added, with_one: Added | None) -> Draft | None:
     """The law of two, where drives held out of both fits want it beyond chance; else None.
+
+    They are asked one question that was put before they answered: whether their errors rise when
+    the law of one takes its place.
 
     Parameters
     ----------
@@ -146,9 +137,49 @@ def better_held_out(two: Draft, with_two: Added, with_one: Added | None) -> Draf
     side = with_two.holdout
     other = side.calibrated if with_one is None else with_one.holdout.after
     sides = sides_of(side.after, other, side.unit)
-    if sides.chance >= SECOND_VARIABLE:
+    if not sides.rose:
         return None
     return replace(two, of_two=replace(two.of_two, held_out=sides))
+
+
+class _Found(NamedTuple):
+    """A law of two that was fitted."""
+
+    law: LawOfTwo
+    option: Option
+    tried: int
+    """Terms among which it was found."""
+
+    @property
+    def total(self) -> float:
+        """Cost and price, that of the search too."""
+        searched = _price_of_search(self.tried) * len(self.law.terms)
+        return self.option.fit.total + searched * self.option.fit.scatter
+
+
+def _fitted(
+    diagnosis: Diagnosis, drives: Drives, laws: Sequence[LawOfTwo], tried: int, noise: Variances
+) -> Iterator[_Found]:
+    """The few laws that may be the best, fitted in full."""
+    planned_from = {}
+    for law in laws:
+        chance = in_any_of(tried, chi2_above(law.gain, len(law.terms)))
+        plan = planned(diagnosis, Claim(law.amount, law.name, chance), law.seen, law.form)
+        planned_from[plan.effect.apply] = law, plan
+    ordered = by_score(diagnosis, drives, [plan for _, plan in planned_from.values()], noise)
+    likely = [plan for plan in ordered if plan.excess > ordered[0].excess - WORTH_FITTING]
+    for plan in islice((plan for plan in likely if keeps_laws(plan.effect)), MOST_FITTED):
+        law, _ = planned_from[plan.effect.apply]
+        yield _Found(law, fitted_plan(diagnosis, drives, plan), tried)
+
+
+def _as_calm(noise: Variances) -> Variances:
+    """Both wheels' noise as that of the calmer one.
+
+    While a law of one wheel is missing, that wheel's noise stands for it and hides what tells.
+    """
+    calm = np.minimum(noise.left, noise.right)
+    return replace(noise, left=calm, right=calm)
 
 
 def _searched(diagnosis: Diagnosis, point: Point) -> tuple[list[LawOfTwo], int]:
@@ -182,10 +213,12 @@ def _price_of_search(tried: int) -> float:
 
 
 def _of_two_variables(sums: Sums) -> Callable[[Collection[int], int], bool]:
-    """Whether a term may join others: so that there are two variables, and no more."""
+    """Whether a term may join others: two variables, and one gate, are what is still read."""
 
     def may_join(chosen: Collection[int], one: int) -> bool:
-        names = sums.terms[one].variables.union(*(sums.terms[each].variables for each in chosen))
-        return len(names) <= 2
+        terms = [sums.terms[each] for each in (*chosen, one)]
+        names = frozenset[str]().union(*(term.variables for term in terms))
+        gates = {term.formula.partition("(")[2] for term in terms} - {""}
+        return len(names) <= 2 and len(gates) <= 1
 
     return may_join

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import numpy as np
 
 from werrimbi_odom.inference.adding.draft_terms import Term
-from werrimbi_odom.inference.diagnosis.evidence import Amount, legs_pushed, pushes_of
+from werrimbi_odom.inference.diagnosis.evidence import BATCH, Amount, legs_pushed, pushes_of
 from werrimbi_odom.inference.fitting.candidates import unexplained
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
@@ -53,21 +53,29 @@ def sums_of(
     prediction = predict_all(point.model, runs)
     frame, rest = unexplained(runs, point, numbers, prediction)
     of_left, of_right = pushes_of(runs, path_of(point.model, runs), [amount], point)
-    left, right = (np.stack([term.values[side] for term in terms], axis=-1) for side in (0, 1))
-    change = legs_pushed(runs, left, of_left)
-    if amount.of_wheels:
-        change += legs_pushed(runs, right, of_right)
-    marks = unexpected(runs, point, prediction).marks(change)[..., : len(terms)]
-    columns = marks.reshape(rest.size, len(terms))
+    told = unexpected(runs, point, prediction)
+    columns = np.empty((rest.size, len(terms)))
+    each = max(1, BATCH // max(runs.run_of_step.size, 1))
+    for begin in range(0, len(terms), each):
+        some = terms[begin : begin + each]
+        change = legs_pushed(runs, _values(some, 0), of_left)
+        if amount.of_wheels:
+            change += legs_pushed(runs, _values(some, 1), of_right)
+        marks = told.marks(change)[..., : len(some)]
+        columns[:, begin : begin + len(some)] = marks.reshape(rest.size, len(some))
     size = np.sqrt(np.sum(columns**2, axis=0))
     unit = columns / np.where(size > SILENT, size, 1.0)
     explained = frame.basis.T @ unit
     square = unit.T @ unit - explained.T @ explained
     determined = (size > SILENT) & (np.diag(square) > DETERMINED**2)
-    told: list[int] = np.flatnonzero(determined).tolist()
+    kept: list[int] = np.flatnonzero(determined).tolist()
     return Sums(
-        tuple(terms[index] for index in told),
-        square[np.ix_(told, told)],
-        (unit.T @ rest)[told],
-        size[told],
+        tuple(terms[index] for index in kept),
+        square[np.ix_(kept, kept)],
+        (unit.T @ rest)[kept],
+        size[kept],
     )
+
+
+def _values(terms: Sequence[Term], side: int) -> Floats:
+    return np.stack([term.values(side) for term in terms], axis=-1)

@@ -10,8 +10,9 @@ unit; nothing is divided by what comes near zero.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
 from typing import Literal
 
@@ -38,8 +39,9 @@ class Term:
     signals: tuple[Signal, ...]
     source: tuple[str, str]
     """Python for its mean over a step, for left and right wheel."""
-    values: tuple[Floats, Floats]
-    """The same at every step, (n,); one array twice where both are the same."""
+    values: Callable[[int], Floats]
+    """The same at every step, (n,), of the left wheel (0) or the right one (1); worked out when
+    asked for, since of all terms it is much."""
     unit: dict[str, int]
     """Powers of its units."""
 
@@ -73,7 +75,7 @@ def terms_of(signals: Sequence[Signal]) -> list[Term]:
     for gate in _gates(speed):
         found.append(gate)
         found += [_gated(one, gate) for one in signals if one.variable != speed.variable]
-    return [term for term in found if any(np.any(side) for side in term.values)]
+    return found
 
 
 def is_of_two(term: Term, amount: Amount) -> bool:
@@ -102,83 +104,96 @@ def _power(name: str, power: int) -> str:
 
 
 def _line(one: Signal) -> Term:
-    left, right = (_mean(one, side) for side in (0, 1))
-    return Term("line", one.name, (one,), (left[0], right[0]), (left[1], right[1]), one.unit)
+    return Term("line", one.name, (one,), _sources(one), partial(_values, one), one.unit)
 
 
 def _product(one: Signal, other: Signal) -> Term:
-    def on(side: int) -> tuple[str, Floats]:
-        if one.spans and other.spans:
-            values = mean_product(one.values[side], other.values[side])
-            return f"mean_product({one.source[side]}, {other.source[side]})", values
-        (first, a), (second, b) = _mean(one, side), _mean(other, side)
-        return f"{first} * {second}", a * b
-
-    (left, a), (right, b) = on(0), on(1)
-    unit = _times(one.unit, other.unit, 1)
     formula = f"{one.name} * {other.name}"
-    return Term("product", formula, (one, other), (left, right), (a, b), unit)
+    unit = _times(one.unit, other.unit, 1)
+    if one.spans and other.spans:
+        pairs = zip(one.source, other.source, strict=True)
+        left, right = (f"mean_product({first}, {second})" for first, second in pairs)
+    else:
+        pairs = zip(_sources(one), _sources(other), strict=True)
+        left, right = (f"{first} * {second}" for first, second in pairs)
+    return Term(
+        "product",
+        formula,
+        (one, other),
+        (left, right),
+        lambda side: mean_product(one.values[side], other.values[side]),
+        unit,
+    )
 
 
 def _ratio(one: Signal, other: Signal) -> Term:
-    def on(side: int) -> tuple[str, Floats]:
-        above = one.source[side] if one.spans else f"steady({one.source[side]})"
-        values = mean_ratio(one.values[side], other.values[side])
-        return f"mean_ratio({above}, {other.source[side]})", values
-
-    (left, a), (right, b) = on(0), on(1)
-    unit = _times(one.unit, other.unit, -1)
-    formula = f"{one.name} / {other.name}"
-    return Term("ratio", formula, (one, other), (left, right), (a, b), unit)
+    above = one.source if one.spans else tuple(f"steady({source})" for source in one.source)
+    pairs = zip(above, other.source, strict=True)
+    left, right = (f"mean_ratio({first}, {second})" for first, second in pairs)
+    return Term(
+        "ratio",
+        f"{one.name} / {other.name}",
+        (one, other),
+        (left, right),
+        lambda side: mean_ratio(one.values[side], other.values[side]),
+        _times(one.unit, other.unit, -1),
+    )
 
 
 def _gates(speed: Signal) -> Iterator[Term]:
     """Where something acts: rolling backwards, and above some speeds."""
-    sizes = np.abs(np.concatenate([side.start for side in speed.values]))
-    moving = sizes[sizes > ROLLS_BACKWARDS]
-    backwards = [(side.start < -ROLLS_BACKWARDS).astype(np.float64) for side in speed.values]
+    left, right = (f"({source} < {-ROLLS_BACKWARDS})" for source in speed.source)
     yield Term(
         "gated law",
         "(v < 0)",
         (replace(speed, variable="direction"),),
-        (f"({speed.source[0]} < {-ROLLS_BACKWARDS})", f"({speed.source[1]} < {-ROLLS_BACKWARDS})"),
-        (backwards[0], backwards[1]),
+        (left, right),
+        lambda side: np.asarray(_values(speed, side) < -ROLLS_BACKWARDS, dtype=np.float64),
         {},
     )
+    sizes = np.abs(np.concatenate([_values(speed, side) for side in (0, 1)]))
+    moving = sizes[sizes > ROLLS_BACKWARDS]
     for share in GATE_SPEEDS if moving.size else ():
         edge = float(f"{np.quantile(moving, share):.2g}")
         width = float(f"{GATE_WIDTH * float(moving.max()):.1g}")
+        left, right = (
+            f"mean_step(steady(abs({source})), {edge:g}, {width:g})" for source in speed.source
+        )
         yield Term(
             "gated law",
             f"(|v| > {edge:g})",
             (speed,),
-            (
-                f"mean_step(steady(abs({speed.source[0]})), {edge:g}, {width:g})",
-                f"mean_step(steady(abs({speed.source[1]})), {edge:g}, {width:g})",
-            ),
-            (
-                mean_step(steady(np.abs(speed.values[0].start)), edge, width),
-                mean_step(steady(np.abs(speed.values[1].start)), edge, width),
-            ),
+            (left, right),
+            partial(_above, speed, edge, width),
             {},
         )
 
 
+def _above(speed: Signal, edge: float, width: float, side: int) -> Floats:
+    return np.asarray(mean_step(steady(np.abs(_values(speed, side))), edge, width))
+
+
 def _gated(one: Signal, gate: Term) -> Term:
-    (left, a), (right, b) = _mean(one, 0), _mean(one, 1)
+    pairs = zip(_sources(one), gate.source, strict=True)
+    left, right = (f"{source} * {opens}" for source, opens in pairs)
     return Term(
         "gated law",
         f"{one.name} * {gate.formula}",
         (one, *gate.signals),
-        (f"{left} * {gate.source[0]}", f"{right} * {gate.source[1]}"),
-        (a * gate.values[0], b * gate.values[1]),
+        (left, right),
+        lambda side: _values(one, side) * gate.values(side),
         one.unit,
     )
 
 
-def _mean(one: Signal, side: int) -> tuple[str, Floats]:
-    source, values = one.source[side], one.values[side]
-    return (f"{source}.mean" if one.spans else source), np.asarray(values.mean)
+def _sources(one: Signal) -> tuple[str, str]:
+    """Python for its mean over a step."""
+    left, right = (f"{source}.mean" if one.spans else source for source in one.source)
+    return left, right
+
+
+def _values(one: Signal, side: int) -> Floats:
+    return np.asarray(one.values[side].mean)
 
 
 def _clear_of_zero(other: Signal) -> bool:

@@ -47,11 +47,6 @@ WIDER_THAN_FITTED = 20.0
 
 # ---------------------------------------------------------------- what a law of two is made of
 
-SECOND_VARIABLE = 1e-3
-"""A law of two variables is drafted when chance would let it err so much less than that of one, on
-drives that neither was fitted to, in fewer cases than this, all laws of two counted that were held
-against those drives. As `SURE`: a user reads the law, and looks for its physics."""
-
 MOST_TERMS, FIRST_TERMS = 3, 10
 """Terms of a law of two at the most, and terms that its search begins with in turn. Chosen: one
 product and what either of its variables does alone, since a fourth term is read by nobody; ten
@@ -68,6 +63,10 @@ drives at least, and the best of three edges is no farther from a true one than 
 GATE_WIDTH = 0.05
 """Share of the highest speed over which a law sets in. Chosen: as good as at once, and smooth, so
 that a robot that drives at just that speed has no law that comes and goes with its noise."""
+
+SEARCHES = 2
+"""How often laws of two are searched. Chosen: in the first search the wheels' noise stands for the
+law that is missing and hides what tells laws apart; in the second it is what the first one left."""
 
 ROLLS_BACKWARDS = 0.01
 """Speed [m/s] from which on a wheel or robot rolls backwards for a law that does so alone: a
