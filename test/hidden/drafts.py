@@ -38,7 +38,7 @@ def row(what: HiddenSet) -> tuple[str, ...]:
         found = (before, after, "none better", "")
     else:
         one = f"{1e3 * two['held_out_with_one']:.2f}" if two["one"] else "none"
-        found = (before, one, after, f"{two['law']}".replace("|", r"\|"))
+        found = (before, one, after, f"{figures['draft']['law']}".replace("|", r"\|"))
     return (name, strength, *found[:3], right, found[3])
 
 

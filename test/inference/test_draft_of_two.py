@@ -8,6 +8,7 @@ What is hidden is made by the engine, or by laws that are written here by hand.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -37,7 +38,8 @@ from werrimbi_odom.inference.adding.drafting import Draft
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS, Amount
 from werrimbi_odom.model.drive import Span
-from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter, body_effect
+from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter, body_effect, wheel_effect
+from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.robot import Robot
 
 SECONDS, RATE = 90, 20
@@ -58,30 +60,34 @@ def dug_in(motion: Any, drive: Any, drag: float) -> Any:
     return motion._replace(turn=motion.turn + drag * drive.channels["load_kg"].mean * back)
 
 
-@body_effect(
+@wheel_effect(
     channels=("load_kg",),
-    softness=Parameter("", 0.0, 2e-3, (-0.1, 0.1), "relative loss of way per kilogram"),
+    softness=Parameter("", 0.0, 2e-3, (-0.1, 0.1), "relative loss of radius per kilogram"),
 )
-def soft_tyres(motion: Any, drive: Any, softness: float) -> Any:
+def soft_tyres(travel: Any, drive: Any, softness: float) -> Any:
     """Tyres give way under a load.
 
-    Formula    along *= 1 - softness * load      [m]
+    Formula    travel *= 1 - softness * load      [m]
     Signature  distances shrink with the load
     Ruler      load it, and measure the axle's height
     """
-    return motion._replace(along=motion.along * (1.0 - softness * drive.channels["load_kg"].mean))
+    kept = 1.0 - softness * drive.channels["load_kg"].mean
+    return WheelTravel(travel.left * kept, travel.right * kept)
 
 
 def drives_of(applied: Sequence[AppliedEffect], seeds: Sequence[int]) -> list[Run]:
-    """Drives of a robot with an effect; a load and a temperature are measured, piece by piece."""
-    truth = Robot(ROBOT.track, ROBOT.radius, 2000, 2000, effects=tuple(applied))
+    """Drives of a robot with an effect; a load and a temperature are measured."""
+    truth = replace(ROBOT, effects=tuple(applied))
     return [run_of(truth, seed, SECONDS, _measured(seed)) for seed in seeds]
 
 
 def _measured(seed: int) -> Mapping[str, np.ndarray]:
     random = np.random.default_rng([seed, 5])
-    count = SECONDS * RATE + 1
-    load, warmth = (np.repeat(random.uniform(*ends, 60), 60)[:count] for ends in ((0, 8), (15, 40)))
+    times = np.arange(SECONDS * RATE + 1) / RATE
+    load, warmth = (
+        np.interp(times, 6.0 * np.arange(16), random.uniform(*ends, 16))
+        for ends in ((0.0, 8.0), (15.0, 40.0))
+    )
     return {"load_kg": load, "motor_c": warmth}
 
 
@@ -105,7 +111,12 @@ def values_of(found: Draft) -> Mapping[str, float]:
 @pytest.mark.parametrize(
     ("hidden", "law", "gain"),
     [
-        ("slide_by_tilt_and_payload=0.05", "sideways = {} * |v| * payload_kg * tilt_rad", -0.05),
+        pytest.param(
+            "slide_by_tilt_and_payload=0.04",
+            "sideways = {} * |v| * payload_kg * tilt_rad",
+            -0.04,
+            marks=pytest.mark.evidence,
+        ),
         ("one_tyre_by_load_over_pressure=0.3", "{} * v * payload_kg / {}_tyre_kpa", -0.3),
     ],
 )
@@ -127,7 +138,7 @@ def test_what_the_engine_hides_in_two_variables_is_drafted(
     assert found.of_two is not None
     assert found.of_two.one is not None, "one variable explains some of it"
     words = law.replace("{}", "").split()
-    assert [word for word in words if word not in found.of_two.law and word != "_tyre_kpa"] == []
+    assert [word for word in words if word not in found.law and word != "_tyre_kpa"] == []
     assert values_of(found) == {"gain": pytest.approx(gain, rel=0.1)}
     check_effect(found.effect)
     sides = found.of_two.held_out
@@ -147,14 +158,14 @@ def test_what_acts_backwards_alone_is_drafted_with_its_gate() -> None:
     assert values_of(found) == {"gain": pytest.approx(sign * 0.01, rel=0.05)}
 
 
-def test_lateral_slip_is_a_product_of_speed_and_turning_where_no_library_has_it() -> None:
+def test_lateral_slip_reads_as_a_product_where_no_library_has_it() -> None:
+    """Of the yaw rate, in proportion to the way: one variable says it all."""
     (slip,) = (effect for effect in LIBRARY if effect.name == "lateral_slip")
     library = [effect for effect in LIBRARY if effect is not slip]
     truth = (slip.using(creep=0.03),)
     found, _ = drafted(drives_of(truth, [1, 2, 3, 4]), drives_of(truth, [5, 6]), ROBOT, library)
-    assert found.of_two is not None
-    assert found.of_two.law == "sideways = -0.03 * v * w"
-    assert found.effect.parameters["gain"].unit == "s/rad"
+    assert found.of_two is None
+    assert found.law == "sideways = -0.03 * v * w"
 
 
 def test_a_law_of_one_variable_remains_one() -> None:
@@ -162,6 +173,7 @@ def test_a_law_of_one_variable_remains_one() -> None:
     found, _ = drafted(drives_of(effect, [1, 2, 3, 4]), drives_of(effect, [5, 6]), ROBOT, [])
     assert found.of_two is None
     assert (found.claim.variable, found.form) == ("load_kg", "line")
+    assert found.law.startswith("along = -0.0041 * v * (load_kg - ")
 
 
 @pytest.mark.parametrize("seed", [10, 20, 30])
@@ -174,13 +186,16 @@ def test_where_nothing_is_hidden_no_law_of_two_is_found(seed: int) -> None:
 CHANNELS = ("load_kg", "motor_c")
 
 
-@pytest.mark.parametrize("amount", AMOUNTS, ids=lambda amount: f"{amount.channel}-{amount.per}")
-def test_every_term_keeps_the_laws_of_effects(amount: Amount) -> None:
-    drive = Rehearsal.of(CHANNELS).drive
-    terms = terms_of(signals_of(drive, of_wheels=amount.of_wheels))
+@pytest.mark.parametrize("number", range(len(AMOUNTS)))
+def test_every_term_keeps_the_laws_of_effects(number: int) -> None:
+    """Of each amount some of the terms, three at once; of all amounts all terms."""
+    amount = AMOUNTS[number]
+    terms = terms_of(signals_of(Rehearsal.of(CHANNELS).drive, of_wheels=amount.of_wheels))
     assert {term.kind for term in terms} == {"line", "product", "ratio", "gated law"}
-    for one, other in zip(terms, terms[1:] + terms[:1], strict=True):
-        law = LawOfTwo(amount, (one, other), (1e-3, 1e-3), 1.0)
+    some = terms[number :: len(AMOUNTS)]
+    for begin in range(0, len(some), 3):
+        own = tuple(some[begin : begin + 3])
+        law = LawOfTwo(amount, own, (1e-3,) * len(own), 1.0)
         source = source_of("drafted", amount, law.seen, law.form, 7, "p = 1e-9")
         assert keeps_laws(loaded(source)), source
 
@@ -237,6 +252,6 @@ def test_few_of_many_terms_are_selected_and_none_of_noise() -> None:
     nothing = selections(square, columns.T @ noise, price)
     assert max(each.worth(price) for each in nothing) < 0.0
     apart = selections(
-        square, columns.T @ target, price, lambda chosen, one: {1, 7} != {*chosen, one}
+        square, columns.T @ target, price, lambda chosen, one: not {1, 7} <= {*chosen, one}
     )
-    assert apart[0].terms != (1, 7)
+    assert not {1, 7} <= set(apart[0].terms)

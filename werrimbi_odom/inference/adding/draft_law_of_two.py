@@ -4,17 +4,16 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Sequence
 from typing import NamedTuple
 
+from werrimbi_odom.inference.adding.draft_in_a_line import in_a_line, symbols_of
 from werrimbi_odom.inference.adding.draft_laws import INDENT, Declared, Form, Seen, wide
 from werrimbi_odom.inference.adding.draft_terms import Term, unit_of_coefficient
 from werrimbi_odom.inference.adding.draft_variables import rounded
 from werrimbi_odom.inference.diagnosis.evidence import Amount
 
 _NAMES = ("gain", "second_gain", "third_gain")
-_RATES = {"travel": "v", "path": "|v|", "turn": "w"}
 _MEASURED = {"travel": "speed", "path": "speed", "turn": "yaw_rate"}
 
 
@@ -50,27 +49,9 @@ class LawOfTwo(NamedTuple):
         """Of its form."""
         return self.terms[0].kind if len(self.terms) == 1 else f"sum of {len(self.terms)} terms"
 
-    def in_a_line(self, values: Sequence[float]) -> str:
-        """In rates, with numbers: sideways = -0.011 * v * w."""
-        base = [_RATES[self.amount.per]] if self.amount.per in _RATES else []
-        parts = []
-        for value, term in zip(values, self.terms, strict=True):
-            factors = sorted([*base, *term.formula.split(" * ")], key=_place)
-            parts.append(" * ".join([f"{abs(value):.2g}", *factors]))
-        signs = ["-" if value < 0.0 else "+" for value in values]
-        first = f"{'-' if signs[0] == '-' else ''}{parts[0]}"
-        rest = [f" {sign} {part}" for sign, part in zip(signs[1:], parts[1:], strict=True)]
-        return f"{self.amount.channel} = {first}{''.join(rest)}"
-
-    def symbols(self, line: str) -> str:
-        """What the letters in a line are; "" where there are none."""
-        whose = " of that wheel" if self.amount.of_wheels else ""
-        words = []
-        if re.search(r"\bv\b", line):
-            words.append(f"v: speed{whose} [m/s], backwards negative")
-        if re.search(r"\bw\b", line):
-            words.append("w: yaw rate [rad/s]")
-        return "; ".join(words)
+    def line(self, values: Sequence[float]) -> str:
+        """With numbers: sideways = -0.011 * v * w."""
+        return in_a_line(self.amount, values, [term.formula.split(" * ") for term in self.terms])
 
     @property
     def seen(self) -> Seen:
@@ -102,7 +83,7 @@ class LawOfTwo(NamedTuple):
                 )
             )
         sums = [f"{name} * {term.formula}" for name, term in zip(names, self.terms, strict=True)]
-        symbols = self.symbols(" ".join(sums))
+        symbols = symbols_of(self.amount, " ".join(sums))
 
         def expression(side: str) -> str:
             number = ("left", "right").index(side)
@@ -130,9 +111,3 @@ def _says(term: Term) -> str:
     of, _, gate = f" * {term.formula}".partition(" * (")
     each = f" for each unit of {of.removeprefix(' * ')}" if of else ""
     return f"share{each}{f' where {gate[:-1]}' if gate else ''}"
-
-
-def _place(factor: str) -> int:
-    """Speeds and turning first, then what was measured, then where it acts."""
-    order = ("v", "|v|", "w", "|w|")
-    return order.index(factor) if factor in order else 5 if factor.startswith("(") else 4

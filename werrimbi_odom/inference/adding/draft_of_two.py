@@ -29,6 +29,7 @@ from werrimbi_odom.inference.adding.draft_plan import (
     fitted_plan,
     keeps_laws,
     planned,
+    value_of,
     with_values,
 )
 from werrimbi_odom.inference.adding.draft_regression import selections
@@ -104,8 +105,7 @@ def draft_of_two(diagnosis: Diagnosis, one: Draft | None, show: Show = silent) -
     if best.total > (base if one is None else one.fit).total - RIVAL:
         return None
     last, fit = with_values(diagnosis, best.option), best.option.fit
-    applied = next(item for item in fit.point.model.robot.effects if item.name == last.effect.name)
-    line = best.law.in_a_line([applied.values[item.name] for item in last.form.parameters])
+    line = best.law.line([value_of(fit, last, item.name) for item in last.form.parameters])
     return Draft(
         last.effect.name,
         last.source,
@@ -118,7 +118,8 @@ def draft_of_two(diagnosis: Diagnosis, one: Draft | None, show: Show = silent) -
             (each.option.plan.effect.name, each.option.plan.form.kind, each.total - best.total)
             for each in found
         ),
-        OfTwo(best.law.variables, line, best.law.symbols(line), best.tried, one),
+        line,
+        OfTwo(best.law.variables, best.tried, one),
     )
 
 

@@ -38,7 +38,7 @@ py-modules = ["{name}"]
 def _readme(draft: Draft) -> str:
     claim, two = draft.claim, draft.of_two
     names = claim.variable if two is None else "` and `".join(two.variables)
-    law = "" if two is None else f": `{two.law}`"
+    law = f": `{draft.law}`" if draft.law else ""
     return f"""# {draft.name}
 
 A draft of `werrimbi draft`. In the drives that it was made from, the {claim.channel} error goes

@@ -127,6 +127,12 @@ def with_values(diagnosis: Diagnosis, option: Option) -> Plan:
     return last if keeps_laws(last.effect) else plan
 
 
+def value_of(fit: Fitted, plan: Plan, name: str) -> float:
+    """The fitted value of a parameter of a draft."""
+    held = fit.point.model.robot.effects
+    return next(item for item in held if item.name == plan.effect.name).values[name]
+
+
 def keeps_laws(effect: Effect) -> bool:
     """Whether an effect keeps the laws of effects, on the short drive that they are held on.
 

@@ -16,14 +16,17 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference.adding.draft_in_a_line import factor_of, in_a_line
 from werrimbi_odom.inference.adding.draft_laws import Form, Seen, forms_of, spot_form
 from werrimbi_odom.inference.adding.draft_plan import (
     Claim,
     Option,
+    Plan,
     by_score,
     fitted_plan,
     keeps_laws,
     planned,
+    value_of,
     with_values,
 )
 from werrimbi_odom.inference.adding.draft_variables import rounded, seen_as
@@ -61,6 +64,8 @@ class Draft:
     diagnosis: Diagnosis
     tried: tuple[tuple[str, str, float], ...]
     """Effect, form and cost beyond the best of all drafts that were fitted."""
+    law: str = ""
+    """In rates, with its numbers: sideways = -0.011 * v * w; "" of what is no sum of products."""
     of_two: OfTwo | None = None
     """Of a law of two variables, what it was taken for; None of one variable."""
 
@@ -70,10 +75,6 @@ class OfTwo:
     """A law of two variables, and the law of one that it was held against."""
 
     variables: tuple[str, ...]
-    law: str
-    """In rates, with its numbers: sideways = -0.011 * v * w."""
-    symbols: str
-    """What the letters in it are."""
     terms_tried: int
     one: Draft | None
     """None where no law of one variable could be drafted."""
@@ -145,7 +146,17 @@ def draft_effect(
             (option.plan.effect.name, option.plan.form.kind, option.fit.total - least)
             for option in options
         ),
+        _in_a_line(last, best.fit),
     )
+
+
+def _in_a_line(last: Plan, fit: Fitted) -> str:
+    """The law, if it is a line in its variable."""
+    if last.form.kind != "line":
+        return ""
+    (name,) = (item.name for item in last.form.parameters)
+    amount = last.claim.amount
+    return in_a_line(amount, [value_of(fit, last, name)], [[factor_of(amount, last.seen)]])
 
 
 def _worth_drafting(diagnosis: Diagnosis) -> list[Dependence]:

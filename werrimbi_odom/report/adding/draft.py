@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from werrimbi_odom.inference.adding.added import Added
+from werrimbi_odom.inference.adding.draft_in_a_line import symbols_of
 from werrimbi_odom.inference.adding.drafting import Draft
 from werrimbi_odom.report.adding.document import figures_of
 from werrimbi_odom.report.adding.words import json_of, words_of
@@ -35,17 +36,15 @@ def draft_words(draft: Draft, tried: Added) -> list[Paragraph]:
 def _what_it_goes_with(draft: Draft) -> str:
     """Which error goes with which variables, in what law, and what no law of one explains."""
     claim, two = draft.claim, draft.of_two
+    symbols = symbols_of(claim.amount, draft.law)
+    law = f": {draft.law} (each second{'; ' * bool(symbols)}{symbols})" if draft.law else ""
     if two is None:
         return (
             f"Their {claim.channel} error goes with {claim.variable}, and a {draft.form} in it "
-            "explains them best among the simple laws."
+            f"explains them best among the simple laws{law}."
         )
     kind = "" if "sum" in draft.form else f", a {draft.form}"
-    symbols = f"; {two.symbols}" if two.symbols else ""
-    text = (
-        f"Their {claim.channel} error goes with {claim.variable}{kind}: {two.law} (each second"
-        f"{symbols})."
-    )
+    text = f"Their {claim.channel} error goes with {claim.variable}{kind}{law}."
     sides = two.held_out
     if sides is None:
         return text
@@ -88,6 +87,7 @@ def draft_json(draft: Draft, tried: Added) -> dict[str, Any]:
             "variable": claim.variable,
             "p_value": claim.p_value,
             "form": draft.form,
+            "law": draft.law or None,
             "of_two": _json_of_two(draft),
             "tried": [
                 {"effect": name, "form": form, "cost_beyond_best": cost}
@@ -105,7 +105,6 @@ def _json_of_two(draft: Draft) -> dict[str, Any] | None:
     one, sides = two.one, two.held_out
     return {
         "variables": list(two.variables),
-        "law": two.law,
         "terms_tried": two.terms_tried,
         "one": one and {"effect": one.name, "variable": one.claim.variable, "form": one.form},
         "held_out_with_one": sides and sides.after,
