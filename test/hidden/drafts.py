@@ -24,7 +24,6 @@ def row(what: HiddenSet) -> tuple[str, ...]:
     folder = make(what)
     train, holdout = (runs_of(folder, part) for part in ("train", "holdout"))
     (hidden,) = what.hidden()
-    found = ("", "", "", "")
     right = f"{1e3 * floor_of(what).of(what.names):.2f}"
     name, strength = what.names[0], f"{hidden.strength:.2g} {hidden.entry.unit}"
     try:
