@@ -37,7 +37,7 @@ def row(what: HiddenSet) -> tuple[str, ...]:
     before, after = (_mm(figures["holdout"][key]) for key in ("before", "after"))
     two = figures["draft"]["of_two"]
     if two is None:
-        return (*named, before, after, "none better", right, "")
+        return (*named, before, after, "not taken", right, "")
     one = _mm(two["held_out_with_one"]) if two["one"] else "none"
     law = figures["draft"]["law"].replace("|", r"\|")
     return (*named, before, one, after, right, f"`{law}`")

@@ -108,6 +108,6 @@ class LawOfTwo(NamedTuple):
 
 def _says(term: Term) -> str:
     """What the number before a term is."""
-    of, _, gate = f" * {term.formula}".partition(" * (")
-    each = f" for each unit of {of.removeprefix(' * ')}" if of else ""
-    return f"share{each}{f' where {gate[:-1]}' if gate else ''}"
+    of = term.formula.removesuffix(term.gate).removesuffix(" * ")
+    each = f" for each unit of {of}" if of else ""
+    return f"share{each}{f' where {term.gate[1:-1]}' if term.gate else ''}"

@@ -219,7 +219,7 @@ def _of_two_variables(sums: Sums) -> Callable[[Collection[int], int], bool]:
     def may_join(chosen: Collection[int], one: int) -> bool:
         terms = [sums.terms[each] for each in (*chosen, one)]
         names = frozenset[str]().union(*(term.variables for term in terms))
-        gates = {term.formula.partition("(")[2] for term in terms} - {""}
+        gates = {term.gate for term in terms} - {""}
         return len(names) <= 2 and len(gates) <= 1
 
     return may_join

@@ -44,6 +44,8 @@ class Term:
     asked for, since of all terms it is much."""
     unit: dict[str, int]
     """Powers of its units."""
+    gate: str = ""
+    """Where it acts, as in the formula; "" everywhere."""
 
     @property
     def variables(self) -> frozenset[str]:
@@ -150,6 +152,7 @@ def _gates(speed: Signal) -> Iterator[Term]:
         (left, right),
         lambda side: np.asarray(_values(speed, side) < -ROLLS_BACKWARDS, dtype=np.float64),
         {},
+        "(v < 0)",
     )
     sizes = np.abs(np.concatenate([_values(speed, side) for side in (0, 1)]))
     moving = sizes[sizes > ROLLS_BACKWARDS]
@@ -166,6 +169,7 @@ def _gates(speed: Signal) -> Iterator[Term]:
             (left, right),
             partial(_above, speed, edge, width),
             {},
+            f"(|v| > {edge:g})",
         )
 
 
@@ -183,6 +187,7 @@ def _gated(one: Signal, gate: Term) -> Term:
         (left, right),
         lambda side: _values(one, side) * gate.values(side),
         one.unit,
+        gate.gate,
     )
 
 

@@ -50,7 +50,7 @@ WIDER_THAN_FITTED = 20.0
 MOST_TERMS, FIRST_TERMS = 3, 10
 """Terms of a law of two at the most, and terms that its search begins with in turn. Chosen: one
 product and what either of its variables does alone, since a fourth term is read by nobody; ten
-beginnings cost a few milliseconds, and a right term that is not the best alone is among them."""
+beginnings cost a few milliseconds, and a right term that is not the best alone has its turn."""
 
 CLEAR_OF_ZERO = 0.05
 """Share of its largest value that what is divided by must keep. Chosen: below it the ratio of a
@@ -58,7 +58,7 @@ noisy measurement is its noise; a tyre without pressure is not driven."""
 
 GATE_SPEEDS = (0.25, 0.5, 0.75)
 """Shares of the driven speeds at which a law may set in. Chosen: on either side is a quarter of the
-drives at least, and the best of three edges is no farther from a true one than an eighth."""
+drives at least, and a true edge between them is no farther from one of the three than an eighth."""
 
 GATE_WIDTH = 0.05
 """Share of the highest speed over which a law sets in. Chosen: as good as at once, and smooth, so

@@ -51,9 +51,10 @@ def _what_it_goes_with(draft: Draft) -> str:
     alone = "calibration alone leaves"
     if two.one is not None:
         alone = f"a law of {two.one.claim.variable} alone, the best of one variable, leaves"
+    chance = max(sides.chance, 1e-300)
     return (
         f"{text} On the held-out drives {alone} {error_words(sides.after, sides.unit)} (chance "
-        f"{sides.chance:.0e}; the law was chosen from {two.terms_tried} terms on the others)."
+        f"{chance:.0e}; the law was chosen from {two.terms_tried} terms on the others)."
     )
 
 
