@@ -45,7 +45,13 @@ from werrimbi_odom.inference.diagnosis.paired_comparison import sides_of
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.likelihood import Variances
-from werrimbi_odom.inference.rules import MOST_FITTED, RIVAL, SEARCHES, WORTH_FITTING
+from werrimbi_odom.inference.rules import (
+    MOST_FITTED,
+    RIVAL,
+    SEARCHES,
+    TYPICAL_WHEEL_NOISE,
+    WORTH_FITTING,
+)
 from werrimbi_odom.progress import Show, silent
 
 
@@ -175,11 +181,13 @@ def _fitted(
 
 
 def _as_calm(noise: Variances) -> Variances:
-    """Both wheels' noise as that of the calmer one.
+    """Both wheels' noise as that of the calmer one, and no more than is usual.
 
-    While a law of one wheel is missing, that wheel's noise stands for it and hides what tells.
+    While a law is missing, the noise of the wheels that it is about stands for it, and hides what
+    tells laws apart.
     """
-    calm = np.minimum(noise.left, noise.right)
+    usual = np.full(noise.left.shape, TYPICAL_WHEEL_NOISE**2)
+    calm = np.minimum(np.minimum(noise.left, noise.right), usual)
     return replace(noise, left=calm, right=calm)
 
 
