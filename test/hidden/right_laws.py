@@ -101,12 +101,47 @@ def right_law_of_the_spot(
     return WheelTravel(travel.left * (1.0 - loss * left), travel.right * (1.0 - loss * right))
 
 
+@body_effect(
+    channels=("tilt_rad", "payload_kg"),
+    creep=Parameter("", 0.0, 0.05, (-1.0, 1.0), "way downhill per radian and kilogram"),
+)
+def right_law_of_the_tilt(
+    motion: BodyMotion[Number], drive: Drive[Number], creep: float
+) -> BodyMotion[Number]:
+    """Tyres creep downhill under their load."""
+    lean = drive.channels["tilt_rad"].mean * drive.channels["payload_kg"].mean
+    return motion._replace(sideways=motion.sideways - creep * lean * abs(motion.along))
+
+
+FLATTENING = Parameter("", 0.0, 0.2, (-5.0, 5.0), "loss of radius per kilogram over kilopascal")
+
+
+@wheel_effect(channels=("payload_kg", "left_tyre_kpa"), flattening=FLATTENING)
+def right_law_of_the_left_flat(
+    travel: WheelTravel[Number], drive: Drive[Number], flattening: float
+) -> WheelTravel[Number]:
+    """The left tyre leaks under a payload."""
+    pressed = drive.channels["payload_kg"].mean / drive.channels["left_tyre_kpa"].mean
+    return travel._replace(left=travel.left * (1.0 - flattening * pressed))
+
+
+@wheel_effect(channels=("payload_kg", "right_tyre_kpa"), flattening=FLATTENING)
+def right_law_of_the_right_flat(
+    travel: WheelTravel[Number], drive: Drive[Number], flattening: float
+) -> WheelTravel[Number]:
+    """The right tyre leaks under a payload."""
+    pressed = drive.channels["payload_kg"].mean / drive.channels["right_tyre_kpa"].mean
+    return travel._replace(right=travel.right * (1.0 - flattening * pressed))
+
+
 RIGHT_LAWS: dict[str, tuple[Effect, ...]] = {
     "slippery_spot": (right_law_of_the_spot,),
     "cable_pull": (right_law_of_the_cable,),
     "one_tyre_by_pressure": (right_law_of_the_left_pressure, right_law_of_the_right_pressure),
     "base_by_payload": (right_law_of_the_payload,),
     "one_tyre_backwards": (right_law_of_the_left_tread, right_law_of_the_right_tread),
+    "slide_by_tilt_and_payload": (right_law_of_the_tilt,),
+    "one_tyre_by_load_over_pressure": (right_law_of_the_left_flat, right_law_of_the_right_flat),
 }
 """By the names of what can be hidden; of several the likeliest is right."""
 
@@ -116,5 +151,7 @@ DEPENDS_ON = {
     "one_tyre_by_pressure": ("left_tyre_kpa", "right_tyre_kpa"),
     "base_by_payload": ("payload_kg",),
     "one_tyre_backwards": ("direction",),
+    "slide_by_tilt_and_payload": ("tilt_rad", "payload_kg"),
+    "one_tyre_by_load_over_pressure": ("payload_kg", "left_tyre_kpa", "right_tyre_kpa"),
 }
 """The variables that are right."""

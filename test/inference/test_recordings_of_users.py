@@ -199,8 +199,8 @@ def test_a_radius_that_falls_with_speed_is_drafted_backwards_too(tmp_path: Path)
     runs = runs_of(truth, [1, 2, 3, 4])
     library = [effect for effect in LIBRARY if effect.name != "tyre_squash"]
     found = draft_effect(diagnose(runs, ROBOT, library, holdout=[run_of(truth, 5)]))
-    cell = found.dependence
-    assert (cell.name, found.form, cell.amount.per) == ("wheel_speed", "square", "travel")
+    claim = found.claim
+    assert (claim.variable, found.form, claim.amount.per) == ("wheel_speed", "square", "travel")
     applied = found.fit.point.model.robot.effects[-1]
     assert applied.values["growth"] == pytest.approx(-0.08, rel=0.03)
 

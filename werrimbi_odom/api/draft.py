@@ -19,6 +19,7 @@ from werrimbi_odom.progress import Show, silent
 if TYPE_CHECKING:
     from typing_extensions import Unpack
 
+    from werrimbi_odom.inference.adding.added import Added
     from werrimbi_odom.inference.adding.drafting import Draft
     from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 
@@ -64,6 +65,8 @@ def draft(
 ) -> Drafted:
     """Where the verdict is unknown: an effect whose law is the dependence that the drives show.
 
+    A law of one variable, or of two where the drives held out want the second beyond chance.
+
     Parameters
     ----------
     force
@@ -88,7 +91,7 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
         What drafts whatever the verdict is, in words; "": that was asked for.
     """
     from werrimbi_odom.inference.adding.adding import add_effects
-    from werrimbi_odom.inference.adding.drafting import draft_effect
+    from werrimbi_odom.inference.adding.draft_of_two import best_draft
     from werrimbi_odom.inference.diagnosis.diagnosis import diagnose as search
     from werrimbi_odom.report.adding.draft import draft_document, draft_json
 
@@ -103,16 +106,19 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
     )
     if diagnosis.verdict != "unknown" and insist:
         raise InputError(_known(diagnosis, given, insist))
-    found = draft_effect(diagnosis, show)
-    tried = add_effects(
-        (found.effect,),
-        given.runs,
-        diagnosis.robot,
-        given.evaluation,
-        given=robot,
-        holdout=given.holdout,
-        show=show,
-    )
+
+    def tried_out(found: Draft) -> Added:
+        return add_effects(
+            (found.effect,),
+            given.runs,
+            diagnosis.robot,
+            given.evaluation,
+            given=robot,
+            holdout=given.holdout,
+            show=show,
+        )
+
+    found, tried = best_draft(diagnosis, tried_out, show)
     return Drafted(
         found=found,
         document=lambda: draft_document(found, tried),

@@ -21,6 +21,8 @@ from werrimbi_odom.model.pose import Floats
 __all__ = [
     "mean_cos",
     "mean_curve",
+    "mean_product",
+    "mean_ratio",
     "mean_sin",
     "mean_square",
     "mean_step",
@@ -38,6 +40,52 @@ def steady(value: Number) -> Span[Number]:
 def mean_square(span: Span[Number]) -> Number:
     """Mean of the square of a quantity."""
     return (span.start * span.start + span.start * span.end + span.end * span.end) / 3.0
+
+
+def mean_product(one: Span[Number], other: Span[Number]) -> Number:
+    """Mean of the product of two quantities."""
+    return one.mean * other.mean + one.change * other.change / 12.0
+
+
+def mean_ratio(one: Span[Number], other: Span[Number]) -> Number:
+    """Mean of one quantity over another; over one that comes near zero, the ratio of their means.
+
+    The other is middle * (1 + swing * s), s from -1 to 1; the mean of 1 / (1 + swing * s) is
+    artanh(swing) / swing, and that of s / (1 + swing * s) what that leaves of 1, over swing.
+    """
+    middle = other.mean
+    swing = share(0.5 * other.change, middle)
+    even, odd = _over_a_line(swing)
+    return share(one.mean * even + 0.5 * one.change * odd, middle)
+
+
+def _over_a_line(swing: Number) -> tuple[Number, Number]:
+    """Means of 1 / (1 + swing * s) and of s / (1 + swing * s)."""
+    if isinstance(swing, np.ndarray):
+        small, wild = np.abs(swing) < _GENTLE, np.abs(swing) > _NEAR_ZERO
+        even, odd = _series(np.where(small, swing, 0.0))
+        usual = np.where(small | wild, _GENTLE, swing)
+        mean = np.arctanh(usual) / usual
+        other = small | wild
+        return np.where(other, even, mean), np.where(other, odd, (1.0 - mean) / usual)
+    if abs(swing) > _NEAR_ZERO:
+        return 1.0 + 0.0 * swing, 0.0 * swing
+    if abs(swing) < _GENTLE:
+        return _series(swing)
+    mean = math.atanh(swing) / swing
+    return mean, (1.0 - mean) / swing
+
+
+def _series(swing: Number) -> tuple[Number, Number]:
+    """The same of a small swing."""
+    square = swing * swing
+    rest = 1.0 / 3.0 + square * (1.0 / 5.0 + square / 7.0)
+    return 1.0 + square * rest, -swing * rest
+
+
+_NEAR_ZERO, _GENTLE = 0.9, 0.01
+"""Swings of a denominator in a step: from the first on it is as good as none, up to the second the
+first terms of the series are exact to rounding."""
 
 
 def mean_cos(span: Span[Number]) -> Number:

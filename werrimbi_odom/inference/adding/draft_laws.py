@@ -69,7 +69,8 @@ class Seen:
     knots: tuple[float, ...] = ()
     waves: bool = False
     per_run: bool = False
-    channel: str | None = None
+    channels: tuple[str, ...] = ()
+    """Measured columns that it looks at."""
     rate: bool = False
     """Whether it is a change per step (acceleration), of which only a line can be drawn."""
 

@@ -36,12 +36,14 @@ py-modules = ["{name}"]
 
 
 def _readme(draft: Draft) -> str:
-    cell = draft.dependence
+    claim, two = draft.claim, draft.of_two
+    names = claim.variable if two is None else "` and `".join(two.variables)
+    law = f": `{draft.law}`" if draft.law else ""
     return f"""# {draft.name}
 
-A draft of `werrimbi draft`. In the drives that it was made from, the {cell.channel} error goes with
-`{cell.name}`, and a {draft.form} describes it. That is what the data show; why it is so they cannot
-know.
+A draft of `werrimbi draft`. In the drives that it was made from, the {claim.channel} error goes
+with `{names}`, and a {draft.form} describes it{law}.
+That is what the data show; why it is so they cannot know.
 
 1. Read `{draft.name}.py`: it is short. Its docstring says the law.
 2. Try it before it is installed: every werrimbi command takes `--effects {draft.name}.py`.

@@ -29,12 +29,13 @@ _BASE = {
     "turn": "motion.turn",
     "duration": "drive.duration",
 }
+_TWICE = "with it small and with it large"
 _CHECK = {
-    "left": "drive a taped line twice, with it small and with it large: the robot bends",
-    "right": "drive a taped line twice, with it small and with it large: the robot bends",
-    "along": "drive a taped line twice, with it small and with it large: the lengths differ",
-    "sideways": "drive along a chalk line, with it small and with it large: mark where it ends",
-    "heading": "drive along a chalk line, with it small and with it large: mark how it ends turned",
+    "left": f"drive a taped line twice, {_TWICE}: the robot bends",
+    "right": f"drive a taped line twice, {_TWICE}: the robot bends",
+    "along": f"drive a taped line twice, {_TWICE}: the lengths differ",
+    "sideways": f"drive along a chalk line, {_TWICE}: mark where it ends",
+    "heading": f"drive along a chalk line, {_TWICE}: mark how it ends turned",
 }
 
 
@@ -53,8 +54,9 @@ def source_of(name: str, amount: Amount, seen: Seen, form: Form, drives: int, st
     body = [f"@{kind}_effect("]
     if form.quadrature:
         body.append(f'{INDENT}quadrature=("{form.quadrature[0]}", "{form.quadrature[1]}"),')
-    if seen.channel is not None:
-        body.append(f'{INDENT}channels=("{seen.channel}",),')
+    if seen.channels:
+        names = ", ".join(f'"{name}"' for name in seen.channels)
+        body.append(f"{INDENT}channels=({names}{',' * (len(seen.channels) == 1)}),")
     body += [item.source() for item in form.parameters]
     body += [")", f"def {name}("]
     body += [f"{INDENT}{first}: {moved}[Number], drive: Drive[Number], {given}"]
@@ -87,6 +89,7 @@ def _head(name: str, law: str, kind: str, moved: str) -> str:
 def _doc(amount: Amount, seen: Seen, form: Form, drives: int, strength: str) -> str:
     error, per = _ERROR[amount.channel], _PER[amount.per]
     what = "a spot of the floor" if form.kind == "spot" else seen.name
+    several = " and " in what
     first = f"{error[:1].upper()}{error[1:]} is off by a share that goes with {what}."
     why = (
         f"That is what {drives} drives show ({strength}): a {form.kind}, of the {per}. "
@@ -97,10 +100,13 @@ def _doc(amount: Amount, seen: Seen, form: Form, drives: int, strength: str) -> 
     side = target.get(amount.channel, "turn")
     base = {"travel": "travel", "path": "|travel|", "turn": "turn", "duration": "duration"}
     formula = f"{side} += share * {base[amount.per]};  {form.formula}"
+    say = "say" if several else "says"
+    how = "with them small and with them large" if several else _TWICE
+    how = "forwards and backwards" if what == "direction" else how
     ruler = (
         "drive a taped line across the spot and beside it: the lengths differ; then look at it"
         if form.kind == "spot"
-        else f"{seen.name}: {_CHECK[amount.channel]}"
+        else f"{what}: {_CHECK[amount.channel].replace(_TWICE, how)}"
     )
     parts = [
         first,
@@ -108,7 +114,7 @@ def _doc(amount: Amount, seen: Seen, form: Form, drives: int, strength: str) -> 
         textwrap.fill(why, 96),
         "",
         _section("Formula", formula),
-        _section("Signature", f"{error} is off where {what} says so, by the same share each time"),
+        _section("Signature", f"{error} is off where {what} {say} so, by the same share each time"),
         _section("Ruler", ruler),
     ]
     text = "\n".join(parts)

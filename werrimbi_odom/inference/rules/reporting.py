@@ -45,6 +45,33 @@ SPOT_OFF, SPOT_RADII = 0.2, (0.2, 0.35, 0.6)
 WIDER_THAN_FITTED = 20.0
 """Times the fitted value that a draft's bounds reach: the next robot may have more of it."""
 
+# ---------------------------------------------------------------- what a law of two is made of
+
+MOST_TERMS, FIRST_TERMS = 3, 10
+"""Terms of a law of two at the most, and terms that its search begins with in turn. Chosen: one
+product and what either of its variables does alone, since a fourth term is read by nobody; ten
+beginnings cost a few milliseconds, and a right term that is not the best alone has its turn."""
+
+CLEAR_OF_ZERO = 0.05
+"""Share of its largest value that what is divided by must keep. Chosen: below it the ratio of a
+noisy measurement is its noise; a tyre without pressure is not driven."""
+
+GATE_SPEEDS = (0.25, 0.5, 0.75)
+"""Shares of the driven speeds at which a law may set in. Chosen: on either side is a quarter of the
+drives at least, and a true edge between them is no farther from one of the three than an eighth."""
+
+GATE_WIDTH = 0.05
+"""Share of the highest speed over which a law sets in. Chosen: as good as at once, and smooth, so
+that a robot that drives at just that speed has no law that comes and goes with its noise."""
+
+SEARCHES = 2
+"""How often laws of two are searched. Chosen: in the first search the wheels' noise stands for the
+law that is missing and hides what tells laws apart; in the second it is what the first one left."""
+
+ROLLS_BACKWARDS = 0.01
+"""Speed [m/s] from which on a wheel or robot rolls backwards for a law that does so alone: a
+settling motor goes to and fro by less."""
+
 # ---------------------------------------------------------------------------- what to drive next
 
 NEARLY_AS_MUCH = 0.9

@@ -7,6 +7,7 @@ from __future__ import annotations
 from typing import Any
 
 from werrimbi_odom.inference.adding.added import Added
+from werrimbi_odom.inference.adding.draft_in_a_line import symbols_of
 from werrimbi_odom.inference.adding.drafting import Draft
 from werrimbi_odom.report.adding.document import figures_of
 from werrimbi_odom.report.adding.words import json_of, words_of
@@ -17,13 +18,12 @@ from werrimbi_odom.report.page import as_html
 
 def draft_words(draft: Draft, tried: Added) -> list[Paragraph]:
     """What was drafted, what the error is with it, and the law."""
-    cell, sides = draft.dependence, tried.holdout.sides
+    sides = tried.holdout.sides
     alone = tried.noise_alone(tried.holdout)
     floor = f"noise alone: {error_words(alone, sides.unit)}; " if tried.explained else ""
     headline = "No effect of the library explains these drives."
     text = (
-        f"Their {cell.channel} error goes with {cell.name}, and a {draft.form} in it explains them "
-        f"best among the simple laws. With it, the error of the held-out drives is "
+        f"{_what_it_goes_with(draft)} With it, the error of the held-out drives is "
         f"{error_words(sides.after, sides.unit)} where it was "
         f"{error_words(sides.before, sides.unit)} ({floor}rms over legs of "
         f"{tried.holdout.after.leg:g} m). Why it is so, the data cannot know: read the law, find "
@@ -31,6 +31,31 @@ def draft_words(draft: Draft, tried: Added) -> list[Paragraph]:
     )
     law = draft.source.partition("\n\n\n")[2].rstrip()
     return [Paragraph(headline), Paragraph(text), Paragraph(law, "code", apart=True)]
+
+
+def _what_it_goes_with(draft: Draft) -> str:
+    """Which error goes with which variables, in what law, and what no law of one explains."""
+    claim, two = draft.claim, draft.of_two
+    symbols = symbols_of(claim.amount, draft.law)
+    law = f": {draft.law} (each second{'; ' * bool(symbols)}{symbols})" if draft.law else ""
+    if two is None:
+        return (
+            f"Their {claim.channel} error goes with {claim.variable}, and a {draft.form} in it "
+            f"explains them best among the simple laws{law}."
+        )
+    kind = "" if "sum" in draft.form else f", a {draft.form}"
+    text = f"Their {claim.channel} error goes with {claim.variable}{kind}{law}."
+    sides = two.held_out
+    if sides is None:
+        return text
+    alone = "calibration alone leaves"
+    if two.one is not None:
+        alone = f"a law of {two.one.claim.variable} alone, the best of one variable, leaves"
+    chance = max(sides.chance, 1e-300)
+    return (
+        f"{text} On the held-out drives {alone} {error_words(sides.after, sides.unit)} (chance "
+        f"{chance:.0e}; the law was chosen from {two.terms_tried} terms on the others)."
+    )
 
 
 def draft_document(draft: Draft, tried: Added) -> Document:
@@ -53,19 +78,37 @@ def draft_document(draft: Draft, tried: Added) -> Document:
 
 def draft_json(draft: Draft, tried: Added) -> dict[str, Any]:
     """The figures of `add` for the draft, and what it was made of."""
-    cell = draft.dependence
+    claim = draft.claim
     return {
         **json_of(tried),
         "verdict": draft.diagnosis.verdict,
         "draft": {
-            "channel": cell.channel,
-            "per": cell.amount.per,
-            "variable": cell.name,
-            "p_value": cell.p_value,
+            "channel": claim.channel,
+            "per": claim.amount.per,
+            "variable": claim.variable,
+            "p_value": claim.p_value,
             "form": draft.form,
+            "law": draft.law or None,
+            "of_two": _json_of_two(draft),
             "tried": [
                 {"effect": name, "form": form, "cost_beyond_best": cost}
                 for name, form, cost in draft.tried
             ],
         },
+    }
+
+
+def _json_of_two(draft: Draft) -> dict[str, Any] | None:
+    """Of a law of two variables, and of the law of one that it was held against."""
+    two = draft.of_two
+    if two is None:
+        return None
+    one, sides = two.one, two.held_out
+    return {
+        "variables": list(two.variables),
+        "terms_tried": two.terms_tried,
+        "one": one and {"effect": one.name, "variable": one.claim.variable, "form": one.form},
+        "held_out_with_one": sides and sides.after,
+        "held_out_with_two": sides and sides.before,
+        "chance": sides and sides.chance,
     }

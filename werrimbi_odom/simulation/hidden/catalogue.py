@@ -18,7 +18,13 @@ from .floor import CablePull, FloorSlope, GrainedFloor, SlipperySpot
 from .geometry import TrackWidth, UnequalWheelRadii, WheelRadiusScale
 from .knocks import Knock, ReferenceJump
 from .mount import AskewAxle, ReferenceDelay, ReferenceMirrored, ReferenceMount, WarmingGyro
-from .outside import BaseByPayload, OneTyreBackwards, OneTyreByPressure
+from .outside import (
+    BaseByPayload,
+    OneTyreBackwards,
+    OneTyreByLoadOverPressure,
+    OneTyreByPressure,
+    SlideByTiltAndPayload,
+)
 from .peculiarity import Peculiarity
 from .skid import skid_steer
 from .tyres import (
@@ -249,6 +255,12 @@ CATALOGUE: tuple[Entry, ...] = (
             "share of the travel lost on a spot of the floor", signed=False, kind="outside"),
     Entry("cable_pull", lambda s, rng: CablePull(s, _anywhere(rng)), "rad/m", 0.005, 0.05,
             "turning towards one direction of the room", signed=False, kind="outside"),
+    Entry("slide_by_tilt_and_payload", lambda s, rng: SlideByTiltAndPayload(s), "1/(rad kg)", 0.02,
+            0.1, "way downhill per tilt and kilogram, measured", signed=False, kind="outside"),
+    Entry("one_tyre_by_load_over_pressure",
+            lambda s, rng: OneTyreByLoadOverPressure(_one_side(rng), s), "kPa/kg", 0.1, 0.5,
+            "share of one radius lost per load over pressure, measured", signed=False,
+            kind="outside"),
     Entry("skid_steer", skid_steer, "1", 0.3, 1.5, "turning by four skidding wheels over the true",
             null=1.0, signed=False, kind="robot"),
     Entry("push", lambda s, rng: Knock("push", s), "m", 0.01, 0.03,

@@ -115,3 +115,89 @@ class OneTyreBackwards(Peculiarity):
                 engine.set_radius(self.side, wheel.radius * (1 - self.loss * (travel < 0.0)))
 
         return reshape
+
+
+@dataclass(frozen=True)
+class SlideByTiltAndPayload(Peculiarity):
+    """On a floor that leans the tyres creep downhill, the more the heavier the robot is loaded.
+
+    The tilt is measured by an inclinometer (`tilt_rad`, positive with the left side up, to 1 mrad),
+    the payload weighed (`payload_kg`, to 50 g).
+
+    Parameters
+    ----------
+    creep : float
+        Way to the right per way driven, per radian of tilt and kilogram of payload [1/(rad kg)].
+    """
+
+    creep: float
+
+    def _measured(self, rng: np.random.Generator) -> tuple[tuple[Floats, Floats], ...]:
+        """Of a run: times and payloads [s, kg]; times and tilts [s, rad]. Straight in between."""
+        loads = payloads(rng)
+        times = np.concatenate(([0.0], np.cumsum(rng.uniform(2.0, 8.0, 120))))
+        return loads, (times, rng.uniform(-0.12, 0.12, len(times)))
+
+    def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
+        """To the right, for all the way that is driven."""
+        loads, tilts = self._measured(rng)
+
+        def shift(stride: Stride) -> Shift:
+            lean = float(np.interp(stride.time, *tilts) * np.interp(stride.time, *loads))
+            return Shift(0.0, -self.creep * lean * abs(stride.left + stride.right) / 2, 0.0)
+
+        return shift
+
+    def recording(
+        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
+    ) -> Recording:
+        """Write the columns of scale and inclinometer."""
+        loads, (times, tilts) = self._measured(rng)
+        weighed_too = weighed(recording, np.interp(recording.t_s, *loads), rng)
+        measured = np.interp(recording.t_s, times, tilts)
+        measured = measured + 1e-3 * rng.standard_normal(len(measured))
+        return with_channel(weighed_too, "tilt_rad", measured)
+
+
+@dataclass(frozen=True)
+class OneTyreByLoadOverPressure(Peculiarity):
+    """One tyre leaks and flattens under a payload, the more the less pressure it has.
+
+    Both are measured (`payload_kg`, to 50 g; `SIDE_tyre_kpa`).
+
+    Parameters
+    ----------
+    side : "left" or "right"
+    flattening : float
+        Share of that wheel's radius that is lost per kilogram over kilopascal [kPa/kg].
+    """
+
+    side: Side
+    flattening: float
+
+    def _measured(self, rng: np.random.Generator) -> tuple[tuple[Floats, Floats], ...]:
+        """Of a run: times and payloads [s, kg]; times and pressures [s, kPa]."""
+        loads = payloads(rng)
+        times = np.concatenate(([0.0], np.cumsum(rng.uniform(6.0, 18.0, 60))))
+        return loads, (times, rng.uniform(60.0, 240.0, len(times)))
+
+    def reshaper(self, chassis: Chassis, rng: np.random.Generator) -> Reshaper:
+        """Resize the one wheel as load and pressure say."""
+        loads, pressures = self._measured(rng)
+        wheel = chassis.left if self.side == "left" else chassis.right
+
+        def reshape(engine: Engine, stride: Stride) -> None:
+            pressed = float(np.interp(stride.time, *loads) / np.interp(stride.time, *pressures))
+            engine.set_radius(self.side, wheel.radius * (1 - self.flattening * pressed))
+
+        return reshape
+
+    def recording(
+        self, recording: Recording, robot: TrueRobot, rng: np.random.Generator
+    ) -> Recording:
+        """Write the columns of scale and gauge."""
+        loads, (times, pressures) = self._measured(rng)
+        weighed_too = weighed(recording, np.interp(recording.t_s, *loads), rng)
+        measured = np.interp(recording.t_s, times, pressures)
+        measured = measured + 0.3 * rng.standard_normal(len(measured))
+        return with_channel(weighed_too, f"{self.side}_tyre_kpa", measured)

@@ -1,0 +1,52 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A draft's law in a line, with its numbers, as one would write it by hand.
+
+In rates: sideways = -0.011 * v * w says by how many metres a second the robot goes sideways.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+from werrimbi_odom.inference.adding.draft_laws import Seen
+from werrimbi_odom.inference.diagnosis.evidence import Amount
+
+_RATES = {"travel": "v", "path": "|v|", "turn": "w"}
+_ORDER = ("v", "|v|", "w", "|w|")
+
+
+def in_a_line(amount: Amount, values: Sequence[float], terms: Sequence[Sequence[str]]) -> str:
+    """The sum of terms, each a value times its factors and what the error is in proportion to."""
+    base = [_RATES[amount.per]] if amount.per in _RATES else []
+    line = ""
+    for value, factors in zip(values, terms, strict=True):
+        sign = "-" if value < 0.0 else "+"
+        line += f" {sign} " if line else sign.strip("+")
+        line += " * ".join([f"{abs(value):.2g}", *sorted([*base, *factors], key=_place)])
+    return f"{amount.channel} = {line}"
+
+
+def factor_of(amount: Amount, seen: Seen) -> str:
+    """One variable as it stands in a line; less its usual value where zero is not natural."""
+    speed = "wheel_speed" if amount.of_wheels else "speed"
+    names = {speed: "|v|", "yaw_rate": "w", "yaw_rate_size": "|w|"}
+    name = names.get(seen.name, seen.name)
+    return name if seen.from_zero or not seen.middle else f"({name} - {seen.middle:.4g})"
+
+
+def symbols_of(amount: Amount, line: str) -> str:
+    """What the letters in a line are; "" where there are none."""
+    whose = " of that wheel" if amount.of_wheels else ""
+    words = []
+    if re.search(r"\bv\b", line):
+        words.append(f"v: speed{whose} [m/s], backwards negative")
+    if re.search(r"\bw\b", line):
+        words.append("w: yaw rate [rad/s]")
+    return "; ".join(words)
+
+
+def _place(factor: str) -> int:
+    """Speeds and turning first, then what was measured, then where it acts."""
+    return _ORDER.index(factor) if factor in _ORDER else 5 if factor.startswith("(") else 4

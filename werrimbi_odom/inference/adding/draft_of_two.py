@@ -1,0 +1,233 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Where one variable does not explain what is left: a law of two, found by sparse regression.
+
+For each kind of error all terms of two variables (`draft_terms`) are summed along the drives and
+regressed on what is left. The few best laws are written as effect files, scored and fitted as those
+of one variable are. The best of them must earn its place twice: on the drives that are fitted, all
+terms that were tried counted in its price, and on drives that were held out of both fits, where it
+must err less than the law of one variable does, by more than chance.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Collection, Iterator, Sequence
+from dataclasses import replace
+from itertools import islice
+from typing import NamedTuple
+
+import numpy as np
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.inference.adding.added import Added
+from werrimbi_odom.inference.adding.draft_law_of_two import LawOfTwo
+from werrimbi_odom.inference.adding.draft_plan import (
+    Claim,
+    Option,
+    by_score,
+    fitted_plan,
+    keeps_laws,
+    planned,
+    value_of,
+    with_values,
+)
+from werrimbi_odom.inference.adding.draft_regression import selections
+from werrimbi_odom.inference.adding.draft_sums import Sums, sums_of
+from werrimbi_odom.inference.adding.draft_terms import is_of_two, terms_of
+from werrimbi_odom.inference.adding.draft_variables import signals_of
+from werrimbi_odom.inference.adding.drafting import Draft, OfTwo, draft_effect
+from werrimbi_odom.inference.adding.start_values import Drives
+from werrimbi_odom.inference.chances import chi2_above, in_any_of
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS
+from werrimbi_odom.inference.diagnosis.paired_comparison import sides_of
+from werrimbi_odom.inference.fitting.design import Point
+from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
+from werrimbi_odom.inference.fitting.likelihood import Variances
+from werrimbi_odom.inference.rules import (
+    MOST_FITTED,
+    RIVAL,
+    SEARCHES,
+    TYPICAL_WHEEL_NOISE,
+    WORTH_FITTING,
+)
+from werrimbi_odom.progress import Show, silent
+
+
+def best_draft(
+    diagnosis: Diagnosis, tried_out: Callable[[Draft], Added], show: Show = silent
+) -> tuple[Draft, Added]:
+    """The draft of one variable, or of two where held-out drives want the second.
+
+    Parameters
+    ----------
+    tried_out
+        What a draft does to the errors once it is added.
+
+    Raises
+    ------
+    InputError
+        When the errors depend on nothing beyond chance, or no draft of it can be fitted.
+    """
+    one, refused = None, None
+    try:
+        one = draft_effect(diagnosis, show)
+    except InputError as error:
+        refused = error
+    with_one = None if one is None else tried_out(one)
+    two = draft_of_two(diagnosis, one, show)
+    if two is not None:
+        with_two = tried_out(two)
+        two = better_held_out(two, with_two, with_one)
+        if two is not None:
+            return two, with_two
+    if one is None or with_one is None:
+        assert refused is not None
+        raise refused
+    return one, with_one
+
+
+def draft_of_two(diagnosis: Diagnosis, one: Draft | None, show: Show = silent) -> Draft | None:
+    """The best law of two variables, if it explains the fitted drives better than one of one does.
+
+    Parameters
+    ----------
+    one
+        The draft of one variable; None where there is none: then calibration alone is to be beaten.
+    """
+    base = diagnosis.final
+    drives = Drives(diagnosis.runs, base.point.excluded, base.point.options)
+    noise = _as_calm(base.point.variances if one is None else one.fit.point.variances)
+    found: list[_Found] = []
+    for number in range(SEARCHES):
+        show(number / SEARCHES, "laws of two variables")
+        laws, tried = _searched(diagnosis, replace(base.point, variances=noise))
+        found += _fitted(diagnosis, drives, laws, tried, noise)
+        if not found:
+            return None
+        noise = min(found, key=lambda each: each.total).option.fit.point.variances
+    best = min(found, key=lambda each: each.total)
+    if best.total > (base if one is None else one.fit).total - RIVAL:
+        return None
+    last, fit = with_values(diagnosis, best.option), best.option.fit
+    line = best.law.line([value_of(fit, last, item.name) for item in last.form.parameters])
+    return Draft(
+        last.effect.name,
+        last.source,
+        last.effect,
+        last.claim,
+        last.form.kind,
+        fit,
+        diagnosis,
+        tuple(
+            (each.option.plan.effect.name, each.option.plan.form.kind, each.total - best.total)
+            for each in found
+        ),
+        line,
+        OfTwo(best.law.variables, best.tried, one),
+    )
+
+
+def better_held_out(two: Draft, with_two: Added, with_one: Added | None) -> Draft | None:
+    """The law of two, where drives held out of both fits want it beyond chance; else None.
+
+    They are asked one question that was put before they answered: whether their errors rise when
+    the law of one takes its place.
+
+    Parameters
+    ----------
+    with_one
+        What the law of one does to the same drives; None where there is none, then calibration.
+    """
+    assert two.of_two is not None
+    side = with_two.holdout
+    other = side.calibrated if with_one is None else with_one.holdout.after
+    sides = sides_of(side.after, other, side.unit)
+    if not sides.rose:
+        return None
+    return replace(two, of_two=replace(two.of_two, held_out=sides))
+
+
+class _Found(NamedTuple):
+    """A law of two that was fitted."""
+
+    law: LawOfTwo
+    option: Option
+    tried: int
+    """Terms among which it was found."""
+
+    @property
+    def total(self) -> float:
+        """Cost and price, that of the search too."""
+        searched = _price_of_search(self.tried) * len(self.law.terms)
+        return self.option.fit.total + searched * self.option.fit.scatter
+
+
+def _fitted(
+    diagnosis: Diagnosis, drives: Drives, laws: Sequence[LawOfTwo], tried: int, noise: Variances
+) -> Iterator[_Found]:
+    """The few laws that may be the best, fitted in full."""
+    planned_from = {}
+    for law in laws:
+        chance = in_any_of(tried, chi2_above(law.gain, len(law.terms)))
+        plan = planned(diagnosis, Claim(law.amount, law.name, chance), law.seen, law.form)
+        planned_from[plan.effect.apply] = law, plan
+    ordered = by_score(diagnosis, drives, [plan for _, plan in planned_from.values()], noise)
+    likely = [plan for plan in ordered if plan.excess > ordered[0].excess - WORTH_FITTING]
+    for plan in islice((plan for plan in likely if keeps_laws(plan.effect)), MOST_FITTED):
+        law, _ = planned_from[plan.effect.apply]
+        yield _Found(law, fitted_plan(diagnosis, drives, plan), tried)
+
+
+def _as_calm(noise: Variances) -> Variances:
+    """Both wheels' noise as that of the calmer one, and no more than is usual.
+
+    While a law is missing, the noise of the wheels that it is about stands for it, and hides what
+    tells laws apart.
+    """
+    usual = np.full(noise.left.shape, TYPICAL_WHEEL_NOISE**2)
+    calm = np.minimum(np.minimum(noise.left, noise.right), usual)
+    return replace(noise, left=calm, right=calm)
+
+
+def _searched(diagnosis: Diagnosis, point: Point) -> tuple[list[LawOfTwo], int]:
+    """The most promising laws of two variables, best first; and how many terms were tried."""
+    runs, numbers = diagnosis.runs, (*CALIBRATION, *diagnosis.final.numbers)
+    drive = runs.drive(point.model.laid_out(runs.steps))
+    terms = {
+        of_wheels: terms_of(signals_of(drive, of_wheels=of_wheels)) for of_wheels in (True, False)
+    }
+    sums = {
+        amount: sums_of(runs, point, numbers, amount, terms[amount.of_wheels]) for amount in AMOUNTS
+    }
+    tried = sum(len(each.terms) for each in sums.values())
+    price = diagnosis.final.price_of_one + _price_of_search(tried)
+    found = []
+    for amount, each in sums.items():
+        for chosen in selections(each.square, each.cross, price, _of_two_variables(each)):
+            own = tuple(each.terms[index] for index in chosen.terms)
+            sizes = (chosen.coefficients / each.size[list(chosen.terms)]).tolist()
+            law = LawOfTwo(amount, own, tuple(sizes), chosen.gain)
+            if chosen.worth(price) > 0.0 and any(is_of_two(term, amount) for term in own):
+                found.append(law)
+    found = [law for law in found if len(law.variables) == 2]
+    found.sort(key=lambda law: price * len(law.terms) - law.gain)
+    return found[: 2 * MOST_FITTED], tried
+
+
+def _price_of_search(tried: int) -> float:
+    """What a term must be worth because so many were looked at (`draft_regression`)."""
+    return 2.0 * math.log(max(tried, 1))
+
+
+def _of_two_variables(sums: Sums) -> Callable[[Collection[int], int], bool]:
+    """Whether a term may join others: two variables, and one gate, are what is still read."""
+
+    def may_join(chosen: Collection[int], one: int) -> bool:
+        terms = [sums.terms[each] for each in (*chosen, one)]
+        names = frozenset[str]().union(*(term.variables for term in terms))
+        gates = {term.gate for term in terms} - {""}
+        return len(names) <= 2 and len(gates) <= 1
+
+    return may_join

@@ -1,0 +1,155 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A law that may be drafted: written as an effect file, scored without a fit, fitted, rewritten."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
+
+from werrimbi_odom.effects.collection import load_file
+from werrimbi_odom.effects.contract import check_effect
+from werrimbi_odom.inference.adding.draft_laws import Form, Seen
+from werrimbi_odom.inference.adding.draft_source import name_of, source_of
+from werrimbi_odom.inference.adding.draft_variables import rounded
+from werrimbi_odom.inference.adding.start_values import Drives, scored, start_at
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.evidence import Amount
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.fitting.candidates import Score
+from werrimbi_odom.inference.fitting.likelihood import Variances
+from werrimbi_odom.inference.rules import WIDER_THAN_FITTED
+from werrimbi_odom.model.effect import Effect
+
+
+class Claim(NamedTuple):
+    """What the drives show: which error goes with what."""
+
+    amount: Amount
+    variable: str
+    """Its name; of a law of two variables both."""
+    p_value: float
+
+    @property
+    def channel(self) -> str:
+        """Which error."""
+        return self.amount.channel
+
+
+@dataclass(frozen=True)
+class Plan:
+    """A form that may be fitted."""
+
+    claim: Claim
+    seen: Seen
+    form: Form
+    effect: Effect
+    source: str
+    score: Score | None = None
+    """Of the best of its shapes; None before it is scored."""
+    excess: float = -math.inf
+    """By how much it should cost less than it takes, its numbers paid for."""
+
+
+@dataclass(frozen=True)
+class Option:
+    """A form that was fitted."""
+
+    plan: Plan
+    fit: Fitted
+
+
+def planned(diagnosis: Diagnosis, claim: Claim, seen: Seen, form: Form) -> Plan:
+    """The effect file of a form."""
+    source = _written(diagnosis, claim, seen, form)
+    return Plan(claim, seen, form, loaded(source), source)
+
+
+def by_score(
+    diagnosis: Diagnosis, drives: Drives, plans: Sequence[Plan], noise: Variances
+) -> list[Plan]:
+    """The forms that the drives show anything of, the most promising first, all without a fit."""
+    base = diagnosis.final
+    before = replace(base, point=replace(base.point, variances=noise))
+    found = []
+    for plan in plans:
+        scores = scored(drives, before, [plan.effect], base.numbers)
+        if scores:
+            best = max(scores, key=lambda each: each.gain)
+            paid = base.price_of_one * plan.form.numbers
+            found.append(replace(plan, score=best, excess=best.gain - paid))
+    return sorted(found, key=lambda plan: -plan.excess)
+
+
+def fitted_plan(diagnosis: Diagnosis, drives: Drives, plan: Plan) -> Option:
+    """A draft of one form, fitted from where its score points."""
+    base = diagnosis.final
+    assert plan.score is not None
+    start = start_at(base, plan.score, base.numbers)
+    # After one round the noise is still what stood for the law: a true one cost more than another.
+    fit = drives.fit(start.point, start.names, start.numbers, diagnosis.given, rounds=2)
+    return Option(plan, fit)
+
+
+def _written(diagnosis: Diagnosis, claim: Claim, seen: Seen, form: Form) -> str:
+    strength = "beyond chance" if claim.p_value < 1e-300 else f"p = {claim.p_value:.0e}"
+    name = name_of(claim.amount, claim.variable)
+    return source_of(name, claim.amount, seen, form, len(diagnosis.runs.runs), strength)
+
+
+def with_values(diagnosis: Diagnosis, option: Option) -> Plan:
+    """The draft with the fitted values as what is typical, so that fits begin there."""
+    plan, robot = option.plan, option.fit.point.model.robot
+    applied = next(item for item in robot.effects if item.name == plan.effect.name)
+    parameters = []
+    for item in plan.form.parameters:
+        value = applied.values[item.name]
+        if item.tries and item.name in ("x", "y", "radius"):
+            parameters.append(replace(item, tries=(rounded(value, 3),)))
+        elif item.tries:
+            at = rounded(value, 4)
+            parameters.append(replace(item, null=at, typical=at or item.typical, tries=(at,)))
+        elif item.per_run or abs(value) < 1e-3 * abs(item.typical):
+            parameters.append(item)
+        else:
+            typical = abs(rounded(value)) if item.bounds[0] == 0.0 else rounded(value)
+            low, high = item.bounds
+            wider = max(high, WIDER_THAN_FITTED * abs(typical))
+            if item.name == "share":
+                wider = high
+            parameters.append(replace(item, typical=typical, bounds=(low and -wider, wider)))
+    form = replace(plan.form, parameters=tuple(parameters))
+    last = planned(diagnosis, plan.claim, plan.seen, form)
+    return last if keeps_laws(last.effect) else plan
+
+
+def value_of(fit: Fitted, plan: Plan, name: str) -> float:
+    """The fitted value of a parameter of a draft."""
+    held = fit.point.model.robot.effects
+    return next(item for item in held if item.name == plan.effect.name).values[name]
+
+
+def keeps_laws(effect: Effect) -> bool:
+    """Whether an effect keeps the laws of effects, on the short drive that they are held on.
+
+    That drive may not reach a speed, a time or a channel's value at which the effect begins; then
+    it does nothing there, which is no breach.
+    """
+    try:
+        check_effect(effect)
+    except AssertionError as error:
+        return "does nothing" in str(error)
+    return True
+
+
+def loaded(source: str) -> Effect:
+    """The effect of a source, as `--effects FILE` would load it."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "draft.py"
+        path.write_text(source, encoding="utf-8")
+        (effect,) = load_file(path)
+    return effect

@@ -1,0 +1,132 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Measured variables as a draft's effect sees them in a step: the source that reads them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from werrimbi_odom.effects.shapes import steady
+from werrimbi_odom.inference.adding.draft_laws import Seen
+from werrimbi_odom.inference.diagnosis.variables import Variable
+from werrimbi_odom.model.drive import Drive, Span
+from werrimbi_odom.model.pose import Floats
+
+STEADY = {
+    "speed": ("abs(drive.speed.end)",) * 2,
+    "wheel_speed": ("abs(drive.left_speed.end)", "abs(drive.right_speed.end)"),
+    "direction": ("drive.direction",) * 2,
+    "yaw_rate": ("drive.yaw_rate.end",) * 2,
+    "yaw_rate_size": ("abs(drive.yaw_rate.end)",) * 2,
+    "acceleration": ("drive.speed.change / drive.duration",) * 2,
+}
+"""Variables that keep their value through a step, as Python for the left and right wheel."""
+
+SPANS = {
+    "time": "drive.time",
+    "distance": "drive.distance",
+    "travel_since_reversal": "drive.since_reversal",
+    "heading": "drive.heading",
+}
+"""Variables that change from a step's start to its end."""
+
+FROM_ZERO = ("speed", "wheel_speed", "yaw_rate", "yaw_rate_size", "time", "distance")
+
+
+def seen_as(variable: Variable) -> Seen | None:
+    """How an effect sees a variable; None for one that no effect can see."""
+    name = variable.name
+    pooled = np.concatenate([variable.left, variable.right])
+    low, high = (float(value) for value in np.quantile(pooled, [0.02, 0.98]))
+    knots = np.unique(np.quantile(pooled, [0.01, 0.25, 0.5, 0.75, 0.99]))
+    plain = Seen(
+        name,
+        variable.unit,
+        lambda side: "",
+        middle=rounded(float(np.mean(pooled)), 3),
+        low=low,
+        high=high,
+        from_zero=name in FROM_ZERO,
+        knots=tuple(float(f"{knot:.4g}") for knot in knots),
+        waves=variable.form == "turns",
+        per_run=variable.per_run,
+        harmonic=variable.harmonic,
+    )
+    if name in STEADY:
+        left, right = STEADY[name]
+        return replace(
+            plain,
+            span=lambda side: f"steady({left if side == 'left' else right})",
+            per_wheel=left != right,
+            rate=name == "acceleration",
+        )
+    for side in ("left", "right"):
+        if name.startswith(f"{side}_wheel_angle"):
+            return replace(plain, span=_angle_of(side))
+    if name in SPANS:
+        return replace(plain, span=lambda side: SPANS[name])
+    if variable.looks_at == (name,):
+        return replace(plain, span=lambda side: f'drive.channels["{name}"]', channels=(name,))
+    return None
+
+
+def _angle_of(side: str) -> Callable[[str], str]:
+    """A wheel's angle, on whichever wheel it acts."""
+    return lambda _: f"drive.{side}_angle"
+
+
+def rounded(value: float, digits: int = 2) -> float:
+    """To some significant digits; 0 for what is not finite."""
+    return float(f"{value:.{digits}g}") if math.isfinite(value) else 0.0
+
+
+@dataclass(frozen=True)
+class Signal:
+    """A measured quantity as laws of two variables are made of it; a pair has left and right."""
+
+    name: str
+    """In formulas."""
+    variable: str
+    """What is measured: a speed and its size are one variable."""
+    source: tuple[str, str]
+    """Python for a number where it is steady through a step, else for a span."""
+    values: tuple[Span[Floats], Span[Floats]]
+    unit: dict[str, int]
+    """Powers of its units; those of measured channels nobody knows."""
+    spans: bool = False
+    channel: str | None = None
+
+
+def signals_of(drive: Drive[Floats], *, of_wheels: bool) -> list[Signal]:
+    """What laws of two variables may be made of; wheels have a speed of their own."""
+    sides = ("left_speed", "right_speed") if of_wheels else ("speed", "speed")
+    speeds = (getattr(drive, sides[0]).end, getattr(drive, sides[1]).end)
+    found = []
+
+    def add(
+        name: str, variable: str, source: Sequence[str], values: Sequence[Floats], **unit: int
+    ) -> None:
+        left, right = (steady(each) for each in values)
+        found.append(Signal(name, variable, (source[0], source[1]), (left, right), unit))
+
+    rims = [f"drive.{side}.end" for side in sides]
+    add("v", "speed", rims, speeds, m=1, s=-1)
+    sizes = [np.abs(each) for each in speeds]
+    add("|v|", "speed", [f"abs({each})" for each in rims], sizes, m=1, s=-1)
+    turning = drive.yaw_rate.end
+    add("w", "yaw_rate", ["drive.yaw_rate.end"] * 2, [turning] * 2, rad=1, s=-1)
+    add("|w|", "yaw_rate", ["abs(drive.yaw_rate.end)"] * 2, [np.abs(turning)] * 2, rad=1, s=-1)
+    spans: dict[str, tuple[str, Span[Floats], dict[str, int], str | None]] = {
+        "time": ("drive.time", drive.time, {"s": 1}, None),
+        "distance": ("drive.distance", drive.distance, {"m": 1}, None),
+    }
+    for name, span in drive.channels.items():
+        spans[name] = (f'drive.channels["{name}"]', span, {}, name)
+    for name, (source, span, unit, channel) in spans.items():
+        if np.ptp(span.end) > 0.0:
+            found.append(Signal(name, name, (source, source), (span, span), unit, True, channel))
+    return found
