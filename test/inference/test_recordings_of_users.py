@@ -16,13 +16,13 @@ from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.effects.collection import load_file
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
-from werrimbi_odom.inference.adding.drafting import draft_effect
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.leg_errors import statistics
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence
 from werrimbi_odom.inference.diagnosis.variables import Variable, curve_knots, variables_of
+from werrimbi_odom.inference.drafting.draft import draft_effect
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.legs.cutting import match_finely

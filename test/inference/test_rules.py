@@ -122,7 +122,7 @@ ELSEWHERE = {
 """Named numbers that decide nothing, by file, each with what it is."""
 
 BARE = {
-    ("adding/draft_laws.py", 3.1415927): "half a turn",
+    ("drafting/laws.py", 3.1415927): "half a turn",
     ("calibration/noise_likelihood.py", 10.0): "a decade above where the search ends",
     ("diagnosis/diagnosis.py", 0.999): "a logarithm that stays finite",
     ("events/steps.py", 2.0): "either side",

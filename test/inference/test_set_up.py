@@ -30,11 +30,11 @@ from test.model.drives import ROBOT
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.files.run_folder import read_run_folder
-from werrimbi_odom.inference.adding.draft_laws import Seen, spot_form
-from werrimbi_odom.inference.adding.draft_source import source_of
-from werrimbi_odom.inference.adding.drafting import loaded
 from werrimbi_odom.inference.comparison.leg_errors import leg_errors, statistics
 from werrimbi_odom.inference.diagnosis.evidence import Amount
+from werrimbi_odom.inference.drafting.laws import Seen, spot_form
+from werrimbi_odom.inference.drafting.plan import loaded
+from werrimbi_odom.inference.drafting.source import source_of
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.set_up.search import SetUp, SetUpFinding, look_for_mistakes
 from werrimbi_odom.model.effect import AppliedEffect

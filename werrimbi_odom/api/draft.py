@@ -20,8 +20,8 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from werrimbi_odom.inference.adding.added import Added
-    from werrimbi_odom.inference.adding.drafting import Draft
     from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+    from werrimbi_odom.inference.drafting.draft import Draft
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -39,7 +39,7 @@ class Drafted(Result[Any]):
             When it cannot be written.
         """
         from werrimbi_odom.files.replacing import replacing
-        from werrimbi_odom.inference.adding.draft_package import package_of
+        from werrimbi_odom.inference.drafting.package import package_of
 
         folder = Path(folder)
         try:
@@ -91,8 +91,8 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
         What drafts whatever the verdict is, in words; "": that was asked for.
     """
     from werrimbi_odom.inference.adding.adding import add_effects
-    from werrimbi_odom.inference.adding.draft_of_two import best_draft
     from werrimbi_odom.inference.diagnosis.diagnosis import diagnose as search
+    from werrimbi_odom.inference.drafting.of_two import best_draft
     from werrimbi_odom.report.adding.draft import draft_document, draft_json
 
     robot = given.robot

@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""An effect added to a robot and judged; an effect written from the evidence."""
+"""An effect added to a robot and judged."""

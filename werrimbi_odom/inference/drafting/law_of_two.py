@@ -7,11 +7,11 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from werrimbi_odom.inference.adding.draft_in_a_line import in_a_line, symbols_of
-from werrimbi_odom.inference.adding.draft_laws import INDENT, Declared, Form, Seen, wide
-from werrimbi_odom.inference.adding.draft_terms import Term, unit_of_coefficient
-from werrimbi_odom.inference.adding.draft_variables import rounded
 from werrimbi_odom.inference.diagnosis.evidence import Amount
+from werrimbi_odom.inference.drafting.in_a_line import in_a_line, symbols_of
+from werrimbi_odom.inference.drafting.laws import INDENT, Declared, Form, Seen, wide
+from werrimbi_odom.inference.drafting.terms import Term, unit_of_coefficient
+from werrimbi_odom.inference.drafting.variables import rounded
 
 _NAMES = ("gain", "second_gain", "third_gain")
 _MEASURED = {"travel": "speed", "path": "speed", "turn": "yaw_rate"}

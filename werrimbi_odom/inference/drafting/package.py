@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.inference.adding.drafting import Draft
+from werrimbi_odom.inference.drafting.draft import Draft
 
 
 def package_of(draft: Draft) -> dict[str, str]:

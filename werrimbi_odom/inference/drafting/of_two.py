@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Where one variable does not explain what is left: a law of two, found by sparse regression.
 
-For each kind of error all terms of two variables (`draft_terms`) are summed along the drives and
+For each kind of error all terms of two variables (`terms`) are summed along the drives and
 regressed on what is left. The few best laws are written as effect files, scored and fitted as those
 of one variable are. The best of them must earn its place twice: on the drives that are fitted, all
 terms that were tried counted in its price, and on drives that were held out of both fits, where it
@@ -21,8 +21,14 @@ import numpy as np
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.inference.adding.added import Added
-from werrimbi_odom.inference.adding.draft_law_of_two import LawOfTwo
-from werrimbi_odom.inference.adding.draft_plan import (
+from werrimbi_odom.inference.adding.start_values import Drives
+from werrimbi_odom.inference.chances import chi2_above, in_any_of
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS
+from werrimbi_odom.inference.diagnosis.paired_comparison import sides_of
+from werrimbi_odom.inference.drafting.draft import Draft, OfTwo, draft_effect
+from werrimbi_odom.inference.drafting.law_of_two import LawOfTwo
+from werrimbi_odom.inference.drafting.plan import (
     Claim,
     Option,
     by_score,
@@ -32,16 +38,10 @@ from werrimbi_odom.inference.adding.draft_plan import (
     value_of,
     with_values,
 )
-from werrimbi_odom.inference.adding.draft_regression import selections
-from werrimbi_odom.inference.adding.draft_sums import Sums, sums_of
-from werrimbi_odom.inference.adding.draft_terms import is_of_two, terms_of
-from werrimbi_odom.inference.adding.draft_variables import signals_of
-from werrimbi_odom.inference.adding.drafting import Draft, OfTwo, draft_effect
-from werrimbi_odom.inference.adding.start_values import Drives
-from werrimbi_odom.inference.chances import chi2_above, in_any_of
-from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.evidence import AMOUNTS
-from werrimbi_odom.inference.diagnosis.paired_comparison import sides_of
+from werrimbi_odom.inference.drafting.regression import selections
+from werrimbi_odom.inference.drafting.sums import Sums, sums_of
+from werrimbi_odom.inference.drafting.terms import is_of_two, terms_of
+from werrimbi_odom.inference.drafting.variables import signals_of
 from werrimbi_odom.inference.fitting.design import Point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.fitting.likelihood import Variances
@@ -217,7 +217,7 @@ def _searched(diagnosis: Diagnosis, point: Point) -> tuple[list[LawOfTwo], int]:
 
 
 def _price_of_search(tried: int) -> float:
-    """What a term must be worth because so many were looked at (`draft_regression`)."""
+    """What a term must be worth because so many were looked at (`regression`)."""
     return 2.0 * math.log(max(tried, 1))
 
 

@@ -19,9 +19,9 @@ from typing import Literal
 import numpy as np
 
 from werrimbi_odom.effects.shapes import mean_product, mean_ratio, mean_step, steady
-from werrimbi_odom.inference.adding.draft_laws import unit_of
-from werrimbi_odom.inference.adding.draft_variables import Signal
 from werrimbi_odom.inference.diagnosis.evidence import Amount
+from werrimbi_odom.inference.drafting.laws import unit_of
+from werrimbi_odom.inference.drafting.variables import Signal
 from werrimbi_odom.inference.rules import CLEAR_OF_ZERO, GATE_SPEEDS, GATE_WIDTH, ROLLS_BACKWARDS
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.pose import Floats

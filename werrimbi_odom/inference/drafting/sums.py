@@ -13,8 +13,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.adding.draft_terms import Term
 from werrimbi_odom.inference.diagnosis.evidence import BATCH, Amount, legs_pushed, pushes_of
+from werrimbi_odom.inference.drafting.terms import Term
 from werrimbi_odom.inference.fitting.candidates import unexplained
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected

@@ -11,8 +11,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from werrimbi_odom.effects.shapes import steady
-from werrimbi_odom.inference.adding.draft_laws import Seen
 from werrimbi_odom.inference.diagnosis.variables import Variable
+from werrimbi_odom.inference.drafting.laws import Seen
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.pose import Floats
 

@@ -10,8 +10,8 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-from werrimbi_odom.inference.adding.draft_laws import Seen
 from werrimbi_odom.inference.diagnosis.evidence import Amount
+from werrimbi_odom.inference.drafting.laws import Seen
 
 _RATES = {"travel": "v", "path": "|v|", "turn": "w"}
 _ORDER = ("v", "|v|", "w", "|w|")

@@ -16,9 +16,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.inference.adding.draft_in_a_line import factor_of, in_a_line
-from werrimbi_odom.inference.adding.draft_laws import Form, Seen, forms_of, spot_form
-from werrimbi_odom.inference.adding.draft_plan import (
+from werrimbi_odom.inference.adding.start_values import Drives
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
+from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.variables import Variable, variables_of
+from werrimbi_odom.inference.drafting.in_a_line import factor_of, in_a_line
+from werrimbi_odom.inference.drafting.laws import Form, Seen, forms_of, spot_form
+from werrimbi_odom.inference.drafting.plan import (
     Claim,
     Option,
     Plan,
@@ -29,13 +35,7 @@ from werrimbi_odom.inference.adding.draft_plan import (
     value_of,
     with_values,
 )
-from werrimbi_odom.inference.adding.draft_variables import rounded, seen_as
-from werrimbi_odom.inference.adding.start_values import Drives
-from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
-from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
-from werrimbi_odom.inference.diagnosis.selection import Fitted
-from werrimbi_odom.inference.diagnosis.variables import Variable, variables_of
+from werrimbi_odom.inference.drafting.variables import rounded, seen_as
 from werrimbi_odom.inference.rules import (
     DRAFTED_TOO,
     MOST_DRAFTED,
