@@ -53,6 +53,7 @@ def test_an_effect_is_named_and_adding_it_reaches_the_floor(judge: Judge) -> Non
     assert line.mean_is_right, "compare agrees with the diagnosis"
 
 
+@pytest.mark.evidence
 def test_where_nothing_is_hidden_nothing_is_found(judge: Judge) -> None:
     line = judge(CLEAN)
     assert (line.verdict, line.effect, line.found) == ("none", None, ())

@@ -87,10 +87,11 @@ def test_a_wrong_wheel_is_told_as_one_thing_with_one_command(wheel_and_clock: Lo
     assert words.count("werrimbi add") == 1
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize(
     ("seed", "effects"),
     [
-        pytest.param(4711, ("left_backlash=0.0024",), marks=pytest.mark.evidence),
+        (4711, ("left_backlash=0.0024",)),
         (8, ("castor_kick=0.02", "lateral_slip=0.015")),
     ],
 )

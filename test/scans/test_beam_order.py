@@ -36,7 +36,11 @@ def matched(sweeps: list[Sweep], matcher: AnyOrder | ScanMatcher) -> AnyOrder | 
     return matcher
 
 
-@pytest.mark.parametrize("lidar", [Lidar(), POOR], ids=["ordinary", "poor"])
+@pytest.mark.parametrize(
+    "lidar",
+    [pytest.param(Lidar(), marks=pytest.mark.evidence), POOR],
+    ids=["ordinary", "poor"],
+)
 @pytest.mark.parametrize(
     ("stated", "order"),
     [(list, "stated"), (backwards, "last to first"), (at_once, "first to last")],
