@@ -121,13 +121,6 @@ def of_optitrack(tmp_path: Path, name: str) -> None:
 
 @pytest.mark.evidence
 @with_recordings
-@pytest.mark.parametrize("name", DRIVES[:1])
-def test_real_drives_play_through_the_live_node(tmp_path: Path, name: str) -> None:
-    of_optitrack(tmp_path, name)
-
-
-@pytest.mark.evidence
-@with_recordings
 @pytest.mark.parametrize("name", DRIVES)
 def test_every_real_drive_plays_through_the_live_node(tmp_path: Path, name: str) -> None:
     of_optitrack(tmp_path, name)

@@ -227,7 +227,7 @@ def test_a_gyros_own_scale_is_told_beside_the_base_and_not_as_certain(scale: flo
     """By headings alone no drive can tell them; where positions are measured too, it can."""
     random = np.random.default_rng(31)
     true = WhiteNoiseRobot(0.35, 0.05, 0.05, 5e-4, 5e-4)
-    whole = [drive(true, wandering(random, 60.0), random, every=5) for _ in range(2)]
+    whole = [drive(true, wandering(random, 40.0), random, every=5) for _ in range(2)]
     gyros = []
     for number, run in enumerate(whole):
         assert run.reference is not None

@@ -170,6 +170,7 @@ def test_the_rest_of_a_law_that_the_file_holds_is_no_other_effect() -> None:
     )
 
 
+@pytest.mark.evidence
 def test_another_effect_beside_a_law_that_the_file_holds_is_named() -> None:
     square = _law(2)
     truth = replace(

@@ -64,7 +64,7 @@ def test_radians_of_an_unknown_encoder(launch: Callable[..., Any]) -> None:
     assert "no ticks_per_revolution" in node.stderr()
 
 
-@pytest.mark.parametrize("bits", [0, 16])
+@pytest.mark.parametrize("bits", [pytest.param(0, marks=pytest.mark.evidence), 16])
 def test_several_wheels_on_a_side_are_averaged(
     launch: Callable[..., Any], robot: Robot, bits: int
 ) -> None:
