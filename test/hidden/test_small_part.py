@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A fixed part of the proof, on short sessions made anew each time: what is hidden is found.
 
-All of it, with shares over hundreds of sets, is `make evidence`.
+Long, as is all of it, with shares over hundreds of sets: `make evidence`.
 """
 
 from __future__ import annotations

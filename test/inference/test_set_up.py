@@ -49,6 +49,13 @@ THINNED = [
     for number, name in enumerate([*SIZES, *ONE_SIDE])
 ]
 """Factors that poorer references are tried with; all of them in `make evidence`."""
+EVERY_OTHER = [
+    pytest.param(name, marks=pytest.mark.evidence)
+    if (name in SIZES or name in ONE_SIDE) and number % 4 in (2, 3)
+    else name
+    for number, name in enumerate([*WIRING, *SIZES, *REFERENCE, *DELAYS, *ONE_SIDE])
+]
+"""Each factor once, of the radius or of the base, and half of those of one side's counters."""
 WIRED = [
     name if name in ("swapped", "both reversed") else pytest.param(name, marks=pytest.mark.evidence)
     for name in WIRING
@@ -98,7 +105,7 @@ def is_named(finding: SetUpFinding, mistake: Mistake) -> bool:
     return bool({finding.effect, *finding.twins} & set(mistake.names))
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", EVERY_OTHER)
 def test_a_mistake_is_found_first(searched: Search, name: str) -> None:
     mistake, first = EVERY[name], searched(name)[1].findings[0]
     assert is_named(first, mistake), first
@@ -106,7 +113,7 @@ def test_a_mistake_is_found_first(searched: Search, name: str) -> None:
         assert first.factor == mistake.factor
 
 
-@pytest.mark.parametrize("name", [name for name in EVERY if name != "degrees"])
+@pytest.mark.parametrize("name", [name for name in EVERY_OTHER if name != "degrees"])
 def test_the_robot_that_comes_back_is_set_up_right(searched: Search, name: str) -> None:
     """What remains is for fits: some percent of a leg of half a metre."""
     tampered, result = searched(name)
