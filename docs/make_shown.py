@@ -81,8 +81,8 @@ SECTIONS: dict[str, tuple[Shown, ...]] = {
     "ROS": (
         by_tests(
             "test/package test/ros/test_two_robots.py test/ros/test_full_ros.py -rs",
-            "Launch files, two robots in their namespaces, QoS overrides, colcon, ament's linters "
-            "(what a full ROS alone can show is skipped without one).",
+            "Launch files, two robots in their namespaces, QoS overrides, colcon (what a full ROS "
+            "alone can show is skipped without one).",
         ),
         by_tests(
             "test/ros/test_parameters.py test/ros/test_lifecycle.py test/ros/test_requests.py",

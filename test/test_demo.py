@@ -119,12 +119,6 @@ def of_optitrack(tmp_path: Path, name: str) -> None:
     assert ("not calibrated" in said) == (float(sigmas.group(1)) >= 3.4)
 
 
-@with_recordings
-@pytest.mark.parametrize("name", DRIVES[:1])
-def test_real_drives_play_through_the_live_node(tmp_path: Path, name: str) -> None:
-    of_optitrack(tmp_path, name)
-
-
 @pytest.mark.evidence
 @with_recordings
 @pytest.mark.parametrize("name", DRIVES)

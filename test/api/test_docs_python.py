@@ -15,6 +15,10 @@ import pytest
 ROOT = Path(__file__).parents[2]
 PAGE = ROOT / "docs" / "python.md"
 
+ENOUGH = ("robot.yaml", "train/square_ccw", "train/free_brisk", "train/eights_and_spins",
+          "holdout/free_brisk")  # fmt: skip
+"""Of what `werrimbi simulate` writes."""
+
 
 def test_the_five_lines_run_in_a_shell() -> None:
     """Odometry with its covariance from arrays."""
@@ -33,7 +37,10 @@ def test_the_blocks_run(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, simulated: Callable[..., Path]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    Path("drives").symlink_to(simulated("--hide", "random", "--seed", "6"))
+    day = simulated("--hide", "random", "--seed", "6")
+    for name in ENOUGH:
+        Path("drives", name).parent.mkdir(parents=True, exist_ok=True)
+        Path("drives", name).symlink_to(day / name)
     blocks = re.findall(r"```python\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.DOTALL)
     assert len(blocks) == 3
     names: dict[str, object] = {}

@@ -78,6 +78,7 @@ def test_an_existing_file_is_kept(
     assert "--force overwrites it" in capsys.readouterr().err
 
 
+@pytest.mark.evidence
 def test_several_effects_are_added_at_once(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

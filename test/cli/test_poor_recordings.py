@@ -95,13 +95,18 @@ CUTS: dict[str, Callable[[str], str]] = {
 }
 
 
-@pytest.mark.parametrize("how", CUTS)
-@pytest.mark.parametrize("name", ["ticks.csv", "reference.csv"])
+@pytest.mark.parametrize(
+    ("name", "how"),
+    [
+        pytest.param(name, how, marks=[pytest.mark.evidence] * ((row + column) % 2))
+        for row, name in enumerate(("ticks.csv", "reference.csv"))
+        for column, how in enumerate(CUTS)
+        if (name, how) != ("reference.csv", "before the last cell")  # a heading not measured
+    ],
+)
 def test_a_file_cut_by_a_power_failure_is_read_up_to_there(
     run: Path, capsys: pytest.CaptureFixture[str], how: str, name: str
 ) -> None:
-    if (name, how) == ("reference.csv", "before the last cell"):
-        pytest.skip("a heading that was not measured")
     rows = (run / name).read_text().splitlines()
     rows[-1] = CUTS[how](rows[-1])
     (run / name).write_text("\n".join(rows))

@@ -257,7 +257,7 @@ CHANGES = st.fixed_dictionaries({}, optional={item.name: _values(item) for item 
 
 
 @settings(
-    max_examples=150,
+    max_examples=75,
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture],
 )

@@ -134,6 +134,7 @@ def test_a_robot_that_kills_its_workers_is_a_row(cluster: Any, tmp_path: Path) -
     assert row.error == ours.DIED
 
 
+@pytest.mark.evidence
 def test_a_scheduler_that_is_lost_ends_it_and_says_so(tmp_path: Path) -> None:
     (tmp_path / "sleeps.py").write_text("import time\ntime.sleep(600.0)\n")
     tasks = [

@@ -106,10 +106,12 @@ def test_a_robot_of_a_fleet_is_diagnosed_as_by_itself(home: Path, said: Said) ->
     )
 
 
+@pytest.mark.evidence
 def test_one_process_says_the_same_as_two(home: Path, said: Said) -> None:
     assert say(home, "--fleet", "fleet", "--jobs", "1").text == said.text
 
 
+@pytest.mark.evidence
 def test_a_cluster_without_our_disk_says_the_same(home: Path, said: Said, cluster: Any) -> None:
     there = say(home, "--fleet", "fleet", "--scheduler", cluster.scheduler_address)
     assert there.text == said.text

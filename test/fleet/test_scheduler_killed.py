@@ -52,6 +52,7 @@ def waited(folder: Path, name: str, wanted: str) -> str:
     raise AssertionError(f"{name} never said {wanted}")
 
 
+@pytest.mark.evidence
 def test_a_scheduler_that_is_killed_is_one_line(home: Path, tmp_path: Path) -> None:
     effects, begun = tmp_path / "sleeps.py", tmp_path / "begun"
     effects.write_text(SLEEPS.format(begun=str(begun)))

@@ -82,6 +82,7 @@ def guarded(certified: dict[str, str], tmp_path_factory: pytest.TempPathFactory)
             process.wait(60.0)
 
 
+@pytest.mark.evidence
 def test_robots_go_over_tls(guarded: str, certified: dict[str, str]) -> None:
     assert guarded.startswith("tls://")
     done = subprocess.run(
@@ -94,6 +95,7 @@ def test_robots_go_over_tls(guarded: str, certified: dict[str, str]) -> None:
     assert all("robot.yaml" in line for line in lines), "each says what it lacks"
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize("protocol", ["tls", "tcp"])
 def test_who_has_no_certificate_is_not_let_in(guarded: str, protocol: str) -> None:
     address = guarded.replace("tls://", f"{protocol}://")

@@ -47,7 +47,8 @@ def test_a_random_hidden_effect_is_found_added_and_gone(
     tmp_path: Path, simulated: Callable[..., Path]
 ) -> None:
     day, better = simulated("--hide", "random", "--seed", SEED), tmp_path / "better.yaml"
-    robot, train, holdout = day / "robot.yaml", runs_of(day, "train"), runs_of(day, "holdout")
+    robot = day / "robot.yaml"
+    train, holdout = runs_of(day, "train")[:3], runs_of(day, "holdout")[:1]  # enough to tell
     werrimbi("compare", "--robot", robot, *holdout, "--json", tmp_path / "before.json")
     apart = ["--holdout", *holdout]
     words = ["--robot", robot, *train, *apart, "--json", tmp_path / "diagnosis.json"]

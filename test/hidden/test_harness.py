@@ -212,6 +212,7 @@ def _square(number: int) -> work.Line:
     return {"square": number * number}
 
 
+@pytest.mark.evidence
 def test_work_goes_on_where_it_was_stopped_and_one_failure_is_not_the_end(tmp_path: Path) -> None:
     file = tmp_path / "results" / "part.jsonl"
     first = dict(work.done(file, {"two": 2, "bad": -1}, _square, 1))
@@ -368,6 +369,7 @@ def test_field_sets_have_seeds_of_their_own() -> None:
 # ------------------------------------------------------------------ margins
 
 
+@pytest.mark.evidence
 def test_every_deciding_number_can_be_perturbed_and_comes_back() -> None:
     before = margins.constants()
     assert len(before) > 5

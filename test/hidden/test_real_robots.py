@@ -34,18 +34,9 @@ def _advice() -> ModuleType:
     return module
 
 
-OFTEN = "labyrinth"
-"""The quickest, and the one with the least data; the others are followed by `make evidence`."""
-
-
+@pytest.mark.evidence
 @with_recordings
-@pytest.mark.parametrize(
-    "robot",
-    [
-        pytest.param(robot, marks=() if robot == OFTEN else pytest.mark.evidence)
-        for robot in ATTAINABLE
-    ],
-)
+@pytest.mark.parametrize("robot", ATTAINABLE)
 def test_the_tools_advice_comes_within_a_fifth_of_what_can_be_had(
     robot: str, tmp_path: Path
 ) -> None:

@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """A fixed part of the proof, on short sessions made anew each time: what is hidden is found.
 
-All of it, with shares over hundreds of sets, is `make evidence`.
+Long, as is all of it, with shares over hundreds of sets: `make evidence`.
 """
 
 from __future__ import annotations
@@ -53,6 +53,7 @@ def test_an_effect_is_named_and_adding_it_reaches_the_floor(judge: Judge) -> Non
     assert line.mean_is_right, "compare agrees with the diagnosis"
 
 
+@pytest.mark.evidence
 def test_where_nothing_is_hidden_nothing_is_found(judge: Judge) -> None:
     line = judge(CLEAN)
     assert (line.verdict, line.effect, line.found) == ("none", None, ())

@@ -134,6 +134,7 @@ def test_a_diagnosis_tells_a_wheel_that_was_exchanged() -> None:
     assert moved.p_value < 1e-6
 
 
+@pytest.mark.evidence
 def test_a_diagnosis_of_one_robot_tells_no_change() -> None:
     assert told_of(session(0.0)) == ()
 

@@ -150,7 +150,7 @@ def test_drives_that_tell_have_no_rivals_to_recall() -> None:
     assert found.rivals_of_held == {}
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [pytest.param(1, marks=pytest.mark.evidence), 2])
 def test_whatever_a_reference_says_no_number_is_beyond_sense(seed: int) -> None:
     """Poses by chance: what is printed of them stays within what the parameters allow."""
     random = np.random.default_rng(seed)

@@ -47,7 +47,7 @@ def plain(runs: list[Run]) -> Diagnosis:
     return diagnosed(runs[:3], runs[3:])
 
 
-@pytest.mark.parametrize("spoil", [late, swapped])
+@pytest.mark.parametrize("spoil", [late, pytest.param(swapped, marks=pytest.mark.evidence)])
 def test_held_out_drives_recorded_otherwise_change_nothing_that_is_found(
     runs: list[Run], plain: Diagnosis, spoil: Spoilt
 ) -> None:
@@ -63,6 +63,7 @@ def test_held_out_drives_recorded_otherwise_change_nothing_that_is_found(
     assert plain.otherwise == ()
 
 
+@pytest.mark.evidence
 def test_one_fitted_drive_outvotes_ten_that_are_held_out(runs: list[Run]) -> None:
     found = diagnosed(runs[:1], [swapped(run) for run in runs[1:]])
     assert "wheels_swapped" not in found.found

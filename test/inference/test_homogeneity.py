@@ -85,7 +85,9 @@ def nothing(time: np.ndarray, random: np.random.Generator) -> np.ndarray:
     return np.zeros((time.size, 3))
 
 
-@pytest.mark.parametrize("first", [10, 20, 30])
+@pytest.mark.parametrize(
+    "first", [30, *(pytest.param(first, marks=pytest.mark.evidence) for first in (10, 20))]
+)
 def test_what_a_wandering_reference_shows_does_not_last(first: int) -> None:
     found = chances(range(first, first + 5), wanders)
     assert found[0][1] < 1e-5, "by the map alone it would be beyond any chance"
@@ -120,6 +122,7 @@ def test_what_one_drive_alone_shows_is_no_law_of_the_robot() -> None:
     assert (found.misfit.only_in, found.misfit.cell.variable.name) == ("hot", "warmth")
 
 
+@pytest.mark.evidence
 def test_what_every_drive_shows_is_told_of_the_robot() -> None:
     hot = [driven(seed, nothing, f"drive_{seed}", hotter=0.01) for seed in range(80, 84)]
     found = diagnose(hot, ROBOT, LIBRARY, holdout=[driven(85, nothing, "apart", hotter=0.01)])

@@ -222,6 +222,7 @@ def test_legs_are_as_wrong_as_promised_at_every_length(runs: list[Run]) -> None:
     assert max(max(wrong), 1.0 / min(wrong)) > 2.0
 
 
+@pytest.mark.evidence
 def test_a_localiser_shows_a_wrong_base(runs: list[Run]) -> None:
     robot = replace(TRUE.entered(), wheel_separation_multiplier=1.0 / 1.03)
     others = [find(name) for name in ("castor_kick", "floor_slope", "lateral_slip")]
@@ -247,7 +248,7 @@ def with_gyro(seeds: range, robot: WhiteNoiseRobot, scale: float) -> list[Run]:
     return found
 
 
-@pytest.mark.parametrize("wide", [1.0, 1.03])
+@pytest.mark.parametrize("wide", [pytest.param(1.0, marks=pytest.mark.evidence), 1.03])
 def test_a_gyros_scale_is_no_wide_base_and_hides_none(wide: float) -> None:
     """One drive tells neither the angle by which it is laid nor its scale to a percent."""
     robot = replace(TRUE.entered(), wheel_separation_multiplier=1.0 / wide)

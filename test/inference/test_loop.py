@@ -87,10 +87,11 @@ def test_a_wrong_wheel_is_told_as_one_thing_with_one_command(wheel_and_clock: Lo
     assert words.count("werrimbi add") == 1
 
 
+@pytest.mark.evidence
 @pytest.mark.parametrize(
     ("seed", "effects"),
     [
-        pytest.param(4711, ("left_backlash=0.0024",), marks=pytest.mark.evidence),
+        (4711, ("left_backlash=0.0024",)),
         (8, ("castor_kick=0.02", "lateral_slip=0.015")),
     ],
 )
@@ -105,7 +106,7 @@ def test_what_is_found_is_added_and_nothing_more_is_named(
 
 def test_what_does_not_earn_its_place_is_refused_by_name() -> None:
     truth = replace(PLAIN, effects=(find("lateral_slip").using(creep=0.02),))
-    runs = driven(truth, (1, 2, 3, 4))
+    runs = driven(truth, (1, 2, 3, 4), seconds=60)
     effects = [find("lateral_slip"), find("left_backlash")]
     found = add_effects(effects, runs[:3], PLAIN, holdout=runs[3:])
     assert set(found.objections) == {"left_backlash"}
@@ -157,7 +158,7 @@ def _law(form: int) -> Effect:
 
 def test_the_rest_of_a_law_that_the_file_holds_is_no_other_effect() -> None:
     truth = replace(PLAIN, effects=(_law(2).using(softness=0.2),))
-    runs = driven(truth, (1, 2, 3, 4, 5))
+    runs = driven(truth, (1, 2, 3, 4, 5), seconds=60)
     line = _law(1)
     robot = add_effects([line], runs[:4], PLAIN, holdout=runs[4:]).robot
     found = diagnose(runs[:4], robot, [*WITHOUT_SQUASH, line], holdout=runs[4:])
@@ -169,6 +170,7 @@ def test_the_rest_of_a_law_that_the_file_holds_is_no_other_effect() -> None:
     )
 
 
+@pytest.mark.evidence
 def test_another_effect_beside_a_law_that_the_file_holds_is_named() -> None:
     square = _law(2)
     truth = replace(

@@ -97,7 +97,12 @@ def test_what_changes_nothing_has_no_score() -> None:
 # -- bumps ------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("height", [1.5e-3, -1.5e-3])
+HEIGHTS = pytest.mark.parametrize(
+    "height", [pytest.param(1.5e-3, marks=pytest.mark.evidence), -1.5e-3]
+)
+
+
+@HEIGHTS
 def test_a_bump_and_a_flat_are_found_where_they_are(height: float) -> None:
     runs = bumpy(height)
     found = add_effects([find("left_tread_bump")], runs[:3], PLAIN, holdout=runs[3:])
@@ -110,7 +115,7 @@ def test_a_bump_and_a_flat_are_found_where_they_are(height: float) -> None:
     assert "the node does not, and leaves the effect out" in as_text(words_of(found))
 
 
-@pytest.mark.parametrize("height", [1.5e-3, -1.5e-3])
+@HEIGHTS
 def test_the_place_is_learnt_where_the_height_is_known(height: float) -> None:
     """A robot file that holds a flat is not judged with a bump half a turn away."""
     robot = replace(PLAIN, effects=(find("left_tread_bump").using(height=height),))

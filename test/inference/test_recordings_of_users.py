@@ -85,7 +85,7 @@ def test_a_size_is_found_as_surely_as_an_effect(away: float) -> None:
     assert found.found == (() if away < 3.0 else ("track_width",))
 
 
-@pytest.mark.parametrize("factor", [57.3, 1.0 / 2.1])
+@pytest.mark.parametrize("factor", [57.3, pytest.param(1.0 / 2.1, marks=pytest.mark.evidence)])
 def test_a_file_whose_multiplier_mends_a_factor_is_fitted_as_any_other(factor: float) -> None:
     """`add track_width` writes a multiplier of 1/57.3 where degrees were entered.
 
@@ -191,6 +191,7 @@ def squash(
 '''
 
 
+@pytest.mark.evidence
 def test_a_radius_that_falls_with_speed_is_drafted_backwards_too(tmp_path: Path) -> None:
     """Forms were told apart before they were fitted: "path (travel without sign)" was written."""
     (tmp_path / "squash.py").write_text(SQUASH)

@@ -62,8 +62,8 @@ def test_a_sound_reference_has_no_remark() -> None:
     ("name", "strength"),
     [
         ("reference_delay", 0.1),
-        ("reference_lever_arm", 0.15),
-        ("left_missed_ticks", 0.05),
+        pytest.param("reference_lever_arm", 0.15, marks=pytest.mark.evidence),
+        pytest.param("left_missed_ticks", 0.05, marks=pytest.mark.evidence),
     ],
 )
 def test_what_a_robot_has_is_no_fault_of_its_reference(name: str, strength: float) -> None:

@@ -45,10 +45,23 @@ NOMINAL = Robot(0.35, 0.05, 2000.0, 2000.0)
 EVERY = {**WIRING, **SIZES, **ONE_SIDE, **REFERENCE, **DELAYS}
 NAMES = ("train/square_ccw", "train/free_calm", "train/eights_and_spins")
 THINNED = [
-    name if number % 4 == 0 else pytest.param(name, marks=pytest.mark.evidence)
+    name if number % 8 == 4 else pytest.param(name, marks=pytest.mark.evidence)
     for number, name in enumerate([*SIZES, *ONE_SIDE])
 ]
 """Factors that poorer references are tried with; all of them in `make evidence`."""
+EVERY_OTHER = [
+    pytest.param(name, marks=pytest.mark.evidence)
+    if (name in SIZES or name in ONE_SIDE) and number % 4 in (2, 3)
+    else name
+    for number, name in enumerate([*WIRING, *SIZES, *REFERENCE, *DELAYS, *ONE_SIDE])
+]
+"""Each factor once, of the radius or of the base, and half of those of one side's counters."""
+WIRED = [
+    name if name in ("swapped", "both reversed") else pytest.param(name, marks=pytest.mark.evidence)
+    for name in WIRING
+]
+"""Wirings, likewise."""
+MOUNT_90 = pytest.param("mount 90", marks=pytest.mark.evidence)
 Search = Callable[[str], tuple[list[Run], SetUp]]
 
 
@@ -92,7 +105,7 @@ def is_named(finding: SetUpFinding, mistake: Mistake) -> bool:
     return bool({finding.effect, *finding.twins} & set(mistake.names))
 
 
-@pytest.mark.parametrize("name", EVERY)
+@pytest.mark.parametrize("name", EVERY_OTHER)
 def test_a_mistake_is_found_first(searched: Search, name: str) -> None:
     mistake, first = EVERY[name], searched(name)[1].findings[0]
     assert is_named(first, mistake), first
@@ -100,7 +113,7 @@ def test_a_mistake_is_found_first(searched: Search, name: str) -> None:
         assert first.factor == mistake.factor
 
 
-@pytest.mark.parametrize("name", [name for name in EVERY if name != "degrees"])
+@pytest.mark.parametrize("name", [name for name in EVERY_OTHER if name != "degrees"])
 def test_the_robot_that_comes_back_is_set_up_right(searched: Search, name: str) -> None:
     """What remains is for fits: some percent of a leg of half a metre."""
     tampered, result = searched(name)
@@ -154,9 +167,9 @@ def test_an_effect_that_the_file_holds_already_is_changed_not_doubled(session: l
 @pytest.mark.parametrize(
     "effect",
     [
-        "reference_lever_arm",
+        pytest.param("reference_lever_arm", marks=pytest.mark.evidence),
         "reference_delay",
-        "reference_yaw_offset",
+        pytest.param("reference_yaw_offset", marks=pytest.mark.evidence),
         "floor_slope",
         pytest.param("turn_dependent_track", marks=pytest.mark.evidence),
         "track_width",
@@ -211,21 +224,21 @@ def test_a_reference_of_something_else_claims_nothing(session: list[Run]) -> Non
 # -- poorer references --------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("name", [*WIRING, *THINNED, *DELAYS, "mount 90", "millimetres"])
+@pytest.mark.parametrize("name", [*WIRED, *THINNED, *DELAYS, "mount 90", "millimetres"])
 def test_once_a_second_is_enough(session: list[Run], name: str) -> None:
     mistake = EVERY[name]
     first = found([once_a_second(run) for run in session], NOMINAL, mistake).findings[0]
     assert is_named(first, mistake), first
 
 
-@pytest.mark.parametrize("name", [*WIRING, *THINNED, "clock 2.0 s late", "millimetres"])
+@pytest.mark.parametrize("name", [*WIRED, *THINNED, "clock 2.0 s late", "millimetres"])
 def test_positions_alone_show_wiring_and_sizes(session: list[Run], name: str) -> None:
     mistake = EVERY[name]
     first = found([without_yaw(run) for run in session], NOMINAL, mistake).findings[0]
     assert is_named(first, mistake), first
 
 
-@pytest.mark.parametrize("name", [*WIRING, *THINNED, "clock 2.0 s late"])
+@pytest.mark.parametrize("name", [*WIRED, *THINNED, "clock 2.0 s late"])
 def test_a_gyro_shows_wiring_and_radius_over_base(session: list[Run], name: str) -> None:
     mistake = {**WIRING, **SIZES, **ONE_SIDE, **DELAYS}[name]
     findings = found([gyro(run) for run in session], NOMINAL, mistake).findings
@@ -240,7 +253,7 @@ def test_a_gyro_does_not_show_a_mount(session: list[Run]) -> None:
     assert look_for_mistakes([gyro(run) for run in runs], robot).findings == ()
 
 
-@pytest.mark.parametrize("name", [*WIRING, *THINNED, "mount 180", "mount 90"])
+@pytest.mark.parametrize("name", [*WIRED, *THINNED, "mount 180", MOUNT_90])
 def test_two_poses_a_drive_name_it_or_claim_nothing(session: list[Run], name: str) -> None:
     mistake = {**WIRING, **SIZES, **ONE_SIDE, **REFERENCE}[name]
     findings = found([two_poses(run) for run in session], NOMINAL, mistake).findings

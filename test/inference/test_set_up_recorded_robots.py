@@ -5,7 +5,9 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import lru_cache
+from typing import Any
 
 import pytest
 
@@ -22,6 +24,17 @@ WITH_POSES = ("optitrack_robot", "khepera_laser_to_the_side", "khepera_laser_mov
 MOUNTS = {"optitrack_robot": 0.0, "khepera_laser_to_the_side": -89.0, "khepera_laser_moved": -107.0}
 
 pytestmark = with_recordings
+
+
+def thinned(wrong: Sequence[object]) -> list[Any]:
+    """Each with one of the robots; with each of them in `make evidence`."""
+    return [
+        pytest.param(
+            each, name, marks=[pytest.mark.evidence] * ((row - column) % len(WITH_POSES) > 0)
+        )
+        for row, each in enumerate(wrong)
+        for column, name in enumerate(WITH_POSES)
+    ]
 
 
 @lru_cache
@@ -57,8 +70,10 @@ def test_the_labyrinth_robot_has_half_its_base_and_a_mirrored_reference() -> Non
     assert findings[1].factor == "2"
 
 
-@pytest.mark.parametrize("name", WITH_POSES)
-@pytest.mark.parametrize("mistake", [*WIRING, *SIZES, *ONE_SIDE, "degrees", "millimetres"])
+@pytest.mark.parametrize(
+    ("mistake", "name"),
+    thinned([*WIRING, *SIZES, *ONE_SIDE, "degrees", "millimetres"]),
+)
 def test_a_mistake_is_found_first(name: str, mistake: str) -> None:
     wanted = {**WIRING, **SIZES, **ONE_SIDE, **REFERENCE}[mistake]
     first = looked_at(name, mistake).findings[0]
@@ -67,8 +82,7 @@ def test_a_mistake_is_found_first(name: str, mistake: str) -> None:
         assert first.factor == wanted.factor
 
 
-@pytest.mark.parametrize("name", WITH_POSES)
-@pytest.mark.parametrize("late", [0.6, 2.0, -1.5, 4.0])
+@pytest.mark.parametrize(("late", "name"), thinned([0.6, 2.0, -1.5, 4.0]))
 def test_a_late_clock_is_found_to_a_twentieth_of_a_second(name: str, late: float) -> None:
     findings = looked_at(name, f"clock {late} s late").findings
     (delay,) = [each for each in findings if each.effect == "reference_delay"]

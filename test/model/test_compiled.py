@@ -48,7 +48,7 @@ def assert_same_bits(one: Trajectory, other: Trajectory) -> None:
     assert list(one.pieces) == list(other.pieces)
 
 
-@settings(max_examples=150, deadline=None)
+@settings(max_examples=60, deadline=None)
 @given(records(), st.sampled_from([1, 7, 8192]))
 def test_machine_code_says_what_its_lines_and_the_live_odometer_say_to_the_last_bit(
     record: Record, together: int

@@ -106,7 +106,7 @@ def has_a_row(ticks: Ticks) -> bool:
     )
 
 
-@settings(max_examples=250, deadline=None)
+@settings(max_examples=100, deadline=None)
 @given(records(), st.sampled_from([1, 3, 20, None]))
 def test_live_and_recorded_agree_whatever_the_counters_do(
     record: Record, together: int | None

@@ -34,6 +34,7 @@ def linter(request: pytest.FixtureRequest) -> str:
     return name
 
 
+@pytest.mark.evidence
 def test_the_package_is_clean(linter: str) -> None:
     found = lint(linter, "werrimbi_odom", "example", "setup.py")
     assert found.returncode == 0, found.stdout[-3000:] + found.stderr[-1000:]

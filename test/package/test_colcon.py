@@ -96,6 +96,7 @@ def test_the_built_executables_start(workspace: Path) -> None:
     assert "odom" in shown.stdout
 
 
+@pytest.mark.evidence
 def test_colcon_test_runs_the_packages_tests(workspace: Path) -> None:
     run = colcon(workspace, "test", "--pytest-args", "test/model/test_moments.py")
     assert run.returncode == 0, run.stdout + run.stderr

@@ -9,6 +9,8 @@ import subprocess
 import sys
 from pathlib import Path
 
+import pytest
+
 ROOT = Path(__file__).parents[2]
 POOR = """
 import sys
@@ -34,6 +36,7 @@ NOT_BY_ROSDEP = {
 }
 
 
+@pytest.mark.evidence
 def test_colcon_test_collects_without_what_rosdep_does_not_bring(tmp_path: Path) -> None:
     (tmp_path / "poor.py").write_text(POOR.format(absent=NOT_BY_ROSDEP))
     run = subprocess.run(

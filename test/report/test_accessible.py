@@ -57,12 +57,13 @@ NAMES = ("compare", "diagnose", "add", "fit")
 @pytest.mark.parametrize(
     ("name", "dark", "width"),
     [
-        *((name, False, 1280) for name in NAMES),
+        ("compare", False, 1280),
         ("diagnose", True, 390),
         *(
-            pytest.param(name, True, 390, marks=pytest.mark.evidence)
+            pytest.param(name, dark, width, marks=pytest.mark.evidence)
             for name in NAMES
-            if name != "diagnose"
+            for dark, width in ((False, 1280), (True, 390))
+            if (name, dark) not in (("compare", False), ("diagnose", True))
         ),
     ],
 )

@@ -96,7 +96,7 @@ def test_pictures_without_a_browser_say_what_to_install(
     assert not list(tmp_path.iterdir())
 
 
-@pytest.mark.parametrize("kind", ["pdf", "png"])
+@pytest.mark.parametrize("kind", [pytest.param("pdf", marks=pytest.mark.evidence), "png"])
 def test_pictures_for_a_paper_are_a_file_a_figure(tmp_path: Path, kind: str) -> None:
     import plotly.graph_objects as go
 

@@ -98,6 +98,7 @@ def test_a_comparison_draws_itself_in_the_light(seen: dict[str, list[Any]]) -> N
     assert [colour.upper() for colour in seen["colours"]] == ["RGB(255, 255, 255)", "#FFFFFF"]
 
 
+@pytest.mark.evidence
 def test_a_comparison_draws_itself_in_the_dark(compare_page: Path, look: Look) -> None:
     visit = look(compare_page, UNDRAWN, FIGURES, PAPER, FIGURE_PAPER, dark=True)
     assert_well_drawn(visit)
@@ -138,6 +139,7 @@ def test_every_figure_has_a_label_and_every_choice_too(seen: dict[str, list[Any]
     assert seen["labels"] == ALL_LABELLED
 
 
+@pytest.mark.evidence
 def test_what_is_looked_at_is_drawn_first(compare_page: Path, look: Look) -> None:
     """A link to the last figure does not wait for the others; in the end all are drawn."""
     visit = look(
@@ -232,6 +234,7 @@ def test_the_evidence_map_is_there_and_a_click_opens_the_dependence(
     assert visit.answers[7:] == ALL_LABELLED
 
 
+@pytest.mark.evidence
 def test_the_effect_added_draws_itself(added: Added, tmp_path: Path, look: Look) -> None:
     page = tmp_path / "page.html"
     save_report(document_of_added(added), page)
@@ -239,6 +242,7 @@ def test_the_effect_added_draws_itself(added: Added, tmp_path: Path, look: Look)
     assert_well_drawn(visit)
 
 
+@pytest.mark.evidence
 def test_a_calibration_draws_itself(tmp_path: Path, look: Look) -> None:
     errors = np.random.default_rng(1).normal(0.0, 0.01, (50, 2))
     page = calibration_document(

@@ -76,6 +76,8 @@ ROBOTS = {
         "effects": EFFECTS,
     },
 }
+OFTEN = ("four_wheels", "pair", "exact_effects")
+"""Of each input one, counters that wrap, and all that a robot file can ask for."""
 
 
 @pytest.fixture(scope="module")
@@ -180,7 +182,10 @@ class Driven:
         assert counts["messages"] == self.arrived == told + waiting, counts
 
 
-@pytest.mark.parametrize("robot", ROBOTS)
+@pytest.mark.parametrize(
+    "robot",
+    [pytest.param(robot, marks=[pytest.mark.evidence] * (robot not in OFTEN)) for robot in ROBOTS],
+)
 @settings(
     max_examples=30,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],

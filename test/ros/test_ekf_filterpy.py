@@ -206,7 +206,9 @@ OURS = "as `odom_node` publishes it"
 TUNED = "constant, tuned at the middle pace"
 
 
-@pytest.mark.parametrize("pace", PACES)
+@pytest.mark.parametrize(
+    "pace", [pytest.param(pace, marks=[pytest.mark.evidence] * (pace != "fast")) for pace in PACES]
+)
 def test_with_the_published_covariance_the_filter_is_consistent(pace: str) -> None:
     low, high = bounds()
     assert low < nees(OURS, pace).mean() < high

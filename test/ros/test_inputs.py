@@ -64,7 +64,7 @@ def test_radians_of_an_unknown_encoder(launch: Callable[..., Any]) -> None:
     assert "no ticks_per_revolution" in node.stderr()
 
 
-@pytest.mark.parametrize("bits", [0, 16])
+@pytest.mark.parametrize("bits", [pytest.param(0, marks=pytest.mark.evidence), 16])
 def test_several_wheels_on_a_side_are_averaged(
     launch: Callable[..., Any], robot: Robot, bits: int
 ) -> None:
@@ -113,7 +113,13 @@ def test_one_of_two_drivers_restarts(launch: Callable[..., Any], robot: Robot) -
     assert_driven(node.last())
 
 
-@pytest.mark.parametrize(("kind", "message"), [("int32_pair", Int32), ("int64_pair", Int64)])
+@pytest.mark.parametrize(
+    ("kind", "message"),
+    [
+        pytest.param("int32_pair", Int32, marks=pytest.mark.evidence),
+        ("int64_pair", Int64),
+    ],
+)
 def test_two_topics(launch: Callable[..., Any], robot: Robot, kind: str, message: type) -> None:
     node = launch(robot | {"input_type": kind})
     start = {"int32_pair": 2**31 - 1000, "int64_pair": 2**53 + 1}[

@@ -28,7 +28,7 @@ Robot = dict[str, Any]
 Launch = Callable[..., Any]
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+@pytest.mark.parametrize("name", ["SIGINT", pytest.param("SIGTERM", marks=pytest.mark.evidence)])
 def test_a_signal_ends_it_well_in_the_midst_of_work(
     launch: Launch, robot: Robot, name: str
 ) -> None:
@@ -43,7 +43,7 @@ def test_a_signal_ends_it_well_in_the_midst_of_work(
     assert "Traceback" not in node.stderr()
 
 
-@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM"])
+@pytest.mark.parametrize("name", [pytest.param("SIGINT", marks=pytest.mark.evidence), "SIGTERM"])
 def test_a_signal_ends_it_well_while_it_starts(
     start_node: Callable[..., subprocess.Popen[str]], robot: Robot, name: str
 ) -> None:
@@ -135,7 +135,9 @@ def test_the_transform_goes_out_where_tf2_ros_is(
     assert not math.isclose(position.x, 0.0)
 
 
-@pytest.mark.parametrize("node", ["odom_node", "compare_node"])
+@pytest.mark.parametrize(
+    "node", ["odom_node", pytest.param("compare_node", marks=pytest.mark.evidence)]
+)
 def test_what_is_no_argument_of_ros_is_told(node: str) -> None:
     """Where rclpy leaves it unread: a parameter file that nobody reads costs an afternoon."""
 

@@ -53,16 +53,25 @@ def test_an_unknown_key_names_the_nearest_known_one(refused: Refused) -> None:
     ("wrong", "words"),
     [
         ({"wheel_radius": -0.05}, "wheel_radius must be a number greater than 0 (m), not -0.05"),
-        ({"wheel_radius": "5 cm"}, "wheel_radius must be a number (m), not '5 cm'"),
+        pytest.param(
+            {"wheel_radius": "5 cm"},
+            "wheel_radius must be a number (m), not '5 cm'",
+            marks=pytest.mark.evidence,
+        ),
         ({"encoder_bits": 12}, "encoder_bits must be one of 0, 8, 16, 32 (bits), not 12"),
-        ({"enable_odom_tf": "yes please"}, "enable_odom_tf must be true or false"),
+        pytest.param(
+            {"enable_odom_tf": "yes please"},
+            "enable_odom_tf must be true or false",
+            marks=pytest.mark.evidence,
+        ),
         ({"left_wheel_names": [1, 2]}, "left_wheel_names must be a list of names"),
         ({"effects": ["drift"]}, "unknown effect drift; the nearest known one is radius_drift"),
         ({"enable_odom_tf": True}, "enable_odom_tf needs tf2_ros, which is not installed here"),
         ({"use_sim_time": 3}, "'use_sim_time'"),
-        (
+        pytest.param(
             {"qos_overrides": {"/joint_states": {"subscription": {"depth": "deep"}}}},
             "QoS override of joint_states",
+            marks=pytest.mark.evidence,
         ),
         (
             {"qos_overrides": {"/odom": {"publisher": {"reliability": "perhaps"}}}},

@@ -37,9 +37,9 @@ def level_and_words(
 @pytest.mark.parametrize(
     ("more", "says"),
     [
-        ({}, "duplicates ("),
+        pytest.param({}, "duplicates (", marks=pytest.mark.evidence),
         ({"late": 0.5}, "out of order ("),
-        ({"max_wheel_speed": 1e-6}, "implausible ("),
+        pytest.param({"max_wheel_speed": 1e-6}, "implausible (", marks=pytest.mark.evidence),
     ],
     ids=["frozen_stamp", "all_late", "too_slow"],
 )

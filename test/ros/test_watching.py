@@ -82,6 +82,7 @@ def test_what_is_missing_is_told_and_written_beside_the_file_in_use(
     assert "One thing is missing" in comparing.stop()
 
 
+@pytest.mark.evidence
 def test_where_nothing_is_missing_nothing_is_written(
     launch: Any, compare: Any, tmp_path: Path
 ) -> None:

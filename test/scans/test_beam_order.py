@@ -36,10 +36,18 @@ def matched(sweeps: list[Sweep], matcher: AnyOrder | ScanMatcher) -> AnyOrder | 
     return matcher
 
 
-@pytest.mark.parametrize("lidar", [Lidar(), POOR], ids=["ordinary", "poor"])
+@pytest.mark.parametrize(
+    "lidar",
+    [pytest.param(Lidar(), marks=pytest.mark.evidence), POOR],
+    ids=["ordinary", "poor"],
+)
 @pytest.mark.parametrize(
     ("stated", "order"),
-    [(list, "stated"), (backwards, "last to first"), (at_once, "first to last")],
+    [
+        pytest.param(list, "stated", marks=pytest.mark.evidence),
+        (backwards, "last to first"),
+        (at_once, "first to last"),
+    ],
 )
 def test_the_walls_tell_which_way(lidar: Lidar, stated: object, order: Order) -> None:
     sweeps, given = seen(in_circles(20.0), ROOM, lidar)

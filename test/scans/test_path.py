@@ -17,7 +17,7 @@ from werrimbi_odom.simulation.engine import TruePath
 from werrimbi_odom.simulation.lidar import Lidar, Room
 
 
-@pytest.mark.parametrize("beams", [218, 681])
+@pytest.mark.parametrize("beams", [218, pytest.param(681, marks=pytest.mark.evidence)])
 def test_a_metre_in_a_room(beams: int) -> None:
     lidar = Lidar(beams=beams) if beams == 218 else Lidar(beams=beams, noise=0.01, noise_share=0.0)
     found = matched(in_circles(25.0), rooms.living_room(people=beams == 218), lidar)

@@ -82,7 +82,9 @@ def reckoned_from_angles(recording: Recording, robot: TrueRobot) -> Floats:
     )
 
 
-@pytest.mark.parametrize("robot", [NOMINAL, ODD], ids=["nominal", "odd"])
+@pytest.mark.parametrize(
+    "robot", [pytest.param(NOMINAL, marks=pytest.mark.evidence), ODD], ids=["nominal", "odd"]
+)
 @pytest.mark.parametrize("drive", DRIVES, ids=lambda d: d.name)
 def test_rolling_is_exact_dead_reckoning(robot: TrueRobot, drive: Manoeuvre) -> None:
     recording = record(robot, drive, seed=3)
@@ -91,7 +93,9 @@ def test_rolling_is_exact_dead_reckoning(robot: TrueRobot, drive: Manoeuvre) -> 
     assert np.abs(error[:, 2]).max() < 4.0e-5
 
 
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize(
+    "seed", [1, *(pytest.param(seed, marks=pytest.mark.evidence) for seed in (2, 3))]
+)
 def test_counters_alone_close_to_a_hundredth_of_a_percent_of_the_distance(seed: int) -> None:
     """The issue asks for 0.2 %. What is left is the counters' rounding to a tick."""
     recording = record(NOMINAL, free(60.0, seed=seed), seed=seed)
