@@ -45,6 +45,8 @@ TICK = 0.02
 """Seconds between two looks at the time."""
 HOLD = 1.0
 """Seconds for which zeros are repeated after a drive; then `cmd_vel` is left to others."""
+UNNAMED = "_NODE_NAME_UNKNOWN_"
+"""What rmw calls a node whose publisher was found before its name."""
 LEVELS = {
     "waiting": DiagnosticStatus.OK,
     "driving": DiagnosticStatus.OK,
@@ -280,6 +282,8 @@ class DriveNode(Node):  # type: ignore[misc]
         own = f"/{full_name(self)}"
         names = [
             f"{str(each.node_namespace).rstrip('/')}/{each.node_name}"
+            if each.node_name != UNNAMED
+            else "a node whose name is not known yet"
             for each in self.get_publishers_info_by_topic(topic)
         ]
         if own in names:
