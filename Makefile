@@ -9,7 +9,7 @@ READY := $(VENV)/.ready
 # An environment of ROS wheels exports these to its children; ours must find its own.
 unexport PYTHONPATH LD_LIBRARY_PATH _ROS_WHEELS_BOOTSTRAP_COMPLETE
 
-.PHONY: help setup demo test lint bench evidence recordings docs pictures lock clean
+.PHONY: help setup demo test lint bench evidence peers recordings docs pictures lock clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## /{printf "make %-10s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -79,6 +79,10 @@ evidence: setup  ## the long tests: fresh hidden effects (to docs/evidence.md; A
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[docs,release]'
 	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[evidence]' || echo "no atheris for this Python: tests that need it will skip"
 	$(BIN)/python -m pytest -m evidence
+
+peers: setup  ## general learners (SINDy, boosting, a Gaussian process) on the same hidden effects, to docs/peers.md
+	$(BIN)/python -m pip install --quiet --constraint constraints.txt --editable '.[peers]'
+	$(BIN)/python -m test.hidden.peers
 
 recordings: setup  ## run folders of real robots, from public repositories (docs/real_robots.md), to recordings/
 	$(BIN)/python -m test.recorded_robots.make_runs

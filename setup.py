@@ -51,6 +51,7 @@ DOCS = ["sphinx>=8.0", "myst-parser>=4.0", "sphinx-rtd-theme>=3.0"]  # `make doc
 RELEASE = ["build>=1.2", "twine>=6.0"]  # sdist and wheel, and whether they can be uploaded
 FAST = ["numba>=0.61"]  # machine code for long records and diagnoses; the same figures without
 GPS = ["pyproj>=3.6"]  # fixes of satellites as a reference
+PEERS = ["scikit-learn>=1.5", "pysindy>=2.0"]  # general learners, for `make peers` alone
 EVIDENCE = ["atheris>=2.3"]  # for the long tests alone; not for every Python
 
 
@@ -104,6 +105,7 @@ setup(
         "docs": DOCS,
         "release": RELEASE,
         "evidence": EVIDENCE,
+        "peers": PEERS,
         "all": sorted({*ROS, *WORKBENCH, *CLUSTER, *SIMULATION, *FAST, *GPS, *TEST}),
     },
     zip_safe=False,
