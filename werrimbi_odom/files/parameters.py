@@ -258,7 +258,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         "slip_imu_topic",
         "",
-        "Topic of a gyro (sensor_msgs/Imu, z up): where it contradicts the wheels, they slip, and "
+        "Topic of a gyro (sensor_msgs/Imu, not upside down): where it contradicts the wheels, they slip, and "
         "the covariance grows by what was missed; empty: it does not.",
     ),
 )

@@ -40,6 +40,7 @@ from werrimbi_odom.ros.diagnostics import diagnostic, tell
 from werrimbi_odom.ros.drive_records import Records
 from werrimbi_odom.ros.graph import full_name
 from werrimbi_odom.ros.running import run
+from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 TICK = 0.02
 """Seconds between two looks at the time."""
@@ -87,6 +88,7 @@ class DriveNode(Node):  # type: ignore[misc]
         if values["scan_topic"]:
             self._subscribe(LaserScan, str(values["scan_topic"]), self._on_scan)
         if values["imu_topic"]:
+            self._gyro = UprightGyro(str(values["imu_topic"]), self.get_logger())
             self._subscribe(Imu, str(values["imu_topic"]), self._on_imu)
         self.create_service(Trigger, "~/start", self._on_start)
         self.create_service(Trigger, "~/stop", self._on_stop)
@@ -123,7 +125,7 @@ class DriveNode(Node):  # type: ignore[misc]
         self._after()
 
     def _on_imu(self, message: Any) -> None:
-        stamp, rate = _seconds(message.header.stamp), float(message.angular_velocity.z)
+        stamp, rate = _seconds(message.header.stamp), self._gyro.rate(message)
         if math.isfinite(rate):
             self._send(self._driver.gyro(stamp, rate, time.monotonic()))
             self._after()

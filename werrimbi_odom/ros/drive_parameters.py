@@ -105,7 +105,7 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         "imu_topic",
         "",
-        "A sensor_msgs/Imu (z up) whose turn rate stops the robot when its wheels slip; empty: "
+        "A sensor_msgs/Imu (not upside down) whose turn rate stops the robot when its wheels slip; empty: "
         "none.",
     ),
     Parameter(

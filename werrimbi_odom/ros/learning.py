@@ -24,6 +24,7 @@ from werrimbi_odom.model.phases import KNOWN_WELL_ENOUGH, Phase, learnable
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.ros import inputs, planar
 from werrimbi_odom.ros.live_odometer import Tracker
+from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 FINE = 0.03
 """Standard deviation of a phase [rad] beyond which nothing is gained by telling it anew."""
@@ -72,6 +73,7 @@ class Learning(NoLearning):
         self._clock = wiring.node.get_clock()
         self._logger = wiring.node.get_logger()
         self._health = wiring.health
+        self._gyro = UprightGyro(topic, self._logger)
         self._told: dict[str, float] = {}
         """Standard deviation with which a phase was last told, by effect [rad]."""
         self._settled: set[str] = set()
@@ -145,7 +147,7 @@ class Learning(NoLearning):
         if message.angular_velocity_covariance[0] < 0.0:  # REP-145: it does not measure this
             self._health.refuse_to_learn("no angular velocity", "the Imu measures none")
             return
-        rate = message.angular_velocity.z
+        rate = self._gyro.rate(message)
         if not abs(rate) < FASTEST:
             self._health.refuse_to_learn("rate out of range", f"{rate} rad/s")
             return

@@ -18,6 +18,7 @@ from werrimbi_odom.model.slip import NOTHING, Missed, SlipGuard
 from werrimbi_odom.ros import inputs
 from werrimbi_odom.ros.learning import FASTEST
 from werrimbi_odom.ros.live_odometer import Tracker
+from werrimbi_odom.ros.upright_gyro import UprightGyro
 
 
 class NoSlip:
@@ -43,12 +44,13 @@ class Slip(NoSlip):
     wiring : Wiring
     robot : Robot
     topic : str
-        Of sensor_msgs/Imu, z up.
+        Of sensor_msgs/Imu.
     """
 
     def __init__(self, wiring: inputs.Wiring, robot: Robot, topic: str) -> None:
         self._topic = topic
         self._guard = SlipGuard(robot.track, max(robot.left_tick, robot.right_tick))
+        self._gyro = UprightGyro(topic, wiring.node.get_logger())
         self._heard = 0
         self._tracker: Tracker | None = None
         wiring.node.create_subscription(
@@ -76,8 +78,10 @@ class Slip(NoSlip):
         return {"slip": f"{self._guard.times} times, {turn:.1f} deg missed"}
 
     def _see(self, message: Any) -> None:
-        rate = float(message.angular_velocity.z)
-        if self._tracker is None or message.angular_velocity_covariance[0] < 0.0:
+        if message.angular_velocity_covariance[0] < 0.0:
+            return
+        rate = self._gyro.rate(message)
+        if self._tracker is None:
             return
         if abs(rate) < FASTEST:
             self._heard += 1

@@ -1,0 +1,38 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""The yaw rate of sensor_msgs/Imu messages, whichever way the sensor is mounted (REP-145: raw)."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from werrimbi_odom.files.gyro import yaw_rate
+from werrimbi_odom.model.pose import Floats
+
+LISTENED = 50
+"""Messages whose accelerations tell what is upwards; from then on it stays."""
+
+
+class UprightGyro:
+    """Turning about what the accelerometer says is upwards; about z until that is known."""
+
+    def __init__(self, topic: str, logger: Any) -> None:
+        self._topic, self._logger = topic, logger
+        self._forces: list[tuple[float, float, float]] = []
+        self._up: Floats = np.array([0.0, 0.0, 1.0])
+
+    def rate(self, message: Any) -> float:
+        """Of one message [rad/s]; as finite as what it holds."""
+        if len(self._forces) < LISTENED and message.linear_acceleration_covariance[0] != -1.0:
+            force = message.linear_acceleration
+            self._forces.append((force.x, force.y, force.z))
+            if len(self._forces) == LISTENED:
+                self._up, mounted = yaw_rate(np.eye(3), np.array(self._forces))
+                if mounted:
+                    self._logger.info(f"the gyro of {self._topic} is {mounted}")
+        turning = message.angular_velocity
+        if self._up[2] == 1.0:
+            return float(turning.z)
+        return float(self._up @ (turning.x, turning.y, turning.z))
