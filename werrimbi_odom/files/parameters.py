@@ -258,8 +258,8 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         "slip_imu_topic",
         "",
-        "Topic of a gyro (sensor_msgs/Imu, not upside down): where it contradicts the wheels, they slip, and "
-        "the covariance grows by what was missed; empty: it does not.",
+        "Topic of a gyro (sensor_msgs/Imu, not upside down): where it contradicts the wheels, they "
+        "slip, and the covariance grows by what was missed; empty: it does not.",
     ),
 )
 

@@ -105,8 +105,8 @@ PARAMETERS: tuple[Parameter, ...] = (
     Parameter(
         "imu_topic",
         "",
-        "A sensor_msgs/Imu (not upside down) whose turn rate stops the robot when its wheels slip; empty: "
-        "none.",
+        "A sensor_msgs/Imu (not upside down) whose turn rate stops the robot when its wheels "
+        "slip; empty: none.",
     ),
     Parameter(
         "max_slip",
