@@ -70,10 +70,14 @@ class Messages:
         kind = f"std_msgs/msg/Int{bits}"
         return kind, self.make(kind, value)
 
-    def counts(self, *values: int) -> tuple[str, Any]:
-        kind = "std_msgs/msg/Int64MultiArray"
+    def counts(self, *values: int, bits: int = 64) -> tuple[str, Any]:
+        kind = f"std_msgs/msg/Int{bits}MultiArray"
         layout = self.make("std_msgs/msg/MultiArrayLayout", [], 0)
-        return kind, self.make(kind, layout, np.array(values, dtype=np.int64))
+        return kind, self.make(kind, layout, np.array(values, dtype=f"int{bits}"))
+
+    def encoder(self, nanoseconds: int, count: int) -> tuple[str, Any]:
+        kind = "duckietown_msgs/msg/WheelEncoderStamped"
+        return kind, self.make(kind, self.header(nanoseconds), count, 135, 1)
 
     def _point(self, x: float, y: float, kind: str = "Point") -> Any:
         return self.make(f"geometry_msgs/msg/{kind}", x, y, 0.0)

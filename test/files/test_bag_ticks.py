@@ -178,6 +178,37 @@ def test_both_counters_in_an_array_are_exact(tmp_path: Path, ros: Any, robot: An
     assert "left out: 1 messages not of two values, left and right" in run.notes
 
 
+@pytest.mark.parametrize("bits", [16, 32])
+def test_narrower_arrays_wrap_at_their_width(
+    tmp_path: Path, ros: Any, robot: Any, bits: int
+) -> None:
+    top = 2 ** (bits - 1)
+    counts = [(top - 100, 1), (100 - top, 2), (300 - top, 3)]
+    entries = [
+        ("/ticks", n * MS, ros.counts(*pair, bits=bits)) for n, pair in enumerate(counts, start=1)
+    ]
+    entries.append(("/sonars", 1 * MS, ros.counts(1, 2, 3, bits=bits)))
+    run = read_run(ros.write(tmp_path / "bag", entries), robot())
+    assert np.diff(run.ticks.left).tolist() == [200, 200]
+    assert run.ticks.right.tolist() == [1, 2, 3]
+
+
+def test_encoders_of_a_duckiebot_are_paired_by_their_stamps(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """The network delivers the right one's messages 200 ms late."""
+    entries = []
+    for n in range(1, 50):
+        stamp = 50 * n * MS
+        entries.append(("/bot/left_wheel_encoder_node/tick", stamp, ros.encoder(stamp, 3 * n)))
+        late, right = stamp + 200 * MS, ros.encoder(stamp + 2 * MS, 2 * n)
+        entries.append(("/bot/right_wheel_encoder_node/tick", late, right))
+    entries.sort(key=lambda entry: entry[1])
+    run = read_run(ros.write(tmp_path / "bag", entries), robot())
+    assert run.ticks.left.tolist() == [3 * n for n in range(1, 50)]
+    assert run.ticks.right.tolist() == [2 * n for n in range(1, 50)]
+
+
 def test_the_robot_file_chooses_and_else_the_only_one(tmp_path: Path, ros: Any, robot: Any) -> None:
     both = [*joint_drive(ros), ("/ticks", 40 * MS, ros.counts(1, 2))]
     bag = ros.write(tmp_path / "bag", both)

@@ -32,7 +32,16 @@ SCAN = "sensor_msgs/msg/LaserScan"
 FIX = "sensor_msgs/msg/NavSatFix"
 JOINT_STATE = "sensor_msgs/msg/JointState"
 INT32, INT64 = "std_msgs/msg/Int32", "std_msgs/msg/Int64"
+PAIRS = {
+    INT32: 32,
+    INT64: 0,
+    "std_msgs/msg/Int16": 16,
+    "duckietown_msgs/msg/WheelEncoderStamped": 32,
+}
+"""Counters of one wheel, with the width at which they wrap; 0: they never do."""
 MULTI_ARRAY = "std_msgs/msg/Int64MultiArray"
+ARRAYS = {MULTI_ARRAY: 0, "std_msgs/msg/Int32MultiArray": 32, "std_msgs/msg/Int16MultiArray": 16}
+"""The same of both wheels, as values without names."""
 POSES = {
     ODOMETRY: "poses",
     "geometry_msgs/msg/PoseStamped": "poses",
@@ -118,7 +127,7 @@ def contents_of(bag: Bag, base: str = "", *, choosing: bool = True) -> Contents:
     for message in bag.messages(names) if names else ():
         edges.take(message.topic, message.content.transforms)
     found = edges.edges()
-    looked_at = [each.name for each in bag.topics if each.kind in (JOINT_STATE, *POSES)]
+    looked_at = [each.name for each in bag.topics if each.kind in (JOINT_STATE, *ARRAYS, *POSES)]
     firsts = bag.firsts(looked_at)
     references = [
         *_chains(found, base),
@@ -193,9 +202,11 @@ def _wheels(bag: Bag, firsts: dict[str, Any]) -> list[Wheels]:
             angles = len(getattr(first, "position", ())) > 0 or not joints
             gives: Gives = "positions" if angles else "velocities"
             found.append(Wheels(topic.name, topic.kind, topic.messages, gives, joints))
-        elif topic.kind in (MULTI_ARRAY, *DRIVERS):
+        elif topic.kind in DRIVERS or (
+            topic.kind in ARRAYS and len(getattr(firsts.get(topic.name), "data", ())) == 2
+        ):
             found.append(Wheels(topic.name, topic.kind, topic.messages, "counts"))
-        elif topic.kind in (INT32, INT64):
+        elif topic.kind in PAIRS:
             mirrored = topic.name.replace("left", "right")
             for each in bag.topics if mirrored != topic.name else ():
                 if each.name == mirrored and each.kind == topic.kind:

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, left_out_words, stamp_of
-from werrimbi_odom.files.bag_contents import INT32, Wheels
+from werrimbi_odom.files.bag_contents import ARRAYS, PAIRS, Wheels
 from werrimbi_odom.files.counter_pairs import Pairing
 from werrimbi_odom.files.drivers import DRIVERS
 from werrimbi_odom.files.robot_file import RobotFile
@@ -61,8 +61,9 @@ class CountersCollector(_TwoCounts):
 class MultiArrays(_TwoCounts):
     """Two counters in one message without a stamp."""
 
-    def __init__(self, path: Path, topic: str) -> None:
-        super().__init__(f"{path}: {topic}")
+    def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:
+        bits = _width(robot_file, ARRAYS[source.kind])
+        super().__init__(f"{path}: {source.name}", bits)
         self._left_out: Counter[str] = Counter()
 
     def take(self, message: Message) -> None:
@@ -79,24 +80,33 @@ class MultiArrays(_TwoCounts):
 
 
 class Pairs(_TwoCounts):
-    """A topic for each wheel, paired as the node does it; see `Pairing`."""
+    """A topic for each wheel, paired as the node does it; see `Pairing`.
+
+    Messages with stamps are paired by these: one topic may be delivered long after the other.
+    """
 
     def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:
-        bits = _width(robot_file, 32 if source.kind == INT32 else 0)
+        bits = _width(robot_file, PAIRS[source.kind])
         super().__init__(f"{path}: {source.name}", bits)
         self._left = source.name.split(",")[0]
         window = float(robot_file.values["pairing_window"])  # type: ignore[arg-type]
         self._pairing = Pairing(int(1e9 * window))
+        self._read_at, self._side, self._count = array("d"), array("b"), array("q")
 
     def take(self, message: Message) -> None:
         """Take a message."""
-        side, count = int(message.topic != self._left), int(message.content.data)
-        pair = self._pairing.take(side, count, message.received)
-        if pair is not None:
-            self._add(message.received / 1e9, *pair)
+        stamped = hasattr(message.content, "header")
+        self._read_at.append(stamp_of(message) if stamped else message.received / 1e9)
+        self._side.append(message.topic != self._left)
+        self._count.append(int(message.content.data))
 
     def ticks(self) -> tuple[Ticks, list[str]]:
         """All of them, and in words what was left out."""
+        for row in np.argsort(self._read_at, kind="stable").tolist():
+            read_at, side = self._read_at[row], self._side[row]
+            pair = self._pairing.take(side, self._count[row], round(1e9 * read_at))
+            if pair is not None:
+                self._add(read_at, *pair)
         ticks = self._ticks("no two counts within the pairing_window of the robot file")
         left_out = Counter({"without a partner in time": self._pairing.unpaired})
         return ticks, left_out_words(left_out)

@@ -11,10 +11,12 @@ from typing import Protocol
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, topic_in_words
 from werrimbi_odom.files.bag_contents import (
+    ARRAYS,
     INT32,
     INT64,
     JOINT_STATE,
     MULTI_ARRAY,
+    PAIRS,
     Contents,
     Wheels,
 )
@@ -77,10 +79,10 @@ def _wished(held: Contents, wish: str) -> Wheels:
     for each in held.wheels:
         if each.name == ",".join(wished):
             return each
-    if len(found) == len(wished) == 2 and {topic.kind for topic in found} in ({INT32}, {INT64}):
+    if len(found) == len(wished) == 2 and found[0].kind == found[1].kind in PAIRS:
         messages = min(topic.messages for topic in found)
         return Wheels(",".join(wished), found[0].kind, messages, "counts")
-    if single and found[0].kind in (INT32, INT64):
+    if single and found[0].kind in PAIRS:
         raise InputError(f"{held.path}: {wish} is one wheel; --ticks-topic LEFT,RIGHT names both")
     if single and found[0].kind == ODOMETRY:
         return Wheels(wished[0], ODOMETRY, found[0].messages, "odometry")
@@ -115,8 +117,8 @@ def ticks_collector(path: Path, source: Wheels, robot_file: RobotFile) -> TicksC
     if source.kind == ODOMETRY:
         return OdometryTurnedBack(path, source.name, robot_file)
     robot_file.refuse_counts(f"{path}, {source.name}")
-    if source.kind == MULTI_ARRAY:
-        return MultiArrays(path, source.name)
+    if source.kind in ARRAYS:
+        return MultiArrays(path, source, robot_file)
     if source.kind in DRIVERS:
         return CountersCollector(path, source, robot_file)
     return Pairs(path, source, robot_file)

@@ -7,10 +7,11 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import Any
 
-from werrimbi_odom.files.drivers import DRIVERS
+from werrimbi_odom.files.drivers import DRIVERS, DUCKIETOWN
 
 DEFINITIONS = {
     **{kind: driver.definition for kind, driver in DRIVERS.items()},
+    "duckietown_msgs/msg/WheelEncoderStamped": DUCKIETOWN,
     "tf/msg/tfMessage": "geometry_msgs/TransformStamped[] transforms\n",
 }
 """As their packages have them; a sqlite3 bag before ROS 2 Iron holds no definitions."""

@@ -81,6 +81,9 @@ _CREATE = CounterMessage(
     "std_msgs/Header header\nint32 ticks_left\nint32 ticks_right\n",
 )
 
+DUCKIETOWN = "std_msgs/Header header\nint32 data\nuint16 resolution\nuint8 type\n"
+"""Definition of its WheelEncoderStamped, one for each wheel; `resolution` is counts a turn."""
+
 DRIVERS = {
     "turtlebot3_msgs/msg/SensorState": _TURTLEBOT3,
     "kobuki_msgs/msg/SensorState": _KOBUKI,
