@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.effects.functions import sin
+from werrimbi_odom.effects.functions import share, sin
 from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
@@ -44,18 +44,20 @@ def oval_left_wheel(
     """The left wheel is not round: its lever to the floor is longer, and shorter, twice in a turn.
 
     A tyre that stood under its load, a rim that was hit, a wheel printed or cast askew. The wheel
-    leads and lags twice in each of its turns and loses nothing over a half one; what it is longer
-    round than its mean radius says is calibration. The phase belongs to the counter; where that
-    starts anywhere, each drive has a phase of its own.
+    leads and lags twice in each of its turns; an ellipse is also a little longer round than a
+    circle of its mean radius. The phase belongs to the counter; where that starts anywhere, each
+    drive has a phase of its own.
 
-    Formula    left += amplitude / 2 * change of sin(2 * left wheel's angle + phase)       [m]
+    Formula    left += amplitude / 2 * change of sin(2 * left wheel's angle + phase)
+               + (amplitude / radius)^2 / 4 * left                                 [m]
     Signature  heading and distance swing twice in each turn of the left wheel, whatever the speed
     Ruler      lift the robot, hold a block close to the tread and turn the wheel by hand: the gap
                varies by twice the amplitude, from widest to narrowest in a quarter of a turn
     Alike      oval_right_wheel, as long as both wheels turn alike: drive curves. An axle off the
                centre (eccentric_left_wheel) swings once in a turn
     """
-    return travel._replace(left=travel.left + _lead(drive.left_angle, amplitude, phase))
+    more = _more(travel.left, drive.left_angle, amplitude, phase)
+    return travel._replace(left=travel.left + more)
 
 
 @wheel_effect(
@@ -75,20 +77,28 @@ def oval_right_wheel(
     """The right wheel is not round: its lever to the floor is longer, and shorter, twice in a turn.
 
     A tyre that stood under its load, a rim that was hit, a wheel printed or cast askew. The wheel
-    leads and lags twice in each of its turns and loses nothing over a half one; what it is longer
-    round than its mean radius says is calibration. The phase belongs to the counter; where that
-    starts anywhere, each drive has a phase of its own.
+    leads and lags twice in each of its turns; an ellipse is also a little longer round than a
+    circle of its mean radius. The phase belongs to the counter; where that starts anywhere, each
+    drive has a phase of its own.
 
-    Formula    right += amplitude / 2 * change of sin(2 * right wheel's angle + phase)     [m]
+    Formula    right += amplitude / 2 * change of sin(2 * right wheel's angle + phase)
+               + (amplitude / radius)^2 / 4 * right                                [m]
     Signature  heading and distance swing twice in each turn of the right wheel, whatever the speed
     Ruler      lift the robot, hold a block close to the tread and turn the wheel by hand: the gap
                varies by twice the amplitude, from widest to narrowest in a quarter of a turn
     Alike      oval_left_wheel, as long as both wheels turn alike: drive curves. An axle off the
                centre (eccentric_right_wheel) swings once in a turn
     """
-    return travel._replace(right=travel.right + _lead(drive.right_angle, amplitude, phase))
+    more = _more(travel.right, drive.right_angle, amplitude, phase)
+    return travel._replace(right=travel.right + more)
 
 
-def _lead(angle: Span[Number], amplitude: float, phase: float) -> Number:
-    """The integral of (lever - mean lever) over the angle, by its ends: exact at any rate."""
-    return 0.5 * amplitude * (sin(2.0 * angle.end + phase) - sin(2.0 * angle.start + phase))
+def _more(travel: Number, angle: Span[Number], amplitude: float, phase: float) -> Number:
+    """The integral of (lever - mean radius) over the angle, by its ends: exact at any rate.
+
+    Half a turn of an ellipse with half axes r (1 + e) and r (1 - e) is pi r (1 + e^2 / 4) long,
+    but for e^4 / 64 (Ivory 1798); 1 / r is the step's angle over its travel.
+    """
+    turned = angle.end - angle.start
+    lead = sin(2.0 * angle.end + phase) - sin(2.0 * angle.start + phase)
+    return 0.5 * amplitude * lead + 0.25 * amplitude**2 * turned * share(turned, travel)
