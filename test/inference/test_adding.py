@@ -43,6 +43,19 @@ def test_the_size_is_found_within_its_error(creep: Added) -> None:
     assert abs(found.value - 0.02) < 4.0 * found.std < 0.004
 
 
+def test_a_radius_in_degrees_is_found_as_well_as_one_that_is_right() -> None:
+    """Legs of 57 m, of the file's metre, would be a handful of a drive of 40 m."""
+    runs = runs_of(PLAIN, (1, 2))
+    close, far = (
+        add_effects([find("wheel_radius_scale")], runs, replace(PLAIN, wheel_radius=radius))
+        for radius in (0.05, 0.05 * np.pi / 180.0)
+    )
+    name = "left_wheel_radius_multiplier"
+    right = close.robot.left_wheel_radius_multiplier * 180.0 / np.pi
+    assert far.robot.left_wheel_radius_multiplier == pytest.approx(right, rel=3e-4)
+    assert far.multiplier_stds[name] < 2.0 * close.multiplier_stds[name] * 180.0 / np.pi
+
+
 def test_the_held_out_error_falls_to_the_noise(creep: Added) -> None:
     assert creep.objection is None
     assert creep.holdout.sides.after < 0.8 * creep.holdout.sides.before

@@ -10,12 +10,14 @@ The base goes by a third name where it is an effect's own parameter (`Parameter.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, changed
+from werrimbi_odom.inference.rules import CUT_ANEW
 from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
@@ -75,6 +77,19 @@ def with_sizes_in_multipliers(robot: Robot, given: Robot) -> Robot:
     effects = tuple(item for item in robot.effects if item not in moved)
     sizes = sizes_of(replace(robot, effects=tuple(moved)))
     return changed(replace(robot, effects=effects), dict(zip(MULTIPLIERS, sizes, strict=True)))
+
+
+def to_cut_by(robot: Robot, given: Robot) -> Robot:
+    """By whose travel a fit cuts its legs: the given file's, unless its sizes are far off.
+
+    Parameters
+    ----------
+    robot
+        With what the search for set-up mistakes found.
+    """
+    found = with_sizes_in_multipliers(robot, given)
+    off = max(abs(math.log(one)) for one in sizes_of(found).over(sizes_of(given)))
+    return found if off > math.log(CUT_ANEW) else robot
 
 
 def base_name(effect: Effect) -> str | None:

@@ -32,7 +32,7 @@ from werrimbi_odom.inference.adding.start_values import (
 )
 from werrimbi_odom.inference.adding.uncertainty import as_written, noises_of, with_spread
 from werrimbi_odom.inference.adding.worth import Question
-from werrimbi_odom.inference.calibration_sizes import base_name
+from werrimbi_odom.inference.calibration_sizes import base_name, to_cut_by
 from werrimbi_odom.inference.comparison.compare import compare
 from werrimbi_odom.inference.comparison.judged_legs import Legs, in_runs, judged_legs
 from werrimbi_odom.inference.comparison.prepared import Prepared
@@ -119,7 +119,7 @@ def add_effects(
         judge, set_up = started.judge, started.set_up
         begun, also = with_set_up(effects, robot, set_up)
         told(0.15, "calibration")
-        drives = drives_of(judge.train, begun, options)
+        drives = drives_of(judge.train, to_cut_by(begun, robot), options)
         drives, fits = fits_without_jumps(effects, drives, begun, robot, also, told)
         found = _Together(judge, set_up, also, drives, fits)
         return found, events_beside(drives.laid, fits.all.point, judge)

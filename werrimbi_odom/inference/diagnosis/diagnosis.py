@@ -20,6 +20,7 @@ from dataclasses import replace
 
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.calibration_sizes import to_cut_by
 from werrimbi_odom.inference.diagnosis.chance import chance, chance_by_parts
 from werrimbi_odom.inference.diagnosis.cross_validation import holds_when_cross_validated
 from werrimbi_odom.inference.diagnosis.evidence import Dependence, dependences
@@ -109,7 +110,8 @@ def _searched(
     show(0.0, "set-up")
     begun = begin(runs, holdout, robot, options)
     judge, set_up = begun.judge, begun.set_up
-    laid = concatenated(match_finely(judge.fitted_on, set_up.robot, options.leg, options.limits))
+    cutter = to_cut_by(set_up.robot, robot)
+    laid = concatenated(match_finely(judge.fitted_on, cutter, options.leg, options.limits))
     effects = askable(effects, laid, set_up.robot)
     show(0.1, "calibration")
     fit = first_fit(laid, set_up.robot, with_stated_noise(options, laid.runs))

@@ -24,6 +24,12 @@ QUARTER_TURN = 0.5 * math.pi
 """Turning [rad] that is worth a leg of path, whatever the leg's length: the corner of a square
 divides its sides."""
 
+CUT_ANEW = 3.0
+"""Factor by which a size of the robot file is off, beyond which a fit cuts its legs by what the
+size was found to be. An angle in degrees makes legs of 57 m of those of 1 m, a dozen in ten
+minutes, and a radius told to 0.13 % where 0.005 % are in the drives. A factor of 2 in the base
+stays: a drive of half a minute has few legs then, and what is fitted is judged on the same ones."""
+
 PARTS_OF_A_LEG = 4
 """Fits use legs this much shorter than those that are judged. Noise grows with the root of the way
 and drift with the way, so over four times the length they part by a factor of 2."""
