@@ -153,7 +153,8 @@ def table(lines: dict[str, Line], drives: int) -> str:
     said = ["| hidden | " + " | ".join(heads) + " | found |", "| --- " * (len(heads) + 2) + "|"]
     for key, line in rows:
         figures = " | ".join(f"{1e3 * line[head]:.2f}" for head in heads)
-        said.append(f"| `{key.split()[0]}` | {figures} | {line['found']} |")
+        found = line["found"].replace("|", r"\|")
+        said.append(f"| `{key.split()[0]}` | {figures} | {found} |")
     means = " | ".join(f"{1e3 * np.mean([line[head] for _, line in rows]):.2f}" for head in heads)
     return "\n".join([*said, f"| mean of {len(rows)} | {means} | |"])
 
