@@ -26,6 +26,8 @@ from test.recorded_robots.robots import ROBOTS as RECORDED
 from werrimbi_odom.files.replacing import replacing
 
 PAGES = ROOT / "docs/robots"
+SMALLEST = 1e-6
+"""Noise of a heading below which its differences tell only how it was rounded [rad]."""
 GYRO = ("--reference-kind", "incremental")
 BOOK = (
     *CASES,
@@ -86,6 +88,10 @@ def _table(steps: list[Step], judged: list[dict[str, Any]]) -> Iterator[str]:
             f"| {name} | {legs['count']} | {place} | {middle} | {heading} | {nees:.3g} "
             f"| {100.0 * inside:.0f} % |"
         )
+    yield ""
+    yield "As `compare` of each robot file says: legs are cut by the sizes in that file, and those"
+    yield "that stand far out are left out, so their number changes from row to row. `diagnose` and"
+    yield "`add` keep to the legs of the file that they were given: figures below differ a little."
 
 
 def _mm(metres: float | None) -> str:
@@ -110,9 +116,10 @@ def _what_is_left(last: Step, judged: dict[str, Any]) -> Iterator[str]:
             f"{_mm(seen['sigma_xy'])} each pose."
         )
     if seen["measures"] != "position":
-        yield f"- Its heading's, {told.get(seen['yaw_told'], seen['yaw_told'])}: " + (
-            f"{math.degrees(seen['sigma_yaw']):.2g}° each reading."
-        )
+        small = seen["sigma_yaw"] < SMALLEST
+        size = "too little to tell" if small else f"{math.degrees(seen['sigma_yaw']):.2g}°"
+        how = told.get(seen["yaw_told"], seen["yaw_told"])
+        yield f"- The reference's noise of each heading, {how}: {size}."
     correlations = _correlations(judged["each_leg"])
     if correlations:
         yield "- From a leg to the next they " + "; ".join(correlations) + "."
@@ -146,7 +153,11 @@ def _words(case: Case, steps: list[Step], folder: Path) -> Iterator[str]:
         yield ""
         yield "```"
         words = step.words.partition("\n\n")[0]
-        for place, name in ((str(ROBOTS / case.robot), case.robot), (str(folder), "out")):
+        written = [
+            (f"{folder}/{row}", f"{case.robot}/robot{'_better' * (row + 1)}")
+            for row in range(len(steps))
+        ]
+        for place, name in ((str(ROBOTS / case.robot), case.robot), *written):
             words = words.replace(place, name)
         yield words.strip()
         yield "```"
@@ -158,11 +169,13 @@ def index() -> str:
     lines = [
         "# Case book",
         "",
-        "Each real robot of [real_robots.md](../real_robots.md) followed to its end by the",
-        "commands that `werrimbi diagnose` prints, judged on drives that took no part in any fit,",
-        "where there are such. Written by `python docs/case_book.py`. *Left* is what the errors",
-        "are times what model and reference promise together (root of NEES): 1 is nothing but",
-        "noise.",
+        "Robots of [real_robots.md](../real_robots.md), those whose recordings were there when",
+        "`python docs/case_book.py` wrote this. Each is followed by the commands that `werrimbi",
+        "diagnose` prints until it prints no `add` (where it says *unknown* it prints a `draft`,",
+        "which was not run), judged on drives that took no part in any fit, where there are such.",
+        "*Left* is what the errors are times what model and reference promise together (root of",
+        "NEES): 1 is nothing but noise; of few legs, or with wheels' noise as the file has it, it",
+        "may be more where `diagnose`, which fits that noise, finds nothing.",
         "",
         "| robot | added | then | left |",
         "| --- | --- | --- | --- |",

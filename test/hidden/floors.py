@@ -81,6 +81,11 @@ class Floor:
                 fit = min((self._with(fit, law, robot) for law in laws), key=lambda one: one.cost)
         return self.judge.of(fit.point.model).holdout
 
+    def of_law(self, law: Effect) -> float:
+        """Held-out error of the model with one more law, calibration and all fitted [m]."""
+        fit = first_fit(self.laid, self.given, self.options)
+        return self.judge.of(self._with(fit, law, self.given).point.model).holdout
+
     def _with(self, fit: Fitted, effect: Effect, robot: Robot) -> Fitted:
         """One effect more, whatever it is worth."""
         held = {applied.name for applied in fit.point.model.robot.effects}

@@ -22,7 +22,7 @@ import argparse
 import os
 from collections.abc import Sequence
 from itertools import product
-from typing import Any
+from pathlib import Path
 
 import numpy as np
 
@@ -127,19 +127,20 @@ def judged(task: tuple[HiddenSet, int]) -> Line:
         raise AssertionError(f"other legs than ours: {line['calibrated']} m, {by_judge} m")
     for peer in CHOICES:
         line[peer] = error_with(coarse, predicted + learnt(peer, seen)(held))
-    line["ours"], line["found"] = _ours(file, paths, floor)
+    line["ours"], line["found"] = _ours(file, paths[0], floor)
     line["right law"] = floor.of(what.names)
     return line
 
 
-def _ours(file: RobotFile, paths: Sequence[Sequence[Any]], floor: Floor) -> tuple[float, str]:
+def _ours(file: RobotFile, learn_from: Sequence[Path], floor: Floor) -> tuple[float, str]:
     judge = floor.judge
     robot = file.robot
     found = diagnose(judge.fitted_on, robot, LIBRARY, floor.options, holdout=judge.kept_back)
     if found.verdict == "unknown":
         try:
-            drafted = draft(file, paths[0], holdout=paths[1], force=True).to_dict()
-            return drafted["holdout"]["after"], f"draft: {drafted['draft']['law'] or 'curve'}"
+            drafted = draft(file, learn_from, force=True)  # parts of these choose its law
+            told = drafted.to_dict()["draft"]["law"] or "curve"
+            return floor.of_law(drafted.found.effect), f"draft: {told}"
         except InputError:
             pass
     names = found.final.names

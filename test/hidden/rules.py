@@ -204,7 +204,7 @@ RULES = (
         lambda line: judgement(line) != "wrong",
     ),
     Rule(
-        "a poorer reference never makes a wrong name",
+        "a poorer reference makes no wrong name",
         "poorer",
         0.95,
         of_group("poorer"),
