@@ -105,8 +105,8 @@ def _tuples(value: Any) -> Any:
 def judgement(line: Judged) -> str:
     """named, ambiguous, missed or wrong: what the diagnosis made of what was hidden.
 
-    ambiguous is right for twins, and honest where the hidden effect is among the rivals; unknown,
-    for an effect of the library, is wrong.
+    ambiguous is right for twins (of one alone both are to be told), and honest where the hidden
+    effect is among the rivals; unknown, for an effect of the library, is wrong.
     """
     if line.verdict in ("refused", "crashed"):
         return CONFUSED
@@ -121,7 +121,8 @@ def judgement(line: Judged) -> str:
         return "ambiguous" if expected & set(line.rivals) else CONFUSED
     if line.verdict == "named" and line.effect in expected:
         twins = {twin for name in expected for twin in find(name).twins}
-        return CONFUSED if twins and not twins & expected else "named"
+        alone = len(line.hidden) == 1  # then both twins are to be told
+        return CONFUSED if alone and twins and not twins & expected else "named"
     return CONFUSED
 
 

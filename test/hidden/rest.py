@@ -109,7 +109,7 @@ def _share(there: Sequence[Judged], holds: Callable[[Judged], bool]) -> str:
 
 
 def astray(lines: Sequence[Judged]) -> Table:
-    """Those that should have come to the truth and did not."""
+    """Those that should have come to the truth, by no detour, and did not."""
     rows = [
         (
             f"`{line.name}`",
@@ -118,7 +118,7 @@ def astray(lines: Sequence[Judged]) -> Table:
             line.error.replace("|", "/"),
         )
         for line in lines
-        if counts(line) and not at_the_truth(line)
+        if counts(line) and not (at_the_truth(line) and without_detour(line))
     ]
     columns = ("set", "verdicts, one after the other", "ended", "said")
-    return Table("Printed commands that did not lead to the truth", columns, tuple(rows))
+    return Table("Printed commands that did not lead straight to the truth", columns, tuple(rows))
