@@ -60,3 +60,15 @@ def test_what_the_legs_do_not_show_at_all_rose_by_nothing(legs: Legs) -> None:
     assert sides_of(alone, erring(alone, alone.errors.error + 1.0), "m").chance == 1.0
     nothing = erring(legs, np.full(legs.errors.error.shape, np.nan))
     assert sides_of(nothing, nothing, "m").chance == 1.0
+
+
+def test_an_event_that_one_model_alone_sees_is_left_out_of_both(legs: Legs) -> None:
+    """Two laws each find for themselves what happened at once."""
+    noise = RANDOM.normal(0.0, 1e-2, legs.errors.error.shape)
+    pushed = 1.03 * noise
+    pushed[0] = 1.0
+    event = np.zeros(len(noise), dtype=bool)
+    event[0] = True
+    before, after = erring(legs, noise), replace(erring(legs, pushed), event=event)
+    without = (each.chosen(~event) for each in (before, after))
+    assert sides_of(before, after, "m").chance == sides_of(*without, "m").chance < 0.01

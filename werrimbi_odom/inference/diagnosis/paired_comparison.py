@@ -61,7 +61,8 @@ def sides_of(before: Legs, after: Legs, unit: Unit) -> Sides:
         "m" for errors of position, "rad" for those of heading.
     """
     errors = error_of(before, unit), error_of(after, unit)
-    before, after = before.quiet, after.quiet
+    quiet = ~(before.event | after.event)  # each model has its own view of what happened at once
+    before, after = before.chosen(quiet), after.chosen(quiet)
     if not error_of(after, unit) > error_of(before, unit) * (1.0 + HELD_OUT_FALL):
         return Sides(*errors, unit)
     return Sides(*errors, unit, _chance(before, after, unit))
