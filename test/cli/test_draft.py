@@ -6,33 +6,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 from test.cli.commands import complaint, written_by
 from test.cli.written_runs import PLAIN, written
+from test.soft_tyres import soft_tyres
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import load_file
 from werrimbi_odom.effects.contract import check_effect
-from werrimbi_odom.model.effect import Parameter, wheel_effect
-from werrimbi_odom.model.motion import WheelTravel
-
-
-@wheel_effect(
-    channels=("load_kg",),
-    softness=Parameter("", 0.0, 2e-3, (-0.1, 0.1), "relative loss of radius per kilogram"),
-)
-def soft_tyres(travel: Any, drive: Any, softness: float) -> Any:
-    """Tyres give way under a load.
-
-    Formula    travel *= 1 - softness * load      [m]
-    Signature  distances shrink with the load
-    Ruler      load it, and measure the axle's height
-    """
-    kept = 1.0 - softness * drive.channels["load_kg"].mean
-    return WheelTravel(travel.left * kept, travel.right * kept)
 
 
 @pytest.fixture(scope="module")

@@ -124,7 +124,8 @@ def _gp(_: float, legs: Legs, noise: Floats) -> Learnt:
     from sklearn.gaussian_process import GaussianProcessRegressor
     from sklearn.gaussian_process.kernels import RBF, ConstantKernel, WhiteKernel
 
-    middle, size = legs.plain.mean(axis=0), _spread(legs.plain)
+    middle = legs.plain.mean(axis=0)
+    size = _sizes(legs.plain - middle)
     inputs, count = (legs.plain - middle) / size, len(legs.run)
     order = np.random.default_rng(0).permutation(count)
     few, many = order[: POINTS["lengths"]], order[: POINTS["all"]]
@@ -144,9 +145,4 @@ def _gp(_: float, legs: Legs, noise: Floats) -> Learnt:
 
 def _sizes(columns: Floats) -> Floats:
     size = np.sqrt(np.mean(columns**2, axis=0))
-    return np.where(size > 0.0, size, 1.0)
-
-
-def _spread(columns: Floats) -> Floats:
-    size = np.std(columns, axis=0)
     return np.where(size > 0.0, size, 1.0)

@@ -21,6 +21,7 @@ from __future__ import annotations
 import argparse
 import os
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 
@@ -36,11 +37,13 @@ from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.inference.comparison.reference_noise import chained
 from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.diagnosis.search import first_fit
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT, variables_of
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.free_parameters import Model
+from werrimbi_odom.inference.fitting.likelihood import errors_between
 from werrimbi_odom.inference.fitting.prediction import predict_all
 from werrimbi_odom.inference.fitting.run_phases import known_at_home
 from werrimbi_odom.model.pose import Floats
@@ -71,37 +74,31 @@ def legs_of(runs: Concatenated, model: Model) -> Legs:
     ones = np.ones_like(step)
     pairs = product(moves, (ones, *moves, *columns))
     products = [runs.per_leg(one * other * step) for one, other in pairs]
-    left = _relative(runs) - seen.relative
-    left[:, 2] = np.angle(np.exp(1j * left[:, 2]))
+    left = errors_between(runs.start, runs.finish, seen)
     left[runs.gap] = np.nan
     plain = np.column_stack([*means, time, seen.along, seen.turn])
     return Legs(plain, np.column_stack(products), left, runs.run_of_leg)
 
 
-def _relative(runs: Concatenated) -> Floats:
-    """Measured ends of legs, in the frames of their starts."""
-    place = (runs.finish[:, 0] - runs.start[:, 0]) + 1j * (runs.finish[:, 1] - runs.start[:, 1])
-    place = place * np.exp(-1j * runs.start[:, 2])
-    turn = runs.finish[:, 2] - runs.start[:, 2]
-    return np.column_stack([place.real, place.imag, turn])
-
-
 def _chained(coarse: Concatenated, relative: Floats) -> Floats:
     """Ends of legs (m, 3), of the relative poses of the short legs in them."""
-    begin, end = coarse.parts()
-    found = np.zeros((begin.size, 3))
-    for row, (first, last) in enumerate(zip(begin, end, strict=True)):
-        place, yaw = 0j, 0.0
-        for x, y, turn in relative[first:last]:
-            place += np.exp(1j * yaw) * (x + 1j * y)
-            yaw += turn
-        found[row] = place.real, place.imag, yaw
-    return found
+    found = []
+    for first, last in zip(*coarse.parts(), strict=True):
+        place, yaw = chained(relative[first:last])
+        found.append((place[-1].real, place[-1].imag, yaw[-1]))
+    return np.array(found)
 
 
-def error_with(coarse: Concatenated, relative: Floats) -> float:
-    """Root mean square position error over the legs that are judged [m]."""
-    off = (_relative(coarse) - _chained(coarse, relative))[:, :2]
+def error_with(coarse: Concatenated, model: Model, relative: Floats) -> float:
+    """Root mean square position error over the legs that are judged [m].
+
+    Parameters
+    ----------
+    relative
+        Of the short legs, in the place of what the model predicts.
+    """
+    prediction = replace(predict_all(model, coarse), relative=_chained(coarse, relative))
+    off = errors_between(coarse.start, coarse.finish, prediction)[:, :2]
     told = ~coarse.gap & np.isfinite(off).all(axis=1)
     return float(np.sqrt(np.mean(np.sum(off[told] ** 2, axis=1))))
 
@@ -121,12 +118,12 @@ def judged(task: tuple[HiddenSet, int]) -> Line:
     held = legs_of(fine, model)
     predicted = predict_all(model, fine).relative
     seen = legs_of(floor.laid, fit.point.model)
-    line: Line = {"calibrated": error_with(coarse, predicted)}
+    line: Line = {"calibrated": error_with(coarse, model, predicted)}
     by_judge = floor.judge.of(fit.point.model).holdout
     if not np.isclose(line["calibrated"], by_judge, rtol=1e-3):
         raise AssertionError(f"other legs than ours: {line['calibrated']} m, {by_judge} m")
     for peer in CHOICES:
-        line[peer] = error_with(coarse, predicted + learnt(peer, seen)(held))
+        line[peer] = error_with(coarse, model, predicted + learnt(peer, seen)(held))
     line["ours"], line["found"] = _ours(file, paths[0], floor)
     line["right law"] = floor.of(what.names)
     return line

@@ -17,6 +17,7 @@ import pytest
 from test.hidden.sets import HiddenSet, make, runs_of
 from test.inference.driven import run_of
 from test.model.drives import ROBOT
+from test.soft_tyres import soft_tyres
 from werrimbi_odom.effects import LIBRARY
 from werrimbi_odom.effects.contract import check_effect
 from werrimbi_odom.effects.contract.rehearsal import Rehearsal
@@ -38,8 +39,7 @@ from werrimbi_odom.inference.drafting.source import source_of
 from werrimbi_odom.inference.drafting.terms import terms_of, unit_of_coefficient
 from werrimbi_odom.inference.drafting.variables import signals_of
 from werrimbi_odom.model.drive import Span
-from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter, body_effect, wheel_effect
-from werrimbi_odom.model.motion import WheelTravel
+from werrimbi_odom.model.effect import AppliedEffect, Effect, Parameter, body_effect
 from werrimbi_odom.model.robot import Robot
 
 SECONDS, RATE = 90, 20
@@ -58,21 +58,6 @@ def dug_in(motion: Any, drive: Any, drag: float) -> Any:
     """
     back = limited(motion.along, -np.inf, 0.0)
     return motion._replace(turn=motion.turn + drag * drive.channels["load_kg"].mean * back)
-
-
-@wheel_effect(
-    channels=("load_kg",),
-    softness=Parameter("", 0.0, 2e-3, (-0.1, 0.1), "relative loss of radius per kilogram"),
-)
-def soft_tyres(travel: Any, drive: Any, softness: float) -> Any:
-    """Tyres give way under a load.
-
-    Formula    travel *= 1 - softness * load      [m]
-    Signature  distances shrink with the load
-    Ruler      load it, and measure the axle's height
-    """
-    kept = 1.0 - softness * drive.channels["load_kg"].mean
-    return WheelTravel(travel.left * kept, travel.right * kept)
 
 
 def drives_of(applied: Sequence[AppliedEffect], seeds: Sequence[int]) -> list[Run]:

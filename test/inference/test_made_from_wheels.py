@@ -64,7 +64,11 @@ def test_odometry_is_refused_by_its_numbers_alone(seed: int, robot: Robot) -> No
 @pytest.mark.parametrize("noise", [0.0, 0.0002, 0.001, 0.01])
 def test_what_was_measured_is_never_refused(seed: int, noise: float) -> None:
     """Not even perfect poses: counts round off what they do not see."""
-    run, truth = recorded(seed)
+    assert_never_refused(*recorded(seed), noise, seed)
+
+
+def assert_never_refused(run: Run, truth: np.ndarray, noise: float, seed: int) -> None:
+    """As poses, and as positions alone."""
     rng = np.random.default_rng(seed)
     assert run.reference is not None
     x, y = (each + rng.normal(0.0, noise, each.size) for each in truth[:2])
@@ -105,13 +109,7 @@ def test_odometry_from_angles_without_counts_is_refused_by_its_numbers(
 def test_what_was_measured_of_angles_without_counts_is_never_refused(
     seed: int, noise: float
 ) -> None:
-    run, truth = unrounded(seed)
-    rng = np.random.default_rng(seed)
-    assert run.reference is not None
-    x, y = (each + rng.normal(0.0, noise, each.size) for each in truth[:2])
-    for yaw in (truth[2], np.full(x.size, np.nan)):
-        measured = replace(run, reference=Reference(run.reference.time, x, y, yaw))
-        assert refuse_circle(measured, ROBOT) == ""
+    assert_never_refused(*unrounded(seed), noise, seed)
 
 
 def test_a_filter_is_refused_by_its_name_and_by_being_close() -> None:

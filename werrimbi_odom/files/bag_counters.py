@@ -89,8 +89,7 @@ class Pairs(_TwoCounts):
         bits = _width(robot_file, PAIRS[source.kind])
         super().__init__(f"{path}: {source.name}", bits)
         self._left = source.name.split(",")[0]
-        window = float(robot_file.values["pairing_window"])  # type: ignore[arg-type]
-        self._pairing = Pairing(int(1e9 * window))
+        self._window = float(robot_file.values["pairing_window"])  # type: ignore[arg-type]
         self._read_at, self._side, self._count = array("d"), array("b"), array("q")
 
     def take(self, message: Message) -> None:
@@ -102,13 +101,14 @@ class Pairs(_TwoCounts):
 
     def ticks(self) -> tuple[Ticks, list[str]]:
         """All of them, and in words what was left out."""
+        pairing = Pairing(int(1e9 * self._window))
         for row in np.argsort(self._read_at, kind="stable").tolist():
             read_at, side = self._read_at[row], self._side[row]
-            pair = self._pairing.take(side, self._count[row], round(1e9 * read_at))
+            pair = pairing.take(side, self._count[row], round(1e9 * read_at))
             if pair is not None:
                 self._add(read_at, *pair)
         ticks = self._ticks("no two counts within the pairing_window of the robot file")
-        left_out = Counter({"without a partner in time": self._pairing.unpaired})
+        left_out = Counter({"without a partner in time": pairing.unpaired})
         return ticks, left_out_words(left_out)
 
 

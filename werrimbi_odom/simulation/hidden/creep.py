@@ -32,17 +32,7 @@ class LongitudinalSlip(Peculiarity):
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Each wheel falls back by coefficient * acceleration * path."""
-        before = np.zeros(2)
-
-        def shift(stride: Stride) -> Shift:
-            nonlocal before
-            travel = np.array((stride.left, stride.right))
-            acceleration = (travel - before) / stride.period**2
-            before = travel
-            left, right = -self.coefficient * acceleration * np.abs(travel)
-            return Shift((left + right) / 2, 0.0, (right - left) / robot.wheel_separation)
-
-        return shift
+        return _falling_back(self.coefficient, 0.0, robot)
 
 
 @dataclass(frozen=True)
@@ -62,18 +52,23 @@ class CoulombSlip(Peculiarity):
 
     def shifter(self, robot: TrueRobot, rng: np.random.Generator) -> Shifter:
         """Each wheel falls back by coefficient * (|acceleration| - above) * path."""
-        before = np.zeros(2)
+        return _falling_back(self.coefficient, self.above, robot)
 
-        def shift(stride: Stride) -> Shift:
-            nonlocal before
-            travel = np.array((stride.left, stride.right))
-            acceleration = (travel - before) / stride.period**2
-            before = travel
-            beyond = np.sign(acceleration) * np.maximum(np.abs(acceleration) - self.above, 0.0)
-            left, right = -self.coefficient * beyond * np.abs(travel)
-            return Shift((left + right) / 2, 0.0, (right - left) / robot.wheel_separation)
 
-        return shift
+def _falling_back(coefficient: float, above: float, robot: TrueRobot) -> Shifter:
+    """Of each wheel, by the part of its acceleration that is above a threshold [m/s^2]."""
+    before = np.zeros(2)
+
+    def shift(stride: Stride) -> Shift:
+        nonlocal before
+        travel = np.array((stride.left, stride.right))
+        acceleration = (travel - before) / stride.period**2
+        before = travel
+        beyond = np.sign(acceleration) * np.maximum(np.abs(acceleration) - above, 0.0)
+        left, right = -coefficient * beyond * np.abs(travel)
+        return Shift((left + right) / 2, 0.0, (right - left) / robot.wheel_separation)
+
+    return shift
 
 
 @dataclass(frozen=True)
