@@ -94,9 +94,11 @@ def draw(
         figure = go.Figure()
         for verb, colour in (("add", BLUE), ("calibrate fit", ORANGE)):
             counts = ranks(found, verb)
-            share = [RANKS * count / max(sum(counts), 1) for count in counts]
+            if not any(counts):
+                continue  # its part of the evidence was not run
+            share = [RANKS * count / sum(counts) for count in counts]
             middle = [(number + 0.5) / RANKS for number in range(RANKS)]
-            figure.add_bar(x=middle, y=share, name=verb, marker_color=colour)
+            figure.add_bar(x=middle, y=share, name=verb, marker_color=colour, showlegend=True)
         figure.add_hline(y=1.0, line={"color": GREY, "dash": "dash"})
         title = "Where the truth lies in what is stated: even where the intervals are right"
         save(figure, "evidence_ranks.png", title, "rank of the truth", "share, over even")
