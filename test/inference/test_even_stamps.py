@@ -12,6 +12,7 @@ import pytest
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.legs.counters import counters_of
 from werrimbi_odom.inference.legs.even_stamps import evened, evened_scans
+from werrimbi_odom.inference.legs.no_driving import looked_at
 from werrimbi_odom.model.robot import Robot
 
 PERIOD = 0.2
@@ -127,17 +128,30 @@ def test_scans_that_are_stamped_truly_stay() -> None:
     assert evened_scans(reference) is reference
 
 
-@pytest.mark.parametrize("matched", [True, False])
-def test_by_scans_wheels_are_put_right_where_their_stamps_scatter_by_less(matched: bool) -> None:
-    """By 4 ms of 50: to a lidar, whose clock is its own, a slip; a gyro may share it."""
+ROBOT = Robot(0.3, 0.05, 0.05, 1000.0, 1000.0)
+
+
+@pytest.mark.parametrize("together", [True, False])
+def test_wheels_are_put_right_unless_one_packet_brings_the_reference(together: bool) -> None:
+    """4 ms of 50 late are a slip to who has a clock of its own, and nothing to who is as late."""
     random = np.random.default_rng(5)
     read = 0.05 * np.arange(800)
     stamps = np.sort(read + random.normal(0.0, 4e-3, read.size))
-    seen = 0.1 * np.arange(400)
-    ticks = Ticks(stamps, *driven(read))
-    run = Run("run", Path("run"), ticks, by_scans(seen, seen, matched=matched))
-    found = counters_of(run, Robot(0.3, 0.05, 0.05, 1000.0, 1000.0), None).time
-    if matched:
-        assert scatter(found - read) < 0.3 * scatter(stamps - read)
-    else:
+    seen = by_scans(read, stamps if together else read, matched=False)
+    run = looked_at(Run("run", Path("run"), Ticks(stamps, *driven(read)), seen), ROBOT)
+    found = counters_of(run, ROBOT, None).time
+    if together:
         np.testing.assert_array_equal(found, stamps)
+    else:
+        assert scatter(found - read) < 0.3 * scatter(stamps - read)
+
+
+def test_hard_starts_are_no_reason_to_believe_stamps() -> None:
+    """A wheel that speeds up is off the line of its neighbours too, whatever its stamps."""
+    random = np.random.default_rng(6)
+    read = 0.05 * np.arange(800)
+    stamps = np.sort(read + random.normal(0.0, 4e-3, read.size))
+    speed = np.clip(20.0 * np.abs((0.5 * read) % 2.0 - 1.0) - 5.0, 0.0, 8.0)  # rad/s
+    counts = np.floor(160.0 * np.cumsum(speed) * 0.05).astype(np.int64)
+    found = evened(stamps, counts, counts)
+    assert scatter(found - read) < 0.3 * scatter(stamps - read)

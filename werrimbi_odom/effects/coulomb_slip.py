@@ -4,8 +4,10 @@
 
 from __future__ import annotations
 
-from werrimbi_odom.effects.functions import exp, limited, log, sign
-from werrimbi_odom.model.drive import SMOOTHING, Drive, Span
+import math
+
+from werrimbi_odom.effects.functions import limited, sign
+from werrimbi_odom.model.drive import Drive, Span
 from werrimbi_odom.model.effect import Parameter, Sketch, wheel_effect
 from werrimbi_odom.model.motion import Number, WheelTravel
 
@@ -50,24 +52,13 @@ def coulomb_slip(
     Alike      longitudinal_slip, when all starts are as hard as one another; reference_delay, at
                one speed: drive gentle and hard starts
     """
+    share = coefficient * drive.duration
     return WheelTravel(
-        travel.left
-        - coefficient
-        * _beyond(drive.left_speed.end, drive.left_smooth_speed, drive.duration, above),
-        travel.right
-        - coefficient
-        * _beyond(drive.right_speed.end, drive.right_smooth_speed, drive.duration, above),
+        travel.left - share * _lost(drive.left_acceleration, drive.left_smooth_speed, above),
+        travel.right - share * _lost(drive.right_acceleration, drive.right_smooth_speed, above),
     )
 
 
-def _beyond(speed: Number, smooth: Span[Number], duration: Number, above: float) -> Number:
-    """The integral of acceleration beyond a threshold over the path rolled.
-
-    In a step of one speed the acceleration dies out as `smooth` comes up to it, so how long it
-    stays beyond is a logarithm; steps cut in two come to the same.
-    """
-    lag = speed - smooth.start
-    beyond = limited(abs(lag) / (above * SMOOTHING), 1.0, 1e12)
-    lasts = limited(SMOOTHING * log(beyond), 0.0, duration)
-    gained = abs(lag) * (1.0 - exp(-lasts / SMOOTHING)) - above * lasts
-    return sign(lag) * gained * abs(speed)
+def _lost(acceleration: Number, speed: Span[Number], above: float) -> Number:
+    """Acceleration beyond the threshold times speed; both as late as one another."""
+    return sign(acceleration) * limited(abs(acceleration) - above, 0.0, math.inf) * abs(speed.mean)

@@ -91,6 +91,8 @@ class Reference:
     have no direction and no place of the floor in common."""
     gyro: GyroTurn | None = field(default=None, kw_only=True)
     """Where `yaw` is a gyro's, laid upon another reference's."""
+    stamped_together: bool = field(default=False, kw_only=True)
+    """Its stamps are late when the wheels' are; see `inference.legs.even_stamps`."""
 
     @property
     def has_position(self) -> NDArray[np.bool_]:
@@ -114,6 +116,7 @@ class Reference:
             kind=self.kind,
             own_axes=self.own_axes,
             gyro=None if self.gyro is None else self.gyro._replace(turned=self.gyro.turned[which]),
+            stamped_together=self.stamped_together,
         )
 
 

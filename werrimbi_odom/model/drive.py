@@ -20,8 +20,8 @@ ROLLBACK = 1.5e-3
 a stopped wheel is still settled by its controller, by some tenths of a millimetre to and fro."""
 
 SMOOTHING = 0.015
-"""Time constant of a wheel's smooth speed [s]: counters step, so that the difference of two speeds
-is no acceleration. At 50 messages a second it is late by less than a message is long."""
+"""Time constant of the low pass before a wheel's acceleration is told [s]: counters step, so that
+the difference of two speeds is none. At 50 messages a second it is late by less than one."""
 
 
 class Span(NamedTuple, Generic[Number]):
@@ -61,9 +61,13 @@ class Drive(Generic[Number]):
     right_speed: Span[Number]
     """Of the right wheel's rim [m/s], likewise."""
     left_smooth_speed: Span[Number]
-    """Of the left wheel's rim behind a low pass of `SMOOTHING` [m/s]: in a step it goes towards the
-    step's speed, so `left_speed.end` less it, over `SMOOTHING`, is the rim's acceleration."""
+    """Of the left wheel's rim behind a low pass of `SMOOTHING`, at the start and at the end of the
+    message that the step is a part of [m/s]."""
     right_smooth_speed: Span[Number]
+    """Of the right wheel's rim, likewise."""
+    left_acceleration: Number
+    """Change of `left_smooth_speed` over how long that message lasted [m/s^2]."""
+    right_acceleration: Number
     """Of the right wheel's rim, likewise."""
     left_angle: Span[Number]
     """Of the left wheel, from its counter's zero [rad]."""

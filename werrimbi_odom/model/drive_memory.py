@@ -129,6 +129,8 @@ class DriveMemory:
             right_speed=right_speed,
             left_smooth_speed=Span(before[0], after[0]),
             right_smooth_speed=Span(before[1], after[1]),
+            left_acceleration=(after[0] - before[0]) / raw.duration,
+            right_acceleration=(after[1] - before[1]) / raw.duration,
             left_angle=left_angle,
             right_angle=right_angle,
             distance=distance,

@@ -85,6 +85,9 @@ def drive_of_run(
     least = max(flicker, ROLLBACK)
     since = cache(partial(_shuttled, along, least))
     since_left, since_right = (cache(partial(_shuttled, side, least)) for side in (left, right))
+    left_smooth, right_smooth = (
+        cache(partial(_smooth, side / duration, duration)) for side in (left, right)
+    )
     heading = cache(partial(_grown, 0.0, turn))
 
     @cache
@@ -100,8 +103,10 @@ def drive_of_run(
             "yaw_rate": lambda: _lagged(turn / duration),
             "left_speed": lambda: _lagged(left / duration),
             "right_speed": lambda: _lagged(right / duration),
-            "left_smooth_speed": lambda: _smooth(left / duration, duration),
-            "right_smooth_speed": lambda: _smooth(right / duration, duration),
+            "left_smooth_speed": left_smooth,
+            "right_smooth_speed": right_smooth,
+            "left_acceleration": lambda: left_smooth().change / duration,
+            "right_acceleration": lambda: right_smooth().change / duration,
             "left_angle": lambda: _grown(first_angles[0], left_angle),
             "right_angle": lambda: _grown(first_angles[1], right_angle),
             "distance": lambda: _grown(0.0, np.abs(along)),
@@ -135,19 +140,30 @@ def with_wheels_of_messages(drive: DriveOfRun, message: NDArray[np.intp]) -> Dri
     message : ndarray, shape (n,)
         Number of the message in which each step ends, counted from any.
     """
-    message = message - message[0]
+    _, message = np.unique(message, return_inverse=True)
+
+    @cache
+    def lasted() -> Floats:
+        return np.asarray(np.bincount(message, drive.found("duration")), dtype=np.float64)
 
     def mean(name: str) -> Floats:
-        duration = drive.found("duration")
-        lasted = np.bincount(message, duration)
-        gone = np.bincount(message, drive.found(name).end * duration)
-        return np.asarray((gone / np.where(lasted > 0.0, lasted, 1.0))[message])
+        gone = drive.found(name).end * drive.found("duration")
+        return np.asarray(np.bincount(message, gone) / lasted())
+
+    @cache
+    def smooth(name: str) -> Span[Floats]:
+        return _smooth(mean(name), lasted())
+
+    def of_steps(span: Span[Floats]) -> Span[Floats]:
+        return Span(span.start[message], span.end[message])
 
     works = {name: partial(drive.found, name) for name in QUANTITIES} | {
-        "left_speed": lambda: _lagged(mean("left_speed")),
-        "right_speed": lambda: _lagged(mean("right_speed")),
-        "left_smooth_speed": lambda: _smooth(mean("left_speed"), drive.found("duration")),
-        "right_smooth_speed": lambda: _smooth(mean("right_speed"), drive.found("duration")),
+        "left_speed": lambda: _lagged(mean("left_speed")[message]),
+        "right_speed": lambda: _lagged(mean("right_speed")[message]),
+        "left_smooth_speed": lambda: of_steps(smooth("left_speed")),
+        "right_smooth_speed": lambda: of_steps(smooth("right_speed")),
+        "left_acceleration": lambda: (smooth("left_speed").change / lasted())[message],
+        "right_acceleration": lambda: (smooth("right_speed").change / lasted())[message],
     }
     return DriveOfRun.by(works)
 
@@ -172,10 +188,10 @@ def _lagged(means: Floats) -> Span[Floats]:
 
 
 def _smooth(means: Floats, duration: Floats) -> Span[Floats]:
-    """Behind a low pass, as `drive_memory.smoothed` has it step by step.
+    """Behind a low pass, as `drive_memory.smoothed` has it message by message.
 
-    A step is a line of what was before it, `kept * before + rest`; lines put into one another make
-    those of two steps, four, eight, until nothing is kept.
+    A message is a line of what was before it, `kept * before + rest`; lines put into one another
+    make those of two messages, four, eight, until nothing is kept.
     """
     kept = np.exp(-duration / SMOOTHING)
     rest = (1.0 - kept) * means

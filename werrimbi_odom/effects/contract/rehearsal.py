@@ -10,10 +10,11 @@ from itertools import pairwise
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.model.drive import Drive, RawStep, Span
 from werrimbi_odom.model.drive_memory import DriveMemory
-from werrimbi_odom.model.drive_of_run import drive_of_run
+from werrimbi_odom.model.drive_of_run import drive_of_run, with_wheels_of_messages
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, wheels_to_body
 from werrimbi_odom.model.pose import Floats, Pose
 
@@ -47,6 +48,8 @@ class Rehearsal:
     channels: tuple[str, ...] = ()
     knots: Floats = field(default_factory=lambda: np.zeros(1))
     """Times at which the channels were measured [s]; straight in between."""
+    message: NDArray[np.intp] | None = None
+    """Of which each step is a part, where messages are cut in parts."""
 
     @classmethod
     def of(cls, channels: tuple[str, ...] = ()) -> Rehearsal:
@@ -92,6 +95,8 @@ class Rehearsal:
             first_angles=FIRST_ANGLES,
             channels=self.measured,
         )
+        if self.message is not None:
+            drive = with_wheels_of_messages(drive, self.message)
         x, y = self._places()
         moved = displacement(motion, drive.heading.start)
         return drive.with_place(x, y, moved)
@@ -120,13 +125,14 @@ class Rehearsal:
             heading += one.turn
 
     def split(self, shares: tuple[float, ...]) -> Rehearsal:
-        """The same drive with each step in parts."""
+        """The same drive with each step in parts, as a pose between two messages cuts one."""
         parts = np.array(shares)
         return replace(
             self,
             duration=np.outer(self.duration, parts).ravel(),
             left=np.outer(self.left, parts).ravel(),
             right=np.outer(self.right, parts).ravel(),
+            message=np.repeat(np.arange(self.duration.size), parts.size),
         )
 
     @property

@@ -14,7 +14,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.legs.even_stamps import evened
 from werrimbi_odom.inference.legs.leaps import Leap, bridged
-from werrimbi_odom.inference.rules import EVEN_LEAST, EVEN_LEAST_BY_SCANS
+from werrimbi_odom.inference.rules import EVEN_LEAST, EVEN_LEAST_TOGETHER
 from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -88,9 +88,8 @@ def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counter
     InputError
         When fewer than two rows can be used, or the clock was set back.
     """
-    seen = run.reference
-    by_scans = seen is not None and seen.own_axes and seen.gyro is None
-    least = EVEN_LEAST_BY_SCANS if by_scans else EVEN_LEAST
+    together = run.reference is not None and run.reference.stamped_together
+    least = EVEN_LEAST_TOGETHER if together else EVEN_LEAST
     return run.ticks.latest((robot, limits, least), lambda: _counted(run, robot, limits, least))
 
 

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import median_filter, uniform_filter1d
 
-from werrimbi_odom.files.run import Reference
+from werrimbi_odom.files.run import Reference, Run
 from werrimbi_odom.inference.rules import (
     EVEN_HALF_BASE,
     EVEN_HOLE,
@@ -24,6 +24,8 @@ from werrimbi_odom.inference.rules import (
     EVEN_MESSAGES,
     EVEN_MOST,
     EVEN_SHARE,
+    EVEN_SURE,
+    EVEN_TOGETHER,
     EVEN_WINDOW,
 )
 from werrimbi_odom.model.encoder import Counts
@@ -63,18 +65,29 @@ def evened(
     stamps, number = time[first], np.arange(float(row[-1] + 1))
     if lost is not None:
         number[1:] += np.cumsum(lost)[first[1:]]
-    by_stamp, by_number = _unevenness(stamps, number, left[first], right[first])
-    if not by_number < EVEN_SHARE * by_stamp:
+    if not _by_timer(stamps, number, left[first], right[first]):
         return time
-    apart = number[EVEN_WINDOW:] - number[:-EVEN_WINDOW]
-    period = float(np.median((stamps[EVEN_WINDOW:] - stamps[:-EVEN_WINDOW]) / apart))
-    even = period * number
-    late = median_filter(stamps - even, EVEN_WINDOW, mode="reflect")  # a pause is a step of it
-    off = np.clip(stamps - even - late, -period, period)
-    late += uniform_filter1d(off, EVEN_WINDOW, mode="reflect")
-    tenth = 0.1 * even  # none is read before the one before it
-    read = (np.maximum.accumulate(even + late - tenth) + tenth)[row]
+    even, period = _numbered(stamps, number)
+    tenth = 0.1 * period * number  # none is read before the one before it
+    read = (np.maximum.accumulate(even - tenth) + tenth)[row]
     return np.asarray(read) if np.std(read - time) > least * period else time
+
+
+def stamped_together(run: Run) -> bool:
+    """Whether a reference's stamps are late when the wheels' are, as where one packet brings both.
+
+    Then each is late against the other by nothing, and wheels put right alone would err.
+    """
+    time = run.ticks.time
+    late = time - evened(time, run.ticks.left, run.ticks.right)
+    if run.reference is None or run.reference.time.size < EVEN_MESSAGES or not late.any():
+        return False
+    seen = np.asarray(run.reference.time, dtype=np.float64)
+    own = seen - _numbered(seen, np.arange(float(seen.size)))[0]
+    both = np.interp(seen, time, late), own
+    if not all(part.any() for part in both):
+        return False
+    return bool(np.corrcoef(*both)[0, 1] > EVEN_TOGETHER)
 
 
 def evened_scans(reference: Reference) -> Reference:
@@ -127,21 +140,39 @@ def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:
     return np.asarray(again & bool(mostly))
 
 
-def _unevenness(time: Floats, number: Floats, left: Counts, right: Counts) -> tuple[float, float]:
-    """How far counts are off the line of their neighbours, by stamps and by numbers (rms)."""
-    shares = [_before(time), _before(number)]
-    off: list[list[Floats]] = [[], []]
+def _numbered(stamps: Floats, number: Floats) -> tuple[Floats, float]:
+    """When messages that a timer sends were sent, by their numbers [s], and its period."""
+    apart = number[EVEN_WINDOW:] - number[:-EVEN_WINDOW]
+    period = float(np.median((stamps[EVEN_WINDOW:] - stamps[:-EVEN_WINDOW]) / apart))
+    even = period * number
+    late = median_filter(stamps - even, EVEN_WINDOW, mode="reflect")  # a pause is a step of it
+    off = np.clip(stamps - even - late, -period, period)
+    return even + late + uniform_filter1d(off, EVEN_WINDOW, mode="reflect"), period
+
+
+def _by_timer(time: Floats, number: Floats, left: Counts, right: Counts) -> bool:
+    """Whether counts lie where the number of their message has them, and not where its stamp has.
+
+    How far a count is off the line of its neighbours by number, over how far it should be if its
+    stamp were right, is 1 where stamps are right and 0 where a timer read it (least squares). A
+    robot that speeds up puts counts off the line as well, but not as the stamps go.
+    """
+    by_stamp, by_number = _before(time), _before(number)
+    off, told = [], []
     for counts in (left, right):
         whole, half = counts[2:] - counts[:-2], counts[1:-1] - counts[:-2]
         size = np.abs(whole)
         usual = np.median(size[size > 0.0]) if (size > 0.0).any() else 0.0
         turns = (size > 0.0) & (size < 20.0 * usual)  # and no counter that wraps or leaps
-        for kept, part in zip(off, shares, strict=True):
-            kept.append((half - part * whole)[turns])
-    stamped, numbered = (np.concatenate(kept) for kept in off)
-    if stamped.size < EVEN_MESSAGES:
-        return 0.0, 0.0
-    return float(np.sqrt(np.mean(stamped**2))), float(np.sqrt(np.mean(numbered**2)))
+        off.append((half - by_number * whole)[turns])
+        told.append(((by_stamp - by_number) * whole)[turns])
+    said, by_stamps = np.concatenate(off), np.concatenate(told)
+    if said.size < EVEN_MESSAGES or not by_stamps.any():
+        return False
+    follows = float(said @ by_stamps / (by_stamps @ by_stamps))
+    rest = (said - follows * by_stamps) * by_stamps
+    std = float(np.sqrt(rest @ rest) / (by_stamps @ by_stamps))
+    return abs(follows) + EVEN_SURE * std < EVEN_SHARE
 
 
 def _before(place: Floats) -> Floats:

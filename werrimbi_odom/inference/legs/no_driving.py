@@ -21,7 +21,7 @@ from werrimbi_odom.files.run import NoDriving, Reference, Run
 from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
 from werrimbi_odom.inference.legs.counters import Counters, counters_of
-from werrimbi_odom.inference.legs.even_stamps import evened_scans
+from werrimbi_odom.inference.legs.even_stamps import evened_scans, stamped_together
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
 from werrimbi_odom.inference.rules import (
     NO_DRIVING_AT_ONCE,
@@ -93,13 +93,13 @@ def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Ru
     """
     if run.no_driving is not None or run.reference is None:
         return run
-    run = replace(run, reference=evened_scans(run.reference))
-    assert run.reference is not None
+    seen = replace(evened_scans(run.reference), stamped_together=stamped_together(run))
+    run = replace(run, reference=seen)
     try:
         counters = counters_of(run, robot, limits)
     except InputError:
         return run  # whoever cuts it into legs says why
-    return replace(run, no_driving=no_driving(counters, run.reference, robot))
+    return replace(run, no_driving=no_driving(counters, seen, robot))
 
 
 def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[NoDriving, ...]:

@@ -116,22 +116,26 @@ asked whether they are whole, and how much a unit may be off: angles of 32 bits 
 hundredth of a count at a thousand turns. What is not whole rounds nothing off: `CIRCLE_FINEST`
 is asked then."""
 
-EVEN_LEAST = 0.1
+EVEN_LEAST = 0.02
 """Share of the time between two messages by which their stamps must be off (rms) to be put right.
-Less moves a wheel by less than a tenth of what it goes in a message; and a gyro in the same packets
-errs alike, and with wheels put right alone would err against them."""
+A reference with a clock of its own sees a wheel that is stamped 4 ms late of 50 lie 2 mm behind and
+slower before: a slip that is none. With less it is below what any reference errs."""
 
-EVEN_LEAST_BY_SCANS = 0.02
-"""The same where a lidar alone is the reference. It has a clock of its own, to a millisecond, and
-sees a wheel that is stamped 4 ms late of 50 lie 2 mm behind and slower before: a slip that is
-none. With less it is below what a match errs, at any speed indoors."""
+EVEN_LEAST_TOGETHER, EVEN_TOGETHER = 0.1, 0.5
+"""The same where one packet brings the wheels and the reference, a gyro: it errs alike, and would
+err against wheels that were put right alone; more moves a wheel by a tenth of what it goes. And how
+closely the stamps of both must go together (correlation) to be of one packet: half of what is late
+in one is in the other."""
 
-EVEN_MESSAGES, EVEN_WINDOW, EVEN_SHARE = 50, 51, 0.5
-"""Messages that tell whether stamps say when counters were read: with fewer, chance does. How many
-the middle of their lateness is taken over: few seconds, in which two clocks part by 0.1 ms, and
-enough to be right to a sixth of the scatter of one stamp. And the share of the counts' unevenness
-that must be gone when messages are numbered in place of stamped: a timer that is itself uneven, but
-told truly, leaves more than all of it, counts that are coarse leave all."""
+EVEN_MESSAGES, EVEN_WINDOW = 50, 51
+"""Messages that tell whether stamps say when counters were read: with fewer, chance does. And how
+many the middle of their lateness is taken over: few seconds, in which two clocks part by 0.1 ms,
+and enough to be right to a sixth of the scatter of one stamp."""
+
+EVEN_SHARE, EVEN_SURE = 0.5, 3.0
+"""Share of what stamps are off that counts may follow, for their timer to be believed in place of
+the stamps: half way between a timer that is uneven but told truly (1) and one that is even (0). And
+standard deviations of it that must be between: coarse counts tell neither."""
 
 EVEN_HALF_BASE = 0.1
 """Of the two wheels that a path by scans is told by [m]: as large as a small robot's, so that way
