@@ -3,8 +3,8 @@
 """Changes between the drives of one diagnosis: beside everything that it found, and no effect.
 
 A change is told if the drives need it (`search`), if the parts of the drives before it agree with
-each other and those after it do (`homogeneity`), and if neither another effect nor a dependence on
-a measured variable explains as much. Held-out drives have no part in it.
+each other and those after it do (`homogeneity`), if no other effect explains as much, and if it
+stands beside what the errors go with. Held-out drives have no part in it.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from werrimbi_odom.inference.changes.search import Segmented, Step, segmented
 from werrimbi_odom.inference.changes.shapes import Kind
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.evidence import Dependence
-from werrimbi_odom.inference.diagnosis.homogeneity import lasting_columns
+from werrimbi_odom.inference.diagnosis.homogeneity import lasting_columns, pattern_of
 from werrimbi_odom.inference.diagnosis.selection import Fitted
 from werrimbi_odom.inference.fitting.candidates import (
     Candidate,
@@ -42,7 +42,7 @@ from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point
 from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION, STEP, FreeParameter
 from werrimbi_odom.inference.linear import nuisance, score_test
-from werrimbi_odom.inference.rules import DATED, MOST_ALONE, RIVAL, SURE
+from werrimbi_odom.inference.rules import DATED, MOST_ALONE, RIVAL, SURE, WORTH_OF_A_CHANGE
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.model.pose import Floats
 
@@ -123,7 +123,7 @@ def _beside(
     dependences: Sequence[Dependence],
     effects: Sequence[Effect],
 ) -> tuple[Moved, ...]:
-    """Changes beside a model, unless one more effect or a dependence explains as much.
+    """Changes beside a model, unless one more effect explains as much, or a dependence them.
 
     Parameters
     ----------
@@ -148,9 +148,11 @@ def _beside(
     if not steps:
         return ()
     worth = sum(step.gain - fit.price_of_one * (step.degrees + 1) for step in steps)
-    if worth < max(
-        _worth_of_effects(diagnosis, fit, effects) + RIVAL, _worth_of(dependences, fit), RIVAL
-    ):
+    least = WORTH_OF_A_CHANGE * _worth_of(dependences, fit)
+    if worth < max(_worth_of_effects(diagnosis, fit, effects) + RIVAL, least, RIVAL):
+        return ()
+    more = [cell for cell in dependences if _worth_of([cell], fit) > worth]
+    if not all(_stands_beside(diagnosis, fit, evidence, steps, place, cell) for cell in more):
         return ()
     if len(steps) < len(found.steps):
         found = segmented(drives, [step.group for step in steps], fit.price_of_one)
@@ -237,6 +239,28 @@ def _lasts(
     free, rest = beside.residual(column), beside.residual(evidence.white)
     test = score_test(column, free, rest)
     return test is not None and lasting_columns(runs, test.gain, test.degrees, free, rest) < SURE
+
+
+def _stands_beside(
+    diagnosis: Diagnosis,
+    fit: Fitted,
+    evidence: Evidence,
+    steps: Sequence[Step],
+    place: NDArray[np.intp],
+    cell: Dependence,
+) -> bool:
+    """Whether changes are needed beside a dependence that explains more.
+
+    A robot whose marker was mounted anew between squares and spins errs with the time since the
+    start too, as squares and spins turn at other times; a tyre that warms is another one in each
+    drive, and nothing more than warm.
+    """
+    columns = np.concatenate([evidence.columns(step, place) for step in steps], axis=-1)
+    pattern = pattern_of(diagnosis.runs, fit.point, cell) / np.sqrt(fit.scatter)
+    beside = nuisance(np.concatenate([evidence.shared, evidence.own, pattern], axis=-1))
+    test = score_test(columns, beside.residual(columns), beside.residual(evidence.white))
+    price = fit.price_of_one * len(steps)
+    return test is not None and test.gain - fit.price_of_one * test.degrees - price > RIVAL
 
 
 def _worth_of_effects(diagnosis: Diagnosis, fit: Fitted, effects: Sequence[Effect]) -> float:

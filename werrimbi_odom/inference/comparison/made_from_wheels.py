@@ -10,6 +10,7 @@ often come from a gyro.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -96,10 +97,11 @@ def refuse_circle(run: Run, robot: Robot, limits: EncoderLimits | None = None) -
 
 def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Closeness | None:
     """How closely a reference follows the wheels; None where there is too little to tell."""
-    reference = run.reference
-    assert reference is not None
+    assert run.reference is not None
+    # What is made from the wheels has their stamps, right or wrong.
+    reference = replace(run.reference, stamped_together=True)
     try:
-        counters = counters_of(run, robot, limits)
+        counters = counters_of(replace(run, reference=reference), robot, limits)
     except InputError:
         return None
     rows = _rows(reference, counters, robot)

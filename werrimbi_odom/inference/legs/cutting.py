@@ -35,6 +35,7 @@ from werrimbi_odom.inference.rules import (
     EDGE_LEGS,
     FEW_POSES,
     MOMENT,
+    NO_DRIVING_ENDS,
     PARTS_OF_A_LEG,
     QUARTER_TURN,
     RATE_OF_FIT,
@@ -282,12 +283,18 @@ def record_of(
         run.name,
         counters,
         measured,
-        touched(measured.time, [*((part.begin, part.end) for part in found), *run.taken_out]),
+        touched(measured.time, [*map(_surely_around, found), *run.taken_out]),
         found,
         _typical(reference.sigma_xy),
         _typical(reference.sigma_yaw),
         run.happened,
     )
+
+
+def _surely_around(part: LeftOut) -> tuple[float, float]:
+    """From when to when no leg goes: of what a hand does the ends are known to a window's half."""
+    unsure = NO_DRIVING_ENDS if part.why in ("held", "carried") else 0.0
+    return part.begin - unsure, part.end + unsure
 
 
 def _silences(

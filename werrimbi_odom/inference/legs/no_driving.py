@@ -119,8 +119,14 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
     found = sorted(_reaching(stretch, seen) for each in seen for stretch in _stretches(each))
     parts = [part for each in _joined(found, seen) for part in _by_kind(*each, seen)]
     parts = _with_rests(parts, counters, robot)
-    if turns is not None and not seen:
-        parts = _turned_by_hand(turns, robot.track)
+    if turns is not None and by_turns is None:  # to and fro on a line, and carried in between
+        by_hand = _turned_by_hand(turns, robot.track)
+        alone = (
+            one
+            for one in by_hand
+            if all(one.end < each.begin or one.begin > each.end for each in parts)
+        )
+        parts = sorted([*parts, *alone])
     if parts and not reference.has_yaw.any():
         parts = _with_what_follows(parts, counters)
     return tuple(parts)

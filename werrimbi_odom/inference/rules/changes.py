@@ -12,6 +12,11 @@ MOST_ALONE = 1
 """Drives on one side of a change that are too few to show it by a reference that wanders: how it
 errs is as much alike within a drive as a change is."""
 
+WORTH_OF_A_CHANGE = 0.5
+"""Share of what a dependence is worth that changes must be, to be told beside it. Chosen, the half:
+a marker that sat otherwise on another day was worth 0.7 of the time since the start, which stood
+for it; where a floor is slippery in one place, the drives that meet it err otherwise, worth 0.2."""
+
 DATED = 1e8
 """Stamps [s] above this are dates: no clock that begins with a drive shows three years."""
 

@@ -67,6 +67,11 @@ NO_DRIVING_WINDOW = 0.5
 """Length of the windows [s]; of slower messages two intervals. Its middle is known to half of it
 and better, and ends of stretches should be found within half a second."""
 
+NO_DRIVING_ENDS = 0.4
+"""How far from where it is told a stretch may end [s]: no leg comes nearer. By a gyro its ends are
+known to half a window, by a localiser that is late to 0.4; what is left of it at either end is as
+wrong as its middle, and a drive has few of them."""
+
 NO_DRIVING_SILENCE = 3.0
 """Times the usual interval, across which nothing is said of a window: a lost message is bridged."""
 
