@@ -40,6 +40,20 @@ BOOK = (
         ("part_0",),
         GYRO,
     ),
+    Case(
+        "kobuki_right_taped",
+        "Kobuki, tape on the right tread",
+        ("part_[1-4]",),
+        ("part_0",),
+        GYRO,
+    ),
+    Case("kobuki_both_taped", "Kobuki, tape on both treads", ("part_0",), (), GYRO),
+    Case(
+        "optitrack_in_june",
+        "OptiTrack robot, half a year before",
+        ("square*_0[1-4]", "circular*_0[1-4]", "ivanjko*_0[1-6]"),
+        ("square*_0[5-6]", "circular*_0[5-6]", "ivanjko*_0[7-9]"),
+    ),
     Case("upenn_skid_gyro", "Skid steer by its gyro", ("drive_20",), ("drive_21",), GYRO),
     Case("upenn_skid_icp", "Skid steer by a scan matcher", ("drive_20",), ("drive_21",), GYRO),
 )

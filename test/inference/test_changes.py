@@ -10,9 +10,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from test.recorded_robots import ROBOTS
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
 from werrimbi_odom.effects.library import LIBRARY
+from werrimbi_odom.files.robot_file import read_robot_file
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run_folder import read_run_folder
 from werrimbi_odom.inference.changes.between_drives import Moved, changes_between
 from werrimbi_odom.inference.changes.drives import Drives
 from werrimbi_odom.inference.changes.numbers import groups_of
@@ -22,6 +25,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.linear import nuisance, score_test
 
+IN_JUNE = ROBOTS / "optitrack_in_june"
 PRICE = 9.0
 BASE, LEFT, RIGHT = range(3)
 STD = 1e-3
@@ -149,3 +153,15 @@ def test_drives_with_dates_are_taken_in_their_order() -> None:
         dated.append(replace(run, ticks=replace(ticks, time=ticks.time + shift), reference=moved))
     (moved,) = told_of([dated[index] for index in (4, 1, 5, 0, 3, 2)])
     assert (moved.last_before, moved.from_run) == ("drive_2", "drive_3")
+
+
+@pytest.mark.skipif(not IN_JUNE.is_dir(), reason="no recordings of `make recordings` here")
+def test_a_marker_mounted_anew_is_told_beside_the_time_that_it_looks_like() -> None:
+    """Squares and circles, and on another day lines and spins, which end within eleven seconds."""
+    kinds = ("square_*", "circular_*", "ivanjko_*")
+    runs = [read_run_folder(path) for kind in kinds for path in sorted(IN_JUNE.glob(kind))]
+    robot = read_robot_file(IN_JUNE / "robot.yaml").robot
+    found = {each.what: each for each in changes_between(diagnose(runs, robot, LIBRARY), LIBRARY)}
+    ahead = found["reference_lever_arm.x"]
+    assert ahead.from_run == "ivanjko_250620201618_01"
+    assert (ahead.before, ahead.after) == pytest.approx((-0.7e-3, 1.0e-3), abs=0.2e-3)

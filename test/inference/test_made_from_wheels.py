@@ -13,6 +13,7 @@ import pytest
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.made_from_wheels import closeness, refuse_circle
+from werrimbi_odom.inference.legs.counters import counters_of
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -56,6 +57,18 @@ def own_odometry(run: Run, robot: Robot) -> Reference:
 def test_odometry_is_refused_by_its_numbers_alone(seed: int, robot: Robot) -> None:
     run, _ = recorded(seed)
     circle = replace(run, reference=own_odometry(run, robot))
+    with pytest.raises(InputError, match="it was made from the same counts"):
+        refuse_circle(circle, ROBOT)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_odometry_has_the_stamps_of_its_wheels_right_or_wrong(seed: int) -> None:
+    """Wheels whose stamps scatter by 4 ms are put right for a measurement, and not for this."""
+    run, _ = recorded(seed)
+    late = np.random.default_rng(seed).normal(0.0, 4e-3, run.ticks.rows)
+    scattered = replace(run, ticks=replace(run.ticks, time=np.sort(run.ticks.time + late)))
+    circle = replace(run, ticks=scattered.ticks, reference=own_odometry(scattered, ROBOT))
+    assert counters_of(circle, ROBOT, None).restamped > 2e-3
     with pytest.raises(InputError, match="it was made from the same counts"):
         refuse_circle(circle, ROBOT)
 

@@ -217,6 +217,35 @@ def test_a_robot_that_is_turned_while_it_stands_is_found_in_a_straight_drive_of_
     assert found[2] == {"carried"}
 
 
+def test_a_robot_that_is_carried_slowly_between_straight_lines_is_found_by_its_turning() -> None:
+    """How it drives says nothing of turns; and a tenth of a metre a second is no way to tell."""
+    time = np.arange(0.0, 40.0, 0.05)
+    speed = 8.0 * np.sign(np.sin(0.4 * np.pi * time)) * ((time < 20.0) | (time > 25.0))
+    counts = np.cumsum(50.0 * speed * 0.05)
+    hand = np.clip(time - 20.0, 0.0, 5.0)
+    way = np.cumsum(np.append(0.0, np.diff(counts))) * ROBOT.left_tick
+    yaw = 0.4 * hand
+    step = np.append(0.0, np.diff(way)) * np.exp(1j * yaw) + 0.12j * np.append(0.0, np.diff(hand))
+    noise = np.random.default_rng(0).normal(0.0, [[5e-3], [5e-3], [2e-3]], (3, time.size))
+    path = np.cumsum(step)
+    seen = Reference(time, path.real + noise[0], path.imag + noise[1], yaw + noise[2])
+    found = span(Run("to_and_fro", Path("to_and_fro"), Ticks(time, counts, counts), seen))
+    assert found[:2] == pytest.approx((20.0, 25.0), abs=NEAR)
+    assert found[2] == {"carried"}
+
+
+def test_no_leg_comes_near_the_ends_of_what_was_no_driving() -> None:
+    """They are known to less than a window; what is left of a hand there is a leg's whole error."""
+    run, *_ = held(run_of(ROBOT, 1), 30.0, 36.0)
+    begin, end, _ = span(run)
+    (matched,) = match_finely([run], ROBOT, 1.0)
+    first, last = (
+        matched.measured.time[ends][~matched.gap] for ends in (slice(-1), slice(1, None))
+    )
+    assert first.size > 100
+    assert not ((first < end + 0.4) & (last > begin - 0.4)).any()
+
+
 def test_a_robot_that_a_hand_turns_faster_than_its_wheels_could_is_found_by_a_gyro() -> None:
     """It drove straight on until then, and spun slowly: how it turns, nothing else says."""
     time = np.arange(0.0, 40.0, 0.05)

@@ -19,6 +19,11 @@ OPTITRACK_DRIVES = (
     *(f"circular_231220200121_{number:02d}" for number in range(1, 7)),
     *("free_020120212354_01", "free_030120210001_01", "free_030120210001_02"),
 )
+OPTITRACK_IN_JUNE = (
+    *(f"square_230620202042_{number:02d}" for number in range(1, 7)),
+    *(f"circular_250620202104_{number:02d}" for number in range(1, 7)),
+    *(f"ivanjko_250620201618_{number:02d}" for number in range(1, 10)),
+)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -115,20 +120,27 @@ _KHEPERA = partial(
     radius=0.021,
     counts=1000000.0,
 )
+_OPTITRACK = partial(
+    Robot,
+    source=OPTIODOM,
+    remarks=("Small differential robot, wheels of 84 mm, 64 counts x gear 43.7; nominal",),
+    separation=0.2,
+    radius=0.042,
+    counts=2796.8,
+)
 _TURTLEBOT = partial(
     Robot, source=WHEEL_SLIP, separation=0.23, radius=0.035, counts=2578.33, bits=16
 )
 _SKID = partial(Robot, source=LIDAR_SLAM, separation=0.3937, radius=0.127, counts=720.0)
 
 ROBOTS = (
-    Robot(
+    _OPTITRACK(
         folder="optitrack_robot",
-        source=OPTIODOM,
-        remarks=("Small differential robot, wheels of 84 mm, 64 counts x gear 43.7; nominal",),
-        separation=0.2,
-        radius=0.042,
-        counts=2796.8,
         drives=lambda read: converters.optitrack(read, OPTITRACK_DRIVES),
+    ),
+    _OPTITRACK(
+        folder="optitrack_in_june",
+        drives=lambda read: converters.optitrack(read, OPTITRACK_IN_JUNE),
     ),
     _KHEPERA(
         folder="khepera_laser_to_the_side",
@@ -167,6 +179,18 @@ ROBOTS = (
         drives=lambda read: converters.kobuki(
             read, "left_faulty", -0.0101677647, (1180, 1746, 2286, 2802)
         ),
+    ),
+    _TURTLEBOT(
+        folder="kobuki_right_taped",
+        remarks=("TurtleBot 2 (Kobuki), tape on the right tread", *_KOBUKI),
+        drives=lambda read: converters.kobuki(
+            read, "right_faulty", -0.0103958546, (2047, 3820, 4016, 4636)
+        ),
+    ),
+    _TURTLEBOT(
+        folder="kobuki_both_taped",
+        remarks=("TurtleBot 2 (Kobuki), tape on both treads", *_KOBUKI),
+        drives=lambda read: converters.kobuki(read, "both_faulty", -0.0104004, ()),
     ),
     _SKID(
         folder="upenn_skid_gyro",
