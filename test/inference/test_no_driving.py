@@ -220,7 +220,7 @@ def test_a_robot_that_is_turned_while_it_stands_is_found_in_a_straight_drive_of_
 def test_a_robot_that_is_carried_slowly_between_straight_lines_is_found_by_its_turning() -> None:
     """How it drives says nothing of turns; and a tenth of a metre a second is no way to tell."""
     time = np.arange(0.0, 40.0, 0.05)
-    speed = 8.0 * np.sign(np.sin(0.4 * np.pi * time)) * ((time < 20.0) | (time > 25.0))
+    speed = 60.0 * np.sign(np.sin(0.4 * np.pi * time)) * ((time < 20.0) | (time > 25.0))
     counts = np.cumsum(50.0 * speed * 0.05)
     hand = np.clip(time - 20.0, 0.0, 5.0)
     way = np.cumsum(np.append(0.0, np.diff(counts))) * ROBOT.left_tick
