@@ -45,6 +45,18 @@ def test_the_minimum_is_found_where_one_of_two_noises_hides_behind_the_other(see
     assert steps < 25
 
 
+def test_where_there_is_no_cost_a_step_is_shorter() -> None:
+    """As of variances whose covariance is none: the minimum lies beside a wall."""
+
+    def evaluate(here: Floats) -> tuple[float, Floats, Floats]:
+        if here[0] > 1.0:
+            return np.inf, np.zeros(1), np.eye(1)
+        return float((here[0] - 0.9) ** 2), 2.0 * (here - 0.9), np.array([[1.5]])
+
+    found = minimum(evaluate, np.array([0.0]), lowest=-5.0, highest=np.array([5.0]))
+    assert found[0] == pytest.approx(0.9, abs=0.05)
+
+
 def test_second_derivatives_of_a_quadratic_are_its_matrix() -> None:
     matrix = np.array([[2.0, 0.3], [0.3, 5.0]])
     found = hessian(lambda rows: 0.5 * np.sum(rows @ matrix * rows, axis=-1), np.array([1.0, -2.0]))

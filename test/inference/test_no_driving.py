@@ -323,6 +323,21 @@ def test_nothing_is_expected_of_a_robot_whose_wheels_stand() -> None:
     assert _stretches(_judged(agreement, 0.0018, 0.03, turns=False)) == []
 
 
+def test_who_spins_as_slowly_as_wheels_creep_drives() -> None:
+    """A tenth of a radian a second, beside brisk turns: the wheels hardly roll, and are believed."""
+    time = np.arange(0.0, 60.0, 0.02)
+    rate = np.where(time < 40.0, 1.2 * np.sign(np.sin(0.3 * time)), 0.12)
+    speed = np.where(time < 40.0, 0.8, 0.0)
+    way, turn = np.cumsum(0.02 * speed), np.cumsum(0.02 * rate)
+    half = 0.5 * ROBOT.track * turn
+    counts = (np.floor((way + side * half) / ROBOT.left_tick) for side in (-1.0, 1.0))
+    place = np.cumsum(0.02 * speed * np.exp(1j * turn))
+    noise = np.random.default_rng(0).normal(0.0, [[1e-3], [1e-3], [2e-3]], (3, time.size))
+    seen = Reference(time, place.real + noise[0], place.imag + noise[1], turn + noise[2])
+    run = Run("slow", Path("slow"), Ticks(time, *counts), seen)
+    assert looked_at(run, ROBOT).no_driving == ()
+
+
 def test_arcs_seen_from_beside_the_axle_are_driving(tmp_path: Path) -> None:
     """Outwards it goes farther than its wheels, inwards less far: no one scale is both."""
     mount = hide("reference_lever_arm", seed=3).peculiarity  # 61 mm ahead, 132 mm to the right

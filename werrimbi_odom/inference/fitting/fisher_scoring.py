@@ -33,7 +33,7 @@ def minimum(
     Parameters
     ----------
     evaluate
-        The cost and what is expected of it nearby.
+        The cost and what is expected of it nearby; an infinite cost where there is none.
     start : ndarray, shape (n,)
         Where to begin; put within the bounds.
     lowest, highest : float and ndarray, shape (n,)
@@ -58,6 +58,11 @@ def minimum(
         step[free] = -np.linalg.solve(damped[np.ix_(free, free)], gradient[free])
         tried = np.clip(here + np.clip(step, -longest, longest), lowest, highest)
         ahead = evaluate(tried)
+        if not np.isfinite(ahead[0]):  # no such place: nearer, and nothing was learnt
+            if damping > 1e4:
+                break
+            damping = max(10.0 * damping, 1e-2)
+            continue
         moved = np.max(np.abs(tried - here), initial=0.0)
         if moved < longest:
             lacking = _lacking(lacking, ahead[2], tried - here, ahead[1] - gradient)

@@ -164,7 +164,10 @@ def _scored(
     found = costs.innovations(sets, prediction)
     cost = found.minus_two_log_likelihood() + prior_cost(costs, sets)
     counted = found.known.any(axis=-1)
-    root = np.linalg.inv(np.linalg.cholesky(found.covariance[0, counted]))
+    try:
+        root = np.linalg.inv(np.linalg.cholesky(found.covariance[0, counted]))
+    except np.linalg.LinAlgError:  # beside a leg that may end anywhere all digits are lost
+        return np.inf, np.zeros(logs.size), np.eye(logs.size)
     of_covariance = (found.covariance[1:, counted] - found.covariance[0, counted]) / step
     of_value = (found.value[1:, counted] - found.value[0, counted]) / step
     spread = (root @ of_covariance @ root.swapaxes(-1, -2)).reshape(logs.size, -1)

@@ -164,14 +164,18 @@ def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> 
 
 
 def _standing(found: Agreement) -> Agreement:
-    """The same, nothing being expected of a robot whose wheels stand.
+    """The same, of a robot whose wheels stand nothing being expected, or what their creeping makes.
 
-    A law that is learnt from straight driving says anything of a turn; and a driver that reads
-    speeds has its wheels creep while they stand.
+    A law that is learnt from straight driving says anything of a turn, and a driver that reads
+    speeds has its wheels creep while they stand; but a robot may also spin as slowly.
     """
-    rolls = found.windows.rolled > found.windows.still
-    expected, gross = (np.where(rolls, each, 0.0) for each in (found.expected, found.gross))
-    return replace(found, expected=expected, gross=gross)
+    windows = found.windows
+    expected, gross = (
+        np.where(windows.rolled > windows.still, each, 0.0)
+        for each in (found.expected, found.gross)
+    )
+    creeps = found.off < np.abs(windows.measured)
+    return replace(found, expected=np.where(creeps, found.expected, expected), gross=gross)
 
 
 def _stopped(found: Agreement, low: Floats, high: Floats, least: float) -> NDArray[np.bool_]:

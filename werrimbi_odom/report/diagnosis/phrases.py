@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -61,7 +62,9 @@ def also(told: Told, name: str) -> list[str]:
         what += f" These drives cannot tell it from {listed(rivals, 'or')}, in its place."
     if twins:
         what += f" To the reference it is one with {listed(twins, 'or')}, on any drive."
-    return [f"- Also {name}: {size}{sure}.{what}"]
+    return [
+        f"- Also {name}: {size}{sure}.{hang_together(values_of(told.diagnosis, name).values())}{what}"
+    ]
 
 
 def _large(diagnosis: Diagnosis, name: str) -> list[str]:
@@ -79,7 +82,7 @@ def _large(diagnosis: Diagnosis, name: str) -> list[str]:
     late = f" None is seen of {listed(unseen)}." if unseen else ""
     if name == "reference_delay" and values["delay"].value < 0.0:
         late += " Negative: it is the encoders' stamps that are late against the reference's."
-    return [f"How large: {'; '.join(parts)}.{late}"]
+    return [f"How large: {'; '.join(parts)}.{hang_together(every.values())}{late}"]
 
 
 def _unseen(value: Value) -> bool:
@@ -89,6 +92,14 @@ def _unseen(value: Value) -> bool:
         return True
     told = not value.per_run and not value.is_shape and value.std > 0.0
     return told and away < SIGNIFICANT * value.std
+
+
+def hang_together(values: Iterable[Value]) -> str:
+    """That no size of an effect is known by itself, where they are known together; "" elsewhere."""
+    known = [value for value in values if value.told and value.determined and value.std > 0.0]
+    if len(known) < 2 or not all(map(_unseen, known)):
+        return ""
+    return " Any one of these may be none, but not all of them: they hang together in these drives."
 
 
 def _deviations(diagnosis: Diagnosis, name: str) -> str:
