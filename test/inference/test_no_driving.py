@@ -324,7 +324,7 @@ def test_nothing_is_expected_of_a_robot_whose_wheels_stand() -> None:
 
 
 def test_who_spins_as_slowly_as_wheels_creep_drives() -> None:
-    """A tenth of a radian a second, beside brisk turns: the wheels hardly roll, and are believed."""
+    """A tenth of a radian a second, beside brisk turns: wheels that hardly roll are believed."""
     time = np.arange(0.0, 60.0, 0.02)
     rate = np.where(time < 40.0, 1.2 * np.sign(np.sin(0.3 * time)), 0.12)
     speed = np.where(time < 40.0, 0.8, 0.0)

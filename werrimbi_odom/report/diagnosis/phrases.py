@@ -62,9 +62,8 @@ def also(told: Told, name: str) -> list[str]:
         what += f" These drives cannot tell it from {listed(rivals, 'or')}, in its place."
     if twins:
         what += f" To the reference it is one with {listed(twins, 'or')}, on any drive."
-    return [
-        f"- Also {name}: {size}{sure}.{hang_together(values_of(told.diagnosis, name).values())}{what}"
-    ]
+    what = hang_together(values_of(told.diagnosis, name).values()) + what
+    return [f"- Also {name}: {size}{sure}.{what}"]
 
 
 def _large(diagnosis: Diagnosis, name: str) -> list[str]:
