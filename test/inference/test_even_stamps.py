@@ -62,6 +62,23 @@ def test_even_stamps_and_few_stay_as_they_are() -> None:
     assert evened(few, *driven(read[:40])) is few
 
 
+def test_a_reading_that_failed_is_no_reason_to_believe_stamps() -> None:
+    random = np.random.default_rng(4)
+    read = PERIOD * np.arange(400)
+    came = np.sort(read + random.uniform(0.0, 0.1, 400))
+    left, right = (counts.astype(np.float64) for counts in driven(read))
+    left[100] = np.nan
+    assert scatter(evened(came, left, right) - read) < 0.3 * scatter(came - read)
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("rows", range(48, 56))
+def test_of_few_rows_nothing_is_asked_that_they_do_not_hold(rows: int) -> None:
+    read = PERIOD * np.arange(rows)
+    came = np.sort(read + np.random.default_rng(5).uniform(0.0, 0.1, rows))
+    assert np.isfinite(evened(came, *driven(read))).all()
+
+
 def test_a_pause_of_the_record_stays_where_it_was() -> None:
     random = np.random.default_rng(1)
     read = PERIOD * np.arange(400) + np.where(np.arange(400) < 200, 0.0, 30.0)

@@ -65,7 +65,7 @@ def evened(
     stamps, number = time[first], np.arange(float(row[-1] + 1))
     if lost is not None:
         number[1:] += np.cumsum(lost)[first[1:]]
-    if not _by_timer(stamps, number, left[first], right[first]):
+    if stamps.size <= EVEN_WINDOW or not _by_timer(stamps, number, left[first], right[first]):
         return time
     even, period = _numbered(stamps, number)
     tenth = 0.1 * period * number  # none is read before the one before it
@@ -80,7 +80,7 @@ def stamped_together(run: Run) -> bool:
     """
     time = run.ticks.time
     late = time - evened(time, run.ticks.left, run.ticks.right)
-    if run.reference is None or run.reference.time.size < EVEN_MESSAGES or not late.any():
+    if run.reference is None or run.reference.time.size <= EVEN_WINDOW or not late.any():
         return False
     seen = np.asarray(run.reference.time, dtype=np.float64)
     own = seen - _numbered(seen, np.arange(float(seen.size)))[0]
@@ -164,6 +164,7 @@ def _by_timer(time: Floats, number: Floats, left: Counts, right: Counts) -> bool
         size = np.abs(whole)
         usual = np.median(size[size > 0.0]) if (size > 0.0).any() else 0.0
         turns = (size > 0.0) & (size < 20.0 * usual)  # and no counter that wraps or leaps
+        turns &= np.isfinite(half)
         off.append((half - by_number * whole)[turns])
         told.append(((by_stamp - by_number) * whole)[turns])
     said, by_stamps = np.concatenate(off), np.concatenate(told)
