@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from werrimbi_odom.api.odometry import odometry
+from werrimbi_odom.api.odom import odometry
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file, write_robot_file

@@ -43,7 +43,7 @@ from werrimbi_odom.files.parameters import (
     robot_of,
     tolerance_of,
 )
-from werrimbi_odom.files.replacing import replacing
+from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.files.yaml_edit import edited
 from werrimbi_odom.files.yaml_effects import with_effects
 from werrimbi_odom.files.yaml_text import line_of, load, plain, read_text
