@@ -23,7 +23,7 @@ from follow_advice import CASES, ROBOTS, ROOT, Case, Step, compared, followed
 
 sys.path.insert(0, str(ROOT))
 from test.recorded_robots.robots import ROBOTS as RECORDED
-from werrimbi_odom.files.replacing import replacing
+from werrimbi_odom.files.text_files import replacing
 
 PAGES = ROOT / "docs/robots"
 SMALLEST = 1e-6

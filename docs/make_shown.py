@@ -16,7 +16,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from werrimbi_odom.files.replacing import replacing
+from werrimbi_odom.files.text_files import replacing
 
 ROOT = Path(__file__).parents[1]
 PAGE = ROOT / "docs" / "shown.md"

@@ -26,15 +26,13 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from werrimbi_odom.api.calibrate_fit import calibrate_fit
-    from werrimbi_odom.api.calibrate_noise import calibrate_noise
+    from werrimbi_odom.api.calibrate import calibrate_fit, calibrate_noise
     from werrimbi_odom.api.calibrate_umbmark import calibrate_umbmark
     from werrimbi_odom.api.draft import draft
     from werrimbi_odom.api.drives import read_robot, read_run
     from werrimbi_odom.api.history import history
     from werrimbi_odom.api.info import info
-    from werrimbi_odom.api.odom import odom
-    from werrimbi_odom.api.odometry import odometry
+    from werrimbi_odom.api.odom import odom, odometry
     from werrimbi_odom.api.verbs import add, compare, diagnose
     from werrimbi_odom.effects.library import LIBRARY as EFFECTS
     from werrimbi_odom.errors import InputError
@@ -50,15 +48,15 @@ _WHERE = {
     "read_robot": "api.drives",
     "read_run": "api.drives",
     "odom": "api.odom",
-    "odometry": "api.odometry",
+    "odometry": "api.odom",
     "compare": "api.verbs",
     "diagnose": "api.verbs",
     "add": "api.verbs",
     "draft": "api.draft",
-    "calibrate_fit": "api.calibrate_fit",
+    "calibrate_fit": "api.calibrate",
     "history": "api.history",
     "info": "api.info",
-    "calibrate_noise": "api.calibrate_noise",
+    "calibrate_noise": "api.calibrate",
     "calibrate_umbmark": "api.calibrate_umbmark",
     "Effect": "model.effect",
     "Parameter": "model.effect",

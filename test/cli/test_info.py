@@ -20,7 +20,7 @@ from test.model.drives import ROBOT
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.files.first_robot import of_controller, of_urdf, with_steps
 from werrimbi_odom.files.stamps import _judged
-from werrimbi_odom.report.info import _clock
+from werrimbi_odom.report.info_words import _clock
 from werrimbi_odom.simulation.lidar import Lidar
 
 DAY = 1_700_000_000

@@ -16,7 +16,7 @@ from typing import Any
 import pytest
 
 from werrimbi_odom.cli import main as command
-from werrimbi_odom.cli.examples import EXAMPLES
+from werrimbi_odom.cli.options import EXAMPLES
 from werrimbi_odom.errors import InputError
 
 ROOT = Path(__file__).parents[2]

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pytest
 
-from werrimbi_odom.api.odometry import odometry
+from werrimbi_odom.api.odom import odometry
+from werrimbi_odom.effects import find
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import read_robot_file, write_robot_file
@@ -137,6 +138,17 @@ def test_turtlebots_file_is_read(tmp_path: Path) -> None:
     assert written.robot.wheel_separation == 0.162
     assert "separation: 0.160" in (tmp_path / "new.yaml").read_text(), "its own block stays"
     assert refused(path, TURTLEBOT.replace("0.033", "-1.0")).startswith(", line 5: wheel_radius")
+
+
+@pytest.mark.parametrize("text", [CONTROLLERS + TICKS, TURTLEBOT])
+def test_an_effect_is_added_and_all_that_is_not_ours_stays(tmp_path: Path, text: str) -> None:
+    path = tmp_path / "robot.yaml"
+    path.write_text(text)
+    slip = find("lateral_slip").using(creep=0.002)
+    new = write_robot_file(read_robot_file(path), {}, tmp_path / "new.yaml", effects=[slip])
+    assert new.effects == (slip,)
+    gone = [line for line in text.splitlines() if line not in new.text.splitlines()]
+    assert gone == []
 
 
 def test_everything_wrong_is_said_at_once(tmp_path: Path) -> None:

@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, wandering
-from werrimbi_odom.files.repeated_poses import held_poses, without_held_poses, words_about_held
 from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.files.run_checks import held_poses, without_held_poses, words_about_held
 from werrimbi_odom.model.robot import Robot
 
 TRUE = WhiteNoiseRobot()

@@ -23,8 +23,15 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Asked, DriveOptions
 from werrimbi_odom.fleet import cluster as ours
 from werrimbi_odom.fleet.cluster import on_cluster
-from werrimbi_odom.fleet.code_version import EFFECTS, PACKAGE, code_here, doubts, refusal
-from werrimbi_odom.fleet.parcel import packed, row_of_parcel
+from werrimbi_odom.fleet.parcel import (
+    EFFECTS,
+    PACKAGE,
+    code_here,
+    doubts,
+    packed,
+    refusal,
+    row_of_parcel,
+)
 from werrimbi_odom.fleet.robot_task import Task
 
 distributed = pytest.importorskip("distributed", reason="pip install werrimbi_odom[cluster]")

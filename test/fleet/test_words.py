@@ -11,10 +11,8 @@ from typing import Any
 import pytest
 
 from test.report.browser import visit
-from werrimbi_odom.report.fleet.document import fleet_figure, write_fleet_page
-from werrimbi_odom.report.fleet.rows import Fleet, Row, fleet_json
-from werrimbi_odom.report.fleet.tables import cells, fleet_table
-from werrimbi_odom.report.fleet.words import headline, words_of
+from werrimbi_odom.report.fleet import Fleet, Row, fleet_json, headline, words_of
+from werrimbi_odom.report.fleet_page import cells, fleet_figure, fleet_table, write_fleet_page
 from werrimbi_odom.report.save import find_browser
 from werrimbi_odom.report.terminal import as_text
 

@@ -24,7 +24,7 @@ from werrimbi_odom.inference.fitting.free_parameters import CALIBRATION
 from werrimbi_odom.inference.legs.cutting import match_finely
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.detection_limits import detection_limits
-from werrimbi_odom.report.diagnosis.phrases import not_shown
+from werrimbi_odom.report.diagnosis.remarks import not_shown
 
 TRUE = WhiteNoiseRobot()
 ROBOT = TRUE.entered(0.05)

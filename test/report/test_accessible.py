@@ -17,8 +17,7 @@ from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.report.adding.document import document_of as document_of_added
-from werrimbi_odom.report.calibration.document import calibration_document
-from werrimbi_odom.report.calibration.figures import leg_figure
+from werrimbi_odom.report.calibration.document import calibration_document, leg_figure
 from werrimbi_odom.report.comparison.document import document_of as document_of_comparison
 from werrimbi_odom.report.diagnosis.document import document_of as document_of_diagnosis
 from werrimbi_odom.report.document import Paragraph, Table

@@ -26,13 +26,12 @@ from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, pace_of
 from werrimbi_odom.model.declared import DRAWINGS
 from werrimbi_odom.model.effect import Sketch
 from werrimbi_odom.report import sketches
-from werrimbi_odom.report.adding.figures import error_falling_figure, steps_of
-from werrimbi_odom.report.calibration.figures import leg_figure
+from werrimbi_odom.report.adding.document import error_falling_figure, steps_of
+from werrimbi_odom.report.calibration.document import leg_figure
 from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
 from werrimbi_odom.report.comparison.measured_path_figure import path_figure
 from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure
-from werrimbi_odom.report.diagnosis.figures import ranking_figure
-from werrimbi_odom.report.diagnosis.manoeuvre_figure import manoeuvre_figure
+from werrimbi_odom.report.diagnosis.figures import manoeuvre_figure, ranking_figure
 from werrimbi_odom.report.over_variable import (
     before_after_figure,
     error_against_figure,

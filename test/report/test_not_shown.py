@@ -7,7 +7,7 @@ from __future__ import annotations
 from types import SimpleNamespace
 from typing import Any
 
-from werrimbi_odom.report.diagnosis.phrases import not_shown
+from werrimbi_odom.report.diagnosis.remarks import not_shown
 
 
 def test_what_was_named_is_not_among_what_the_drives_cannot_show() -> None:

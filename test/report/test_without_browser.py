@@ -14,10 +14,10 @@ go = pytest.importorskip("plotly.graph_objects")
 
 from matplotlib.image import imread  # noqa: E402
 
-from werrimbi_odom.report.adding.figures import ErrorOfModel, error_falling_figure  # noqa: E402
+from werrimbi_odom.report.adding.document import ErrorOfModel, error_falling_figure  # noqa: E402
 from werrimbi_odom.report.path_figure import PathDrawing, path_figure  # noqa: E402
+from werrimbi_odom.report.save import save_simple_png  # noqa: E402
 from werrimbi_odom.report.style import BLUE, GREEN, ORANGE  # noqa: E402
-from werrimbi_odom.report.without_browser import save_simple_png  # noqa: E402
 
 
 def share(path: Path, colour: str) -> float:

@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 pytest.importorskip("rclpy")
 
-from werrimbi_odom.files.wheel_sides import side_counts
+from werrimbi_odom.files.bag_joints import side_counts
 from werrimbi_odom.ros.wheel_side import WheelSide
 
 STEPS = st.lists(

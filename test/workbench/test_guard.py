@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from test.loops import awaited
-from werrimbi_odom.workbench.guard import guarded
+from werrimbi_odom.workbench.server import guarded
 
 PORT = 4711
 HERE = f"127.0.0.1:{PORT}"

@@ -5,9 +5,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from werrimbi_odom.api.result import NewRobot, Result
 from werrimbi_odom.errors import InputError
@@ -64,9 +64,16 @@ def calibrate_umbmark(
         When a table or drive cannot be used; the message says where.
     """
     from werrimbi_odom.inference.calibration.umbmark import corrected, recomputed, umbmark
-    from werrimbi_odom.report.calibration.document import calibration_document
-    from werrimbi_odom.report.calibration.figures import OffsetCloud, umbmark_figure
-    from werrimbi_odom.report.calibration.umbmark_words import found_in_words, gained_in_words
+    from werrimbi_odom.report.calibration.document import (
+        OffsetCloud,
+        calibration_document,
+        umbmark_figure,
+    )
+    from werrimbi_odom.report.calibration.umbmark_words import (
+        found_in_words,
+        gained_in_words,
+        umbmark_json,
+    )
     from werrimbi_odom.report.document import paragraphs
 
     old = robot.robot
@@ -105,7 +112,7 @@ def calibrate_umbmark(
     return Result(
         found=found,
         document=document,
-        figures_of_json=lambda: _json(squares, found, old, later, again),
+        figures_of_json=lambda: umbmark_json(squares, found, old, later, again),
         new_robot=NewRobot(robot, changes),
     )
 
@@ -186,53 +193,3 @@ def _recorded(paths: Sequence[Path], source: RobotFile, robot: Robot, read: _Rea
         )
         found.append(recorded_square(record, robot, read.side, source.limits))
     return squares_of(found, read.side)
-
-
-def _json(
-    squares: Squares,
-    result: Umbmark,
-    old: Robot,
-    later: Squares | None,
-    again: Squares | None,
-) -> dict[str, Any]:
-    from werrimbi_odom.inference.calibration.squares import e_max_of_scatter, e_max_syst
-
-    def centres(of: Squares) -> dict[str, list[float]]:
-        return {"cw": of.cw.mean(axis=0).tolist(), "ccw": of.ccw.mean(axis=0).tolist()}
-
-    angles, paper = result.angles, result.paper
-    return {
-        "parameters": {name: asdict(each) for name, each in result.multipliers(old).items()},
-        "e_max_syst_m": {
-            "before": result.e_max,
-            "after": e_max_syst(later) if later else None,
-            "same_runs_corrected": e_max_syst(again) if again else None,
-        },
-        "e_max_of_scatter_m": {
-            "before": e_max_of_scatter(squares),
-            "after": e_max_of_scatter(later) if later else None,
-        },
-        "centre_of_gravity": centres(squares),
-        "centre_of_gravity_after": centres(later) if later else None,
-        "side_m": squares.side,
-        "runs": {"cw": len(squares.cw), "ccw": len(squares.ccw)},
-        "alpha_rad": asdict(result.alpha),
-        "beta_rad": asdict(result.beta),
-        "E_d": asdict(result.ratio),
-        "C_B": asdict(result.base),
-        "C_L": asdict(result.left),
-        "C_R": asdict(result.right),
-        "first_order": {
-            "alpha_rad": angles.alpha,
-            "alpha_by_x_rad": angles.alpha_by_x,
-            "alpha_by_y_rad": angles.alpha_by_y,
-            "beta_rad": angles.beta,
-            "beta_by_x_rad": angles.beta_by_x,
-            "beta_by_y_rad": angles.beta_by_y,
-            "E_d": paper.ratio,
-            "C_B": paper.base,
-            "C_L": paper.left,
-            "C_R": paper.right,
-        },
-        "disagreement_p": result.disagreement_p,
-    }

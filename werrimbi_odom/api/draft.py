@@ -38,7 +38,7 @@ class Drafted(Result[Any]):
         InputError
             When it cannot be written.
         """
-        from werrimbi_odom.files.replacing import replacing
+        from werrimbi_odom.files.text_files import replacing
         from werrimbi_odom.inference.drafting.package import package_of
 
         folder = Path(folder)

@@ -25,9 +25,9 @@ from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.content_hash import code_mark, mark_of, written_at
 from werrimbi_odom.files.recordings import DriveOptions, gathered, refuse_twice
-from werrimbi_odom.files.replacing import replacing
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.inference.changes.dated import Dated, History, Unusable, in_order
 from werrimbi_odom.inference.changes.history import Course, DriveTold, course_of, drive_told
 from werrimbi_odom.inference.rules import DATED
@@ -205,8 +205,7 @@ def _course(drives: Sequence[Dated], robot: RobotFile) -> Course:
 
 
 def _result(found: History) -> Result[History]:
-    from werrimbi_odom.report.history.as_json import json_of
-    from werrimbi_odom.report.history.document import document_of
+    from werrimbi_odom.report.history import document_of, json_of
 
     return Result(
         found=found,

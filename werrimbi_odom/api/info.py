@@ -53,8 +53,7 @@ def info(
     InputError
         When a recording cannot be read at all, or a robot file cannot be written.
     """
-    from werrimbi_odom.report.info import document_of
-    from werrimbi_odom.report.info_json import info_json
+    from werrimbi_odom.report.info import document_of, info_json
 
     paths = [Path(each) for each in ([runs] if isinstance(runs, str | Path) else runs)]
     found = _look(paths, None if robot is None else Path(robot), ticks_topic, reference_topic)
@@ -132,8 +131,7 @@ def _of_bag(
     from werrimbi_odom.files.bag_contents import contents_of
     from werrimbi_odom.files.first_robot import of_urdf, with_driver
     from werrimbi_odom.files.stamps import stamps_of
-    from werrimbi_odom.files.wheel_choice import chosen_wheels
-    from werrimbi_odom.files.wheel_joints import joints_told_apart
+    from werrimbi_odom.files.wheel_joints import chosen_wheels, joints_told_apart
     from werrimbi_odom.inference.recording_info import Held
 
     with opened_bag(bag) as opened:
@@ -248,7 +246,7 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
 
 
 def _write(found: Info, out: Path, force: bool) -> Path:
-    from werrimbi_odom.files.replacing import replacing
+    from werrimbi_odom.files.text_files import replacing
 
     if found.given is not None:
         raise InputError(f"{found.given} is a robot file already; --out is for a first one")

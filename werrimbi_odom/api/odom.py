@@ -1,29 +1,33 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Dead reckoning of a recorded run, from where its reference begins."""
+"""Dead reckoning of arrays, and of a recorded run from where its reference begins."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TextIO, TypeVar
+from typing import TYPE_CHECKING, Any, NamedTuple, TextIO, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
 
 from werrimbi_odom.api.drives import read_run
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
+from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.progress import Show, silent
 
 if TYPE_CHECKING:
-    import numpy as np
     from numpy.typing import NDArray
 
-    from werrimbi_odom.model.pose import Floats, Pose
     from werrimbi_odom.model.reference_measurement import Path as ShownPath
+    from werrimbi_odom.model.robot import Robot
     from werrimbi_odom.model.trajectory import Trajectory
     from werrimbi_odom.report.reckoning import Reckoning
+
 
 COLUMNS = "t_s,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw"
 _BLOCK = 32768  # rows that are text at once
@@ -51,7 +55,7 @@ class Reckoned(Result[Any]):
         InputError
             When it cannot be written.
         """
-        from werrimbi_odom.files.replacing import replacing
+        from werrimbi_odom.files.text_files import replacing
 
         ticks, driven = self.found.run.ticks, self.found.driven
         with replacing(Path(path)) as file:
@@ -74,12 +78,10 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     InputError
         When the run cannot be used; the message says why.
     """
-    from werrimbi_odom.files.learned_phases import with_learnt_phases
-    from werrimbi_odom.files.start_pose import start_of
+    from werrimbi_odom.files.start_pose import start_of, with_learnt_phases
     from werrimbi_odom.model.effect import view_of
     from werrimbi_odom.model.reference_measurement import shown
-    from werrimbi_odom.report.reckoning import reckoning_of
-    from werrimbi_odom.report.reckoning_document import document_of
+    from werrimbi_odom.report.reckoning import document_of, reckoning_of
 
     recorded = run if isinstance(run, Run) else read_run(run, robot)
     complete, learnt = _usable(recorded, lambda: with_learnt_phases(recorded, robot))
@@ -149,3 +151,80 @@ def _half_open(yaw: Floats) -> Floats:
 
     wrapped = wrap_all(yaw)
     return np.minimum(np.where(wrapped <= -np.pi, wrapped + 2.0 * np.pi, wrapped), np.pi)
+
+
+class Odometry(NamedTuple):
+    """A pose and its covariance for each row of ticks, in the frame of the start."""
+
+    x: Floats
+    """[m], shape (n,)"""
+    y: Floats
+    """[m], shape (n,)"""
+    yaw: Floats
+    """Not wrapped [rad], shape (n,)."""
+    covariance: Floats
+    """Of (x, y, yaw) [m², m·rad, rad²], shape (n, 3, 3)."""
+
+
+def odometry(
+    robot: RobotFile | Robot,
+    t: ArrayLike,
+    left: ArrayLike,
+    right: ArrayLike,
+    *,
+    start: tuple[float, float, float] = (0.0, 0.0, 0.0),
+    channels: Mapping[str, ArrayLike] | None = None,
+) -> Odometry:
+    """Wheel odometry of recorded ticks, with the closed-form covariance of Chong and Kleeman.
+
+    Parameters
+    ----------
+    robot
+        From `read_robot`, or a `werrimbi_odom.model.robot.Robot`.
+    t
+        Stamps [s], shape (n,).
+    left, right
+        Cumulative signed counts of the encoders, shape (n,).
+    start
+        Pose at the first row: x [m], y [m], yaw [rad].
+    channels
+        Further measured columns that an effect looks at, by name, shape (n,) each.
+
+    Returns
+    -------
+    Odometry
+        A row for each row of ticks; one that could not be used repeats the latest estimate.
+
+    Raises
+    ------
+    ValueError
+        When the arrays differ in length, or no row can be used.
+    """
+    from werrimbi_odom.files.robot_file import RobotFile
+    from werrimbi_odom.model.encoder import EncoderLimits
+    from werrimbi_odom.model.pieces_online import PieceTolerance
+    from werrimbi_odom.model.trajectory import trajectory
+
+    time, of_left, of_right = (np.atleast_1d(np.asarray(part)) for part in (t, left, right))
+    if not time.shape == of_left.shape == of_right.shape or time.ndim != 1:
+        raise ValueError(
+            f"t, left and right must be as long as each other, and are {time.shape}, "
+            f"{of_left.shape} and {of_right.shape}"
+        )
+    if isinstance(robot, RobotFile):
+        plain, tolerance, limits = robot.robot, robot.tolerance, robot.limits
+    else:
+        plain, tolerance, limits = robot, PieceTolerance(), EncoderLimits()
+    driven = trajectory(
+        plain,
+        time.astype(np.float64),
+        of_left,
+        of_right,
+        start=Pose(*start),
+        tolerance=tolerance,
+        limits=limits,
+        channels={name: np.asarray(values) for name, values in (channels or {}).items()},
+    )
+    rows = driven.expanded(time.size)
+    covariance = driven.covariance.matrix()[rows]
+    return Odometry(driven.x[rows], driven.y[rows], driven.yaw[rows], covariance)

@@ -102,8 +102,8 @@ def diagnose(
 def diagnosed(given: Recordings, show: Show = silent) -> Result[Told]:
     """`diagnose` for what was read already."""
     from werrimbi_odom.inference.manoeuvres.advice import told_of
-    from werrimbi_odom.report.diagnosis.as_json import json_of
     from werrimbi_odom.report.diagnosis.document import document_of
+    from werrimbi_odom.report.diagnosis.tables import json_of
     from werrimbi_odom.report.diagnosis.words import NextSteps
 
     told = told_of(given, show)

@@ -27,9 +27,9 @@ from werrimbi_odom.api.result import Result
 from werrimbi_odom.api.verbs import add, diagnose
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag_writing import BagWriter
-from werrimbi_odom.files.replacing import replacing
 from werrimbi_odom.files.run import Run, Ticks
 from werrimbi_odom.files.run_checks import refuse_unjudgeable
+from werrimbi_odom.files.text_files import replacing
 
 MESSAGES, ASKED, FOUND, BETTER = "messages", "asked.json", "found.json", "better.yaml"
 """Files of the folder."""

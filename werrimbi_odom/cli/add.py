@@ -6,9 +6,8 @@ from __future__ import annotations
 
 import argparse
 
-from werrimbi_odom.cli.options import declare
-from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
-from werrimbi_odom.cli.result_files import write_and_tell
+from werrimbi_odom.cli.options import add_recording_arguments, declare, read_recordings
+from werrimbi_odom.cli.outputs import write_and_tell
 
 HELP = "add physical effects to the model: fit them, judge them on held-out drives, write them"
 

@@ -8,10 +8,15 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from werrimbi_odom.cli.examples import Formatter, epilog_of
-from werrimbi_odom.cli.options import declare
-from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings, remark
-from werrimbi_odom.cli.result_files import add_file_arguments, write_and_tell
+from werrimbi_odom.cli.options import (
+    Formatter,
+    add_recording_arguments,
+    declare,
+    epilog_of,
+    read_recordings,
+    remark,
+)
+from werrimbi_odom.cli.outputs import add_file_arguments, write_and_tell
 
 if TYPE_CHECKING:
     from werrimbi_odom.api.result import Result
@@ -104,25 +109,15 @@ def _add_noise_arguments(parser: argparse.ArgumentParser) -> None:
         action="store_true",
         help="the robot turned round at the far end and came back forwards, and turned again",
     )
-    parser.add_argument(
-        "--reference-sigma-xy",
-        metavar="S",
-        type=float,
-        default=0.0,
-        help="standard deviation of each measured position, per coordinate [m] (default 0)",
-    )
-    parser.add_argument(
-        "--reference-sigma-yaw",
-        metavar="S",
-        type=float,
-        default=0.0,
-        help="standard deviation of each measured heading [rad] (default 0)",
-    )
+    for part, what in (("xy", "position, per coordinate [m]"), ("yaw", "heading [rad]")):
+        words = f"standard deviation of each measured {what} (default 0)"
+        name = f"--reference-sigma-{part}"
+        parser.add_argument(name, metavar="S", type=float, default=0.0, help=words)
     add_file_arguments(parser)
 
 
 def _noise(arguments: argparse.Namespace) -> Result[Any]:
-    from werrimbi_odom.api.calibrate_noise import calibrate_noise
+    from werrimbi_odom.api.calibrate import calibrate_noise
     from werrimbi_odom.files.robot_file import read_robot_file
 
     source = read_robot_file(arguments.robot)
@@ -148,7 +143,7 @@ def _add_fit_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def _fit(arguments: argparse.Namespace) -> Result[Any]:
-    from werrimbi_odom.api.calibrate_fit import calibrated
+    from werrimbi_odom.api.calibrate import calibrated
 
     return calibrated(read_recordings(arguments))
 

@@ -6,8 +6,8 @@ from __future__ import annotations
 
 import argparse
 
-from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
-from werrimbi_odom.cli.result_files import write_and_tell
+from werrimbi_odom.cli.options import add_recording_arguments, on_recordings
+from werrimbi_odom.cli.outputs import write_and_tell
 
 HELP = "model against measurement: where it fails, and whether its covariance is honest"
 
@@ -24,10 +24,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Read, compare, tell; 0 on success."""
     from werrimbi_odom.api.verbs import compared
-    from werrimbi_odom.cli.progress import share_done
 
-    given = read_recordings(arguments)
-    with share_done("comparing") as show:
-        result = compared(given, show)
+    _, result = on_recordings(arguments, "comparing", compared)
     write_and_tell(arguments, result)
     return 0

@@ -7,8 +7,8 @@ from __future__ import annotations
 import argparse
 
 from werrimbi_odom.cli.diagnose_fleet import add_fleet_arguments, refuse_mixing, run_fleet
-from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
-from werrimbi_odom.cli.result_files import write_and_tell
+from werrimbi_odom.cli.options import add_recording_arguments, on_recordings
+from werrimbi_odom.cli.outputs import write_and_tell
 from werrimbi_odom.errors import InputError
 
 HELP = "which physical effect is missing, how sure that is, and what to do about it"
@@ -34,11 +34,8 @@ def run(arguments: argparse.Namespace) -> int:
         return run_fleet(arguments)
     _ask_for_robot_and_runs(arguments)
     from werrimbi_odom.api.verbs import diagnosed
-    from werrimbi_odom.cli.progress import share_done
 
-    given = read_recordings(arguments)
-    with share_done("diagnosing") as show:
-        result = diagnosed(given, show)
+    _, result = on_recordings(arguments, "diagnosing", diagnosed)
     write_and_tell(arguments, result)
     return 0
 

@@ -10,11 +10,12 @@ import sys
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import closing
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.recordings import how_of, read_effects
-from werrimbi_odom.cli.result_files import made_of, tell_written, write_json
+from werrimbi_odom.cli.options import how_of, number, read_effects
+from werrimbi_odom.cli.outputs import made_of, tell_written, write_json
 from werrimbi_odom.errors import InputError
 
 if TYPE_CHECKING:
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
 
     from werrimbi_odom.fleet.members import Member
     from werrimbi_odom.fleet.robot_task import Task
-    from werrimbi_odom.report.fleet.rows import Fleet, Row
+    from werrimbi_odom.report.fleet import Fleet, Row
 
 _NARROW, _WIDE = 80, 140
 """Columns that the table may have; 100 where there is no terminal."""
@@ -41,7 +42,7 @@ def add_fleet_arguments(parser: argparse.ArgumentParser) -> None:
     fleet.add_argument(
         "--jobs",
         metavar="N",
-        type=_count,
+        type=number(int, 1, inf, "not a whole number greater than zero"),
         help="robots at a time, each in a process; as many as there are processors if not given",
     )
     fleet.add_argument(
@@ -133,7 +134,7 @@ def _warn(words: str) -> None:
 
 
 def _fleet(rows: Sequence[Row], members: Sequence[Member]) -> Fleet:
-    from werrimbi_odom.report.fleet.rows import Fleet, ordered
+    from werrimbi_odom.report.fleet import Fleet, ordered
 
     done = {row.robot for row in rows}
     names = [member.name for member in members]
@@ -156,8 +157,8 @@ def _bytes(path: Path) -> bytes:
 
 def _tell(arguments: argparse.Namespace, fleet: Fleet) -> None:
     """The files that were asked for, then words and table."""
-    from werrimbi_odom.report.fleet.tables import fleet_table
-    from werrimbi_odom.report.fleet.words import words_of
+    from werrimbi_odom.report.fleet import words_of
+    from werrimbi_odom.report.fleet_page import fleet_table
     from werrimbi_odom.report.terminal import as_text
 
     written = _write(arguments, fleet)
@@ -169,25 +170,15 @@ def _tell(arguments: argparse.Namespace, fleet: Fleet) -> None:
 
 
 def _write(arguments: argparse.Namespace, fleet: Fleet) -> list[Path]:
-    from werrimbi_odom.report.fleet.rows import fleet_json
+    from werrimbi_odom.report.fleet import fleet_json
 
     written = []
     if arguments.json is not None:
         write_json(arguments.json, fleet_json(fleet))
         written.append(arguments.json)
     if arguments.report is not None:
-        from werrimbi_odom.report.fleet.document import write_fleet_page
+        from werrimbi_odom.report.fleet_page import write_fleet_page
 
         made = {"fleet": str(arguments.fleet), **made_of(arguments)}
         written += write_fleet_page(fleet, arguments.report, made)
     return written
-
-
-def _count(text: str) -> int:
-    try:
-        value = int(text)
-    except ValueError:
-        value = 0
-    if value < 1:
-        raise argparse.ArgumentTypeError(f"{text!r} is not a whole number greater than zero")
-    return value

@@ -9,9 +9,8 @@ import shlex
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.options import declare
-from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
-from werrimbi_odom.cli.result_files import made_of, tell_written, write_json
+from werrimbi_odom.cli.options import add_recording_arguments, declare, on_recordings
+from werrimbi_odom.cli.outputs import made_of, tell_written, write_json
 
 if TYPE_CHECKING:
     from werrimbi_odom.files.recordings import Recordings
@@ -36,11 +35,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Diagnose, draft, try, write; 0 on success."""
     from werrimbi_odom.api.draft import drafted
-    from werrimbi_odom.cli.progress import share_done
 
-    given = read_recordings(arguments)
-    with share_done("diagnosing") as show:
-        result = drafted(given, "" if arguments.force else "--force drafts", show)
+    insist = "" if arguments.force else "--force drafts"
+    given, result = on_recordings(
+        arguments, "diagnosing", lambda given, show: drafted(given, insist, show)
+    )
     files = result.write_package(arguments.out)
     written = list(files)
     if arguments.json is not None:

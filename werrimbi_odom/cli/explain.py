@@ -9,7 +9,7 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.cli.options import declare
-from werrimbi_odom.cli.result_files import write_json
+from werrimbi_odom.cli.outputs import write_json
 
 if TYPE_CHECKING:
     from rich.console import Console

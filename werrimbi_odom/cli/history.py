@@ -11,8 +11,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.recordings import add_recording_arguments, how_of, read_effects, remark
-from werrimbi_odom.cli.result_files import write_and_tell
+from werrimbi_odom.cli.options import add_recording_arguments, how_of, read_effects, remark
+from werrimbi_odom.cli.outputs import write_and_tell
 
 if TYPE_CHECKING:
     from werrimbi_odom.api.history import DriveTask, Looked

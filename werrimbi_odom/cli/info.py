@@ -33,7 +33,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Look, tell; 0 on success."""
     from werrimbi_odom.api.info import info
-    from werrimbi_odom.cli.result_files import tell_written, write_json
+    from werrimbi_odom.cli.outputs import tell_written, write_json
     from werrimbi_odom.files.recordings import refuse_twice
 
     refuse_twice(arguments.runs)

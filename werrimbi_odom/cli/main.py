@@ -13,7 +13,7 @@ from importlib import import_module, metadata
 from types import ModuleType
 from typing import NoReturn
 
-from werrimbi_odom.cli.examples import Formatter, epilog_of
+from werrimbi_odom.cli.options import Formatter, epilog_of
 from werrimbi_odom.cli.outputs import refuse_files
 from werrimbi_odom.cli.packages import EXTRAS, lacking, refuse_lacking
 from werrimbi_odom.errors import InputError

@@ -10,8 +10,7 @@ from contextlib import ExitStack
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.options import declare
-from werrimbi_odom.cli.recordings import remark
+from werrimbi_odom.cli.options import declare, remark
 from werrimbi_odom.progress import Show
 
 if TYPE_CHECKING:
@@ -86,7 +85,7 @@ def _write(arguments: argparse.Namespace, result: Reckoned, show: Show) -> None:
     """Both files, or neither."""
     with ExitStack() as files:
         if arguments.json is not None:
-            from werrimbi_odom.files.replacing import replacing
+            from werrimbi_odom.files.text_files import replacing
 
             file = files.enter_context(replacing(arguments.json))
             json.dump(result.to_dict(), file, indent=2, allow_nan=False)

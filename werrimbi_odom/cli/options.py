@@ -1,24 +1,40 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Options that several verbs have, each declared once."""
+"""What several verbs share: options, each declared once, examples, and the reading of drives."""
 
 from __future__ import annotations
 
 import argparse
-import math
+import sys
+from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
+
+if TYPE_CHECKING:
+    from werrimbi_odom.effects.collection import Collection
+    from werrimbi_odom.files.recordings import DriveOptions, Recordings
+    from werrimbi_odom.files.robot_file import RobotFile
+    from werrimbi_odom.progress import Show
+
+N = TypeVar("N", int, float)
+Found = TypeVar("Found")
 
 
-def positive(text: str) -> float:
-    """A number greater than zero."""
-    try:
-        value = float(text)
-    except ValueError:
-        value = math.nan
-    if not (math.isfinite(value) and value > 0.0):
-        raise argparse.ArgumentTypeError(f"{text!r} is not a number greater than zero")
-    return value
+def number(kind: type[N], low: float, high: float, otherwise: str) -> Callable[[str], N]:
+    """What reads an option's number; `otherwise`: what to say of a text that is none in range."""
+
+    def read(text: str) -> N:
+        with suppress(ValueError):
+            value = kind(text)
+            if low <= value <= high:
+                return value
+        raise argparse.ArgumentTypeError(f"{text!r} is {otherwise}")
+
+    return read
+
+
+positive = number(float, sys.float_info.min, sys.float_info.max, "not a number greater than zero")
 
 
 def _file(says: str, metavar: str = "F", **more: Any) -> dict[str, Any]:
@@ -47,3 +63,203 @@ def declare(parser: argparse.ArgumentParser, *names: str, **otherwise: Any) -> N
     """Give a verb some of these options, where wanted with other words."""
     for name in names:
         parser.add_argument(name, **{**OPTIONS[name], **otherwise})
+
+
+def add_recording_arguments(
+    parser: argparse.ArgumentParser,
+    holdout: bool = False,
+    report: bool = True,
+    required: bool = True,
+    force: str = "",
+) -> None:
+    """RUN..., --robot and how to read and judge them, --json and --report.
+
+    Parameters
+    ----------
+    holdout : bool
+        Offer --holdout too.
+    report : bool
+        Offer --report.
+    required : bool
+        Whether RUN and --robot must be given; where not, the verb asks for them itself.
+    force : str
+        What --force means to the verb beside what it means to all.
+    """
+    declare(parser, "runs", nargs="+" if required else "*")
+    if holdout:
+        parser.add_argument(
+            "--holdout",
+            metavar="RUN",
+            nargs="+",
+            default=[],
+            type=Path,
+            help="drives to judge on, that take no part in the fit",
+        )
+    declare(parser, "--robot", required=required)
+    parser.add_argument(
+        "--leg",
+        metavar="M",
+        type=positive,
+        default=1.0,
+        help="length of a leg [m], 1 if not given: drives are cut into legs, stretches of so much "
+        "way (on the spot of a quarter turn), and each is judged by the pose at its end as seen "
+        "from its start",
+    )
+    parser.add_argument(
+        "--reference-kind",
+        choices=("absolute", "incremental", "local_map"),
+        help="absolute: each pose has noise of its own (motion capture); incremental: it adds up "
+        "along the way (each scan matched with the last one); local_map: it also wanders slowly, "
+        "about a map (a localiser, SLAM, scans matched with a map). If not given: incremental for "
+        "a gyro, local_map for a localiser (map -> odom -> base_link, AMCL), else absolute",
+    )
+    for part, unit, what in (
+        ("xy", "M", "noise of the reference in x and in y [m], if known"),
+        ("yaw", "RAD", "its noise in heading [rad], if known"),
+    ):
+        parser.add_argument(f"--reference-sigma-{part}", metavar=unit, type=positive, help=what)
+    declare(parser, "--ticks-topic")
+    declare(
+        parser,
+        "--reference-topic",
+        action="append",
+        help="topic of the reference, in a bag with several; /tf:PARENT:CHILD among transforms; "
+        "the scans of a lidar are matched with those of the last metres. "
+        "Given twice, for poses and for a gyro: the positions of the one with the headings of the "
+        "other",
+    )
+    parser.add_argument(
+        "--reference",
+        metavar="RUN",
+        action="append",
+        default=[],
+        type=Path,
+        help="what holds the reference of a drive, where RUN does not: another bag, or a folder "
+        "with reference.csv; once for each RUN, then for each of --holdout",
+    )
+    words = f"{force}{'; ' if force else ''}take a reference that is made from the wheels"
+    declare(parser, "--force", help=words)
+    declare(parser, "--effects", "--json", *(["--report"] if report else []))
+
+
+def read_recordings(arguments: argparse.Namespace) -> Recordings:
+    """Read robot file, effects and runs; a bar on the terminal while it lasts.
+
+    Raises
+    ------
+    InputError
+        When something cannot be used, or a run is given twice.
+    """
+    from werrimbi_odom.api.drives import refuse_circles
+    from werrimbi_odom.cli.progress import share_done
+    from werrimbi_odom.files.recordings import Asked, read
+    from werrimbi_odom.files.run_checks import words_about
+
+    holdout = tuple(getattr(arguments, "holdout", None) or ())
+    asked = Asked(arguments.robot, tuple(arguments.runs), holdout, how_of(arguments))
+    collection = read_effects(arguments)
+    with share_done("reading") as show:
+        found = read(asked, collection, show)
+    circles = refuse_circles(found)
+    wanders = any(
+        run.reference is not None and run.reference.kind == "local_map"
+        for run in (*found.runs, *found.holdout)
+    )
+    if arguments.reference_kind is None and wanders:
+        circles.append(
+            "the reference is a localiser, whose errors wander: that is reckoned with "
+            "(--reference-kind local_map; absolute: they are new at each pose)"
+        )
+    remark(found.source, *words_about((*found.runs, *found.holdout)), *circles)
+    return found
+
+
+def on_recordings(
+    arguments: argparse.Namespace, words: str, work: Callable[[Recordings, Show], Found]
+) -> tuple[Recordings, Found]:
+    """Read what was given and work on it, both under a bar; `words`: what the work is called."""
+    from werrimbi_odom.cli.progress import share_done
+
+    given = read_recordings(arguments)
+    with share_done(words) as show:
+        return given, work(given, show)
+
+
+def remark(source: RobotFile, *more: str) -> None:
+    """What is not used of a robot file, and more of that kind, on stderr."""
+    for words in (*(f"{source.path}: {each}" for each in source.remarks), *more):
+        print(f"warning: {words}", file=sys.stderr)
+
+
+def how_of(arguments: argparse.Namespace) -> DriveOptions:
+    """The options that say how drives are read and judged."""
+    from werrimbi_odom.files.recordings import DriveOptions
+
+    topics = tuple(arguments.reference_topic or ())
+    return DriveOptions(
+        reference_kind=arguments.reference_kind,
+        leg=arguments.leg,
+        reference_sigma_xy=arguments.reference_sigma_xy,
+        reference_sigma_yaw=arguments.reference_sigma_yaw,
+        ticks_topic=arguments.ticks_topic,
+        reference_topic=topics if len(topics) > 1 else next(iter(topics), None),
+        effects=tuple(arguments.effects),
+        references=tuple(arguments.reference),
+        force_reference=arguments.force,
+    )
+
+
+def read_effects(arguments: argparse.Namespace) -> Collection:
+    """All effects, those of --effects among them; warnings go to stderr.
+
+    Raises
+    ------
+    InputError
+        When a file of --effects cannot be used.
+    """
+    from werrimbi_odom.effects.collection import all_effects
+
+    collection = all_effects(arguments.effects)
+    for warning in collection.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    return collection
+
+
+_DRIVES = "--robot drives/robot.yaml drives/train/*"
+_JUDGED = f"{_DRIVES} --holdout drives/holdout/*"
+
+EXAMPLES = {
+    "info": ("info my_bag", "info my_bag --out robot.yaml"),
+    "odom": ("odom --robot drives/robot.yaml drives/train/square_ccw --out odom.csv",),
+    "compare": (f"compare {_DRIVES}", f"compare {_DRIVES} --leg 0.5 --report compare.html"),
+    "diagnose": (f"diagnose {_JUDGED}", "diagnose --fleet robots --json fleet.json"),
+    "history": (f"history {_DRIVES} --report history.html",),
+    "add": (f"add castor_kick {_JUDGED} --out better.yaml",),
+    "draft": (f"draft {_DRIVES} --out my_effect",),
+    "workbench": (f"workbench {_JUDGED} --open",),
+    "calibrate": (f"calibrate fit {_DRIVES} --out calibrated.yaml",),
+    "calibrate umbmark": (
+        "calibrate umbmark squares.csv --side 4.0 --robot robot.yaml --out new.yaml",
+    ),
+    "calibrate noise": (
+        "calibrate noise runs.csv --distance 10.0 --robot robot.yaml --out new.yaml",
+    ),
+    "calibrate fit": (f"calibrate fit {_JUDGED} --out calibrated.yaml",),
+    "simulate": ("simulate --out drives --hide random --seed 6", "simulate --list"),
+    "explain": ("explain", "explain eccentric_left_wheel"),
+}
+"""Words behind `werrimbi`, by verb and kind."""
+
+
+def epilog_of(verb: str) -> str:
+    """The examples of a verb, as they stand below its options."""
+    return "\n".join(["example:", *(f"  werrimbi {words}" for words in EXAMPLES[verb])])
+
+
+class Formatter(argparse.HelpFormatter):
+    """Fills sentences; leaves examples as they are."""
+
+    def _fill_text(self, text: str, width: int, indent: str) -> str:
+        if text.startswith("example"):
+            return text
+        return super()._fill_text(text, width, indent)

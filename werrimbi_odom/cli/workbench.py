@@ -10,15 +10,13 @@ import tempfile
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from werrimbi_odom.cli.options import declare
-from werrimbi_odom.cli.recordings import add_recording_arguments, read_recordings
-from werrimbi_odom.cli.result_files import write_json
+from werrimbi_odom.cli.options import add_recording_arguments, declare, number, read_recordings
+from werrimbi_odom.cli.outputs import write_json
 
 if TYPE_CHECKING:
     from werrimbi_odom.files.recordings import Recordings
     from werrimbi_odom.workbench.job import Job
-    from werrimbi_odom.workbench.opening import Opening
-    from werrimbi_odom.workbench.tab import Shared
+    from werrimbi_odom.workbench.tab import Opening, Shared
 
 HELP = "a local page: compare, diagnose, add an effect, watch the error fall, save"
 
@@ -36,16 +34,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     )
     words = "robot file to save to; if not given, R_new.yaml beside R"
     declare(parser, "--out", required=False, help=words)
-    parser.add_argument(
-        "--port", metavar="N", type=_port, default=0, help="a free one if not given, or 0"
-    )
+    port, words = number(int, 0, 65535, "no port (0 to 65535)"), "a free one if not given, or 0"
+    parser.add_argument("--port", metavar="N", type=port, default=0, help=words)
     parser.add_argument("--open", action="store_true", help="open the page in the browser")
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Read, compare, serve until interrupted; 0 then."""
-    from werrimbi_odom.workbench.job import Job
-    from werrimbi_odom.workbench.tasks import Open
+    from werrimbi_odom.workbench.job import Job, Open
 
     job = Job(Open())
     job.start()  # before all else, so that it imports while the drives are read
@@ -78,8 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _opening(job: Job, arguments: argparse.Namespace, given: Recordings) -> Opening:
     """What is to be opened and compared once, for all who look."""
-    from werrimbi_odom.workbench.opening import Opening
     from werrimbi_odom.workbench.saving import Target, beside
+    from werrimbi_odom.workbench.tab import Opening
 
     out = arguments.out or beside(Path(arguments.robot))
     target = Target(out, arguments.force and arguments.out is not None)
@@ -95,13 +91,3 @@ def _tell(path: Path, address: str, shared: Shared) -> None:
         "train": {"rmse_position_m": shared.look.train_error},
     }
     write_json(path, found)
-
-
-def _port(text: str) -> int:
-    try:
-        value = int(text)
-    except ValueError:
-        value = -1
-    if not 0 <= value < 65536:
-        raise argparse.ArgumentTypeError(f"{text!r} is no port (0 to 65535)")
-    return value

@@ -12,19 +12,15 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.demo.pictures import save_and_tell
-from werrimbi_odom.demo.stage import Stage
+from werrimbi_odom.demo.stage import Stage, save_and_tell
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.path_figure import CHI2_95_OF_2
-from werrimbi_odom.report.style import BLUE, ORANGE, plain
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
+from werrimbi_odom.report.style import BLUE, ORANGE, Figure, blank, plain
 
 SEED = 149
 """Of what is hidden: chosen as one that a minute's driving tells from all others."""
@@ -168,11 +164,9 @@ def _row(stamp: Any, pose: Any) -> tuple[float, float, float, float]:
     return seconds, pose.position.x, pose.position.y, 2.0 * math.atan2(turn.z, turn.w)
 
 
-def error_figure(drives: Mapping[str, Drive]) -> go.Figure:
+def error_figure(drives: Mapping[str, Drive]) -> Figure:
     """How far odometry was off along its way, and how far it said that it might be."""
-    import plotly.graph_objects as go
-
-    figure = go.Figure()
+    figure = blank()
     for (name, drive), colour in zip(drives.items(), (ORANGE, BLUE), strict=True):
         for said, values, dash in (
             (name, drive.error, "solid"),

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Nodes of a demo, each a process of its own in a ROS domain of ours, and what they say."""
+"""Nodes of a demo, each a process of its own in a ROS domain of ours; and pictures on files."""
 
 from __future__ import annotations
 
@@ -17,6 +17,8 @@ from types import TracebackType
 from typing import Any
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.report.save import save_page, save_png, save_simple_png
+from werrimbi_odom.report.style import Figure
 
 
 def private_domain(stack: ExitStack) -> None:
@@ -146,3 +148,16 @@ class Stage:
         self.until(answer.done, f"answer of {service}")
         self._node.destroy_client(client)
         return answer.result()
+
+
+def save_and_tell(figure: Figure, path: Path) -> None:
+    """Write `path`.html and `path`.png, and say so."""
+    page, picture = path.with_suffix(".html"), path.with_suffix(".png")
+    save_page(figure, page)
+    print(f"\npicture: {page} (interactive)")
+    if save_png(figure, picture):
+        print(f"         {picture}")
+    elif save_simple_png(figure, picture):
+        print(f"         {picture} (a plain one: the pages' own look needs Chrome or Chromium)")
+    else:
+        print("         (no PNG: it needs Chrome or Chromium, or matplotlib)")

@@ -24,8 +24,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from werrimbi_odom.demo.pictures import save_and_tell
-from werrimbi_odom.demo.stage import end, private_domain
+from werrimbi_odom.demo.stage import end, private_domain, save_and_tell
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.read_run import read_run
 from werrimbi_odom.files.robot_file import RobotFile, read_robot_file

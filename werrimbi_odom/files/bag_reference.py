@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A reference from the messages of a bag: poses, transforms, or a gyro integrated to yaw."""
+"""A reference from the messages of a bag: poses, transforms, fixes, or a gyro, integrated."""
 
 from __future__ import annotations
 
@@ -17,7 +17,6 @@ from werrimbi_odom.files.bag import Message, stamp_of
 from werrimbi_odom.files.bag_contents import FIX, IMU, SCAN, Measured
 from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.gyro import yaw_rate
-from werrimbi_odom.files.local_plane import east_and_north
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference, ReferenceKind
 from werrimbi_odom.model.pose import Floats
@@ -208,3 +207,46 @@ _ROWS: dict[str, Callable[[Message], Iterator[_Row]]] = {
     FIX: _of_fix,
     IMU: _of_imu,
 }
+
+
+def east_and_north(
+    place: str, latitude: Floats, longitude: Floats, altitude: Floats
+) -> tuple[Floats, Floats]:
+    """Metres east and north of the first fix, in the plane that touches the ellipsoid below it.
+
+    Parameters
+    ----------
+    place
+        Where the fixes are, for errors.
+    latitude, longitude, altitude : ndarray, shape (n,)
+        WGS 84 [degrees, degrees, m]; NaN where there was no fix. Where the altitude alone is NaN
+        the first one that is known is taken.
+
+    Raises
+    ------
+    InputError
+        When pyproj is not installed.
+    """
+    fixed = np.isfinite(latitude) & np.isfinite(longitude)
+    x, y = np.full(latitude.size, np.nan), np.full(latitude.size, np.nan)
+    if not fixed.any():
+        return x, y
+    try:
+        from pyproj import Transformer
+    except ModuleNotFoundError as missing:
+        raise InputError(
+            f"{place}: fixes of satellites are projected by the Python package {missing.name}: "
+            'pip install "werrimbi_odom[gps]"'
+        ) from missing
+    known = altitude[fixed & np.isfinite(altitude)]
+    level = float(known[0]) if known.size else 0.0
+    first = int(np.flatnonzero(fixed)[0])
+    origin = (float(latitude[first]), float(longitude[first]), level)
+    plane = Transformer.from_pipeline(
+        "+proj=pipeline +step +proj=unitconvert +xy_in=deg +xy_out=rad "
+        "+step +proj=cart +ellps=WGS84 "
+        "+step +proj=topocentric +ellps=WGS84 +lat_0={!r} +lon_0={!r} +h_0={!r}".format(*origin)
+    )
+    height = np.full(latitude.size, level)  # a wheeled robot's path is measured on the floor
+    x[fixed], y[fixed], _ = plane.transform(longitude[fixed], latitude[fixed], height[fixed])
+    return x, y

@@ -1,15 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Ticks from the messages of a bag, read as the node reads them live."""
+"""Ticks from the messages of a bag, read as the node reads them live; counters among them."""
 
 from __future__ import annotations
 
+from array import array
+from collections import Counter
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Protocol
 
+import numpy as np
+from numpy.typing import NDArray
+
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import Message, topic_in_words
+from werrimbi_odom.files.bag import Message, left_out_words, stamp_of, topic_in_words
 from werrimbi_odom.files.bag_contents import (
     ARRAYS,
     INT32,
@@ -20,9 +25,9 @@ from werrimbi_odom.files.bag_contents import (
     Contents,
     Wheels,
 )
-from werrimbi_odom.files.bag_counters import CountersCollector, MultiArrays, Pairs
 from werrimbi_odom.files.bag_joints import JointsCollector, wheel_names
 from werrimbi_odom.files.bag_odometry import OdometryTurnedBack
+from werrimbi_odom.files.counter_pairs import Pairing
 from werrimbi_odom.files.drivers import DRIVERS
 from werrimbi_odom.files.made_from_wheels import ODOMETRY
 from werrimbi_odom.files.robot_file import RobotFile
@@ -122,3 +127,108 @@ def ticks_collector(path: Path, source: Wheels, robot_file: RobotFile) -> TicksC
     if source.kind in DRIVERS:
         return CountersCollector(path, source, robot_file)
     return Pairs(path, source, robot_file)
+
+
+class _TwoCounts:
+    """Stamps, and what both counters showed."""
+
+    def __init__(self, place: str, bits: int = 0) -> None:
+        self._place, self._bits = place, bits
+        self._time = array("d")
+        self._counts = array("q")
+
+    def _add(self, time: float, left: int, right: int) -> None:
+        self._time.append(time)
+        self._counts.extend((left, right))
+
+    def _ticks(self, why_none: str) -> Ticks:
+        if not self._time:
+            raise InputError(f"{self._place}: {why_none}")
+        left, right = np.array(self._counts, dtype=np.int64).reshape(-1, 2).T.copy()
+        sides = (_unwrapped(left, self._bits), _unwrapped(right, self._bits))
+        return Ticks(np.array(self._time), *sides)
+
+
+class CountersCollector(_TwoCounts):
+    """Both counters of a driver, in a message with a stamp."""
+
+    def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:
+        self._driver = DRIVERS[source.kind]
+        super().__init__(f"{path}: {source.name}", _width(robot_file, self._driver.bits))
+
+    def take(self, message: Message) -> None:
+        """Take a message."""
+        sides = (self._driver.left, self._driver.right)
+        self._add(stamp_of(message), *(int(getattr(message.content, name)) for name in sides))
+
+    def ticks(self) -> tuple[Ticks, list[str]]:
+        """All of them."""
+        told = "counts as the driver gives them: so many a turn as the robot file says"
+        return self._ticks("it has no messages"), [told]
+
+
+class MultiArrays(_TwoCounts):
+    """Two counters in one message without a stamp."""
+
+    def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:
+        bits = _width(robot_file, ARRAYS[source.kind])
+        super().__init__(f"{path}: {source.name}", bits)
+        self._left_out: Counter[str] = Counter()
+
+    def take(self, message: Message) -> None:
+        """Take a message."""
+        if len(message.content.data) != 2:
+            self._left_out["not of two values, left and right"] += 1
+            return
+        self._add(message.received / 1e9, *map(int, message.content.data))
+
+    def ticks(self) -> tuple[Ticks, list[str]]:
+        """All of them, and in words what was left out."""
+        ticks = self._ticks("no message has two values, left and right")
+        return ticks, left_out_words(self._left_out)
+
+
+class Pairs(_TwoCounts):
+    """A topic for each wheel, paired as the node does it; see `Pairing`.
+
+    Messages with stamps are paired by these: one topic may be delivered long after the other.
+    """
+
+    def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:
+        bits = _width(robot_file, PAIRS[source.kind])
+        super().__init__(f"{path}: {source.name}", bits)
+        self._left = source.name.split(",")[0]
+        self._window = float(robot_file.values["pairing_window"])  # type: ignore[arg-type]
+        self._read_at, self._side, self._count = array("d"), array("b"), array("q")
+
+    def take(self, message: Message) -> None:
+        """Take a message."""
+        stamped = hasattr(message.content, "header")
+        self._read_at.append(stamp_of(message) if stamped else message.received / 1e9)
+        self._side.append(message.topic != self._left)
+        self._count.append(int(message.content.data))
+
+    def ticks(self) -> tuple[Ticks, list[str]]:
+        """All of them, and in words what was left out."""
+        pairing = Pairing(int(1e9 * self._window))
+        for row in np.argsort(self._read_at, kind="stable").tolist():
+            read_at, side = self._read_at[row], self._side[row]
+            pair = pairing.take(side, self._count[row], round(1e9 * read_at))
+            if pair is not None:
+                self._add(read_at, *pair)
+        ticks = self._ticks("no two counts within the pairing_window of the robot file")
+        left_out = Counter({"without a partner in time": pairing.unpaired})
+        return ticks, left_out_words(left_out)
+
+
+def _width(robot_file: RobotFile, bits: int) -> int:
+    """Width at which to unwrap what cannot but wrap there; 0 where the robot file says one."""
+    return 0 if robot_file.values["encoder_bits"] else bits
+
+
+def _unwrapped(counts: NDArray[np.int64], bits: int) -> NDArray[np.int64]:
+    if not bits:
+        return counts
+    half = 1 << (bits - 1)
+    steps = (np.diff(counts) + half) % (2 * half) - half
+    return np.concatenate([counts[:1], counts[0] + np.cumsum(steps)])

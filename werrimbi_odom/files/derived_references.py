@@ -1,25 +1,34 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""References that the odometry has a hand in, where the bag holds what they were made of.
+"""References that the odometry has a hand in, or that are its copies, where the bag tells so.
 
 A marker or a map is seen now and then, and nodes carry the pose on by the wheels in between, a
 message for each of the odometry; or move the points of a scan by it. Both are measured in part and
-cannot be refused; what was measured itself is the better reference.
+cannot be refused; what was measured itself is the better reference. Others are the robot's own
+odometry under another name: the same poses, sent twice.
 """
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
+from contextlib import suppress
+from typing import TYPE_CHECKING, Any
 
-from werrimbi_odom.files.made_from_wheels import ODOMETRY
+import numpy as np
+from numpy.typing import NDArray
+
+from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.bag import stamp_of
+from werrimbi_odom.files.made_from_wheels import ODOMETRY, names_a_sensor
 
 if TYPE_CHECKING:
     from werrimbi_odom.files.bag import Bag
     from werrimbi_odom.files.bag_contents import Measured
 
+
 _MOSTLY = 0.9  # of the stamps; a sensor's own never are another node's to the nanosecond
-_FEWEST = 10
+_FEWEST_STAMPS = 10
 
 
 def second_hand(bag: Bag, references: Sequence[Measured]) -> dict[str, str]:
@@ -44,7 +53,7 @@ def _carried_on(bag: Bag, references: Sequence[Measured]) -> dict[str, str]:
     for name in poses:
         for odometry in own:
             shared = len(stamps[name] & stamps[odometry])
-            if shared >= max(_FEWEST, _MOSTLY * len(stamps[name])):
+            if shared >= max(_FEWEST_STAMPS, _MOSTLY * len(stamps[name])):
                 found[name] = (
                     f"stamped as {odometry} message by message, so the wheels carry it on between "
                     "its own measurements"
@@ -67,3 +76,68 @@ def _moved_scans(references: Sequence[Measured]) -> dict[str, str]:
 
 def _is_scan(each: Measured) -> bool:
     return each.kind.endswith("/LaserScan")
+
+
+_POSES = {
+    ODOMETRY: lambda content: content.pose.pose.position,
+    "geometry_msgs/msg/PoseStamped": lambda content: content.pose.position,
+    "geometry_msgs/msg/PoseWithCovarianceStamped": lambda content: content.pose.pose.position,
+}
+_FEWEST_POSES = 20
+_SAME = 2e-4
+"""Share of the extent of a path by which two paths, laid upon each other, may be apart (rms) to be
+one. Odometry drifts by a hundred times that from what was measured; sent between its own messages
+it is apart by some 1e-5."""
+_FARTHEST = 0.1
+"""Extent [m] of a path that tells; of less, odometry without drift may be as close."""
+
+Path = NDArray[np.complex128]
+
+
+def copies(bag: Bag, references: Sequence[Measured]) -> dict[str, str]:
+    """Which references are copies of the robot's own odometry, by name, and of which topic.
+
+    Not those that name a sensor: what is published on /odom may itself be the sensor's, and which
+    it is their numbers say.
+    """
+    there = [each for each in references if each.kind in _POSES and not each.chain]
+    own = [each.name for each in there if each.kind == ODOMETRY and not each.independent]
+    others = [each.name for each in there if each.independent and not names_a_sensor(each.name)]
+    if not own or not others:
+        return {}
+    kinds = {each.name: each.kind for each in there}
+    rows: dict[str, array[float]] = {name: array("d") for name in (*own, *others)}
+    with suppress(InputError):  # of a message that cannot be read whoever reads the topic tells
+        for message in bag.messages([*own, *others]):
+            place: Any = _POSES[kinds[message.topic]](message.content)
+            rows[message.topic].extend((stamp_of(message), float(place.x), float(place.y)))
+    paths = {name: np.array(values).reshape(-1, 3) for name, values in rows.items()}
+    found = {}
+    for name in others:
+        for odometry in own:
+            if _is_same(paths[name], paths[odometry]):
+                found[name] = odometry
+                break
+    return found
+
+
+def _is_same(one: NDArray[np.float64], other: NDArray[np.float64]) -> bool:
+    """Whether two paths, shape (n, 3) of time and place each, are one but for where they lie."""
+    one, other = (each[np.isfinite(each).all(axis=1)] for each in (one, other))
+    if len(one) < _FEWEST_POSES or len(other) < _FEWEST_POSES:
+        return False
+    order = np.argsort(other[:, 0], kind="stable")
+    time, x, y = other[order].T
+    inside = (one[:, 0] >= time[0]) & (one[:, 0] <= time[-1])
+    if inside.sum() < _FEWEST_POSES or inside.mean() < 0.5:
+        return False
+    at = one[inside, 0]
+    there: Path = np.interp(at, time, x) + 1j * np.interp(at, time, y)
+    here: Path = one[inside, 1] + 1j * one[inside, 2]
+    here, there = here - here.mean(), there - there.mean()
+    turn = np.vdot(here, there)
+    extent = float(np.abs(there).max())
+    if extent < _FARTHEST or abs(turn) == 0.0:
+        return False
+    apart = np.sqrt(np.mean(np.abs(here * (turn / abs(turn)) - there) ** 2))
+    return bool(apart < _SAME * extent)

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.small_text import read_small_text
+from werrimbi_odom.files.text_files import read_small_text
 from werrimbi_odom.model.pose import Floats
 
 

@@ -43,9 +43,8 @@ from werrimbi_odom.files.parameters import (
     robot_of,
     tolerance_of,
 )
-from werrimbi_odom.files.replacing import replacing
-from werrimbi_odom.files.yaml_edit import edited
-from werrimbi_odom.files.yaml_effects import with_effects
+from werrimbi_odom.files.text_files import replacing
+from werrimbi_odom.files.yaml_edit import known_values, with_values
 from werrimbi_odom.files.yaml_text import line_of, load, plain, read_text
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.encoder import EncoderLimits
@@ -180,7 +179,8 @@ def write_robot_file(
     if (
         written is None
         or any(written.values[name] != value for name, value in {**source.values, **wanted}.items())
-        or [_known(item) for item in written.effects] != [_known(item) for item in held]
+        or [(item.name, known_values(item)) for item in written.effects]
+        != [(item.name, known_values(item)) for item in held]
     ):
         raise InputError(f"{source.path}: its layout cannot be kept; write it in block style")
     with replacing(out) as file:
@@ -205,19 +205,12 @@ def new_text(
         if find(name).kind == "float":  # the node's parameters are typed: 2000 is no double
             wanted.setdefault(name, source.values[name])
     place = (source.node, PARAMETER_KEY)
-    text = edited(source.text, place, wanted, tuple(item.name for item in PARAMETERS))
-    if effects is None:
-        return text
-    _check(effects)
-    return with_effects(text, place, effects)
-
-
-def _check(effects: Sequence[AppliedEffect]) -> None:
-    """Whether every value can be read back; else nothing shall be written."""
-    for applied in effects:
+    for applied in effects or ():  # every value can be read back, or nothing is written
         for item in parameters_of(applied.effect):
             name = item.name.partition(".")[2]
             item.checked(applied.values.get(name, item.default))
+    order = tuple(item.name for item in PARAMETERS)
+    return with_values(source.text, place, wanted, order, effects)
 
 
 def _read_back(
@@ -229,12 +222,6 @@ def _read_back(
         return _understood(text, out, collection.find)
     except InputError:
         return None
-
-
-def _known(applied: AppliedEffect) -> tuple[str, dict[str, float]]:
-    """Its name, and every value that the file can hold."""
-    known = {**applied.effect.nulls, **applied.values}
-    return applied.name, {name: known[name] for name in known if name not in applied.unknown}
 
 
 def _understood(text: str, path: Path, find_effect: Find | None = None) -> RobotFile:

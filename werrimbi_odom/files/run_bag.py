@@ -20,7 +20,7 @@ from werrimbi_odom.files.mounting import mounting_chain
 from werrimbi_odom.files.reference_choice import Chosen, choose_reference
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Reference, Run
-from werrimbi_odom.files.small_text import readable
+from werrimbi_odom.files.text_files import readable
 
 Progress = Callable[[float], None]
 """Told, now and then, which share of the work is done."""

@@ -1,17 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a run can be judged at all, said with what is there; and what was got over."""
+"""Whether a run can be judged at all, said with what is there; what was got over; poses held."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.repeated_poses import words_about_held
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.model.encoder import CLOCK_JUMP
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.model.robot import Robot
 
 FEW_STEPS_BACK = 3
 """A clock is set back now and then; rows that are not sorted go back again and again."""
@@ -88,3 +91,100 @@ def _span(of: Reference | Ticks) -> tuple[float, float]:
 
 def _told(span: tuple[float, float]) -> str:
     return f"{span[0]:.14g} to {span[1]:.14g}"
+
+
+QUANTA = 3.0
+"""Steps of the reference's resolution by which a robot must have moved for its pose to change."""
+
+FEWEST = 20
+"""Poses of a run; fewer are taken by hand, and one may well be the one before: a robot that was
+driven back onto its mark."""
+
+LEAST_TRAVEL, LEAST_TURN = 0.01, 0.02
+"""By which a robot must have moved for its pose to be called held [m, rad]: a measurement may stick
+for some millimetres."""
+
+ROLLS = 0.01
+"""Of these, in the interval in which the pose was new: the robot was under way."""
+
+
+def without_held_poses(run: Run, robot: Robot) -> Run:
+    """The run without poses that repeat while its wheels turn.
+
+    For references whose poses are each their own. One that adds up what it has matched says by an
+    equal pose that it missed a motion.
+    """
+    if run.reference is None:
+        return run
+    held = held_poses(run, robot)
+    if not held.any():
+        return run
+    return replace(run, reference=run.reference.chosen(~held), held_poses=int(held.sum()))
+
+
+def words_about_held(runs: Sequence[Run]) -> str | None:
+    """What was left out of some runs; None where nothing was."""
+    some = [run for run in runs if run.held_poses]
+    if not some:
+        return None
+    count = sum(run.held_poses for run in some)
+    there = sum(0 if run.reference is None else run.reference.time.size for run in some)
+    return (
+        f"{some[0].path}{'' if len(some) == 1 else f' and {len(some) - 1} more'}: {count} of "
+        f"{count + there} reference poses repeat the one before to the last digit while the wheels "
+        "turn; they are taken for held, not measured, and left out"
+    )
+
+
+def held_poses(run: Run, robot: Robot) -> NDArray[np.bool_]:
+    """Which poses of a run's reference were held, shape (m,).
+
+    The wheels must have turned when the pose was new: a reference that is late shows a robot that
+    stands, and for a while after it has set off.
+    """
+    reference = run.reference
+    assert reference is not None
+    count = reference.time.size
+    if count < FEWEST:
+        return np.zeros(count, dtype=np.bool_)
+    columns = (reference.x, reference.y, reference.yaw)
+    repeats = np.zeros(count, dtype=np.bool_)
+    repeats[1:] = np.all([_equal(part[1:], part[:-1]) for part in columns], axis=0)
+    rows = np.arange(count)
+    first = np.maximum.accumulate(np.where(repeats, 0, rows))
+    along, turn = _driven(run, robot, reference.time)
+    with np.errstate(invalid="ignore"):
+        travelled = np.abs(along - along[first]) > max(
+            QUANTA * _quantum(reference.x, reference.y), LEAST_TRAVEL
+        )
+        turned = np.abs(turn - turn[first]) > max(QUANTA * _quantum(reference.yaw), LEAST_TURN)
+        travels = np.abs(np.diff(along, prepend=np.nan)) > ROLLS * LEAST_TRAVEL
+        turns = np.abs(np.diff(turn, prepend=np.nan)) > ROLLS * LEAST_TURN
+    travelled &= travels[first] & reference.has_position
+    turned &= turns[first] & reference.has_yaw
+    since = np.maximum.accumulate(np.where(repeats & (travelled | turned), rows, -1))
+    return np.asarray(repeats & (since > first))  # a robot may come back to where it was lost
+
+
+def _driven(run: Run, robot: Robot, time: Floats) -> tuple[Floats, Floats]:
+    """Way [m] and turn [rad] by the counters at some instants; NaN where they do not say."""
+    stamps = np.maximum.accumulate(run.ticks.time)
+    left, right = (
+        np.interp(time, stamps, counts.astype(np.float64) * size, left=np.nan, right=np.nan)
+        for counts, size in (
+            (run.ticks.left, robot.left_tick),
+            (run.ticks.right, robot.right_tick),
+        )
+    )
+    return 0.5 * (left + right), (right - left) / robot.track
+
+
+def _equal(one: Floats, other: Floats) -> NDArray[np.bool_]:
+    return np.asarray((one == other) | (np.isnan(one) & np.isnan(other)))
+
+
+def _quantum(*columns: Floats) -> float:
+    """The smallest step of some values that is not zero; 0 where there is none."""
+    steps = np.abs(np.concatenate([np.diff(column) for column in columns]))
+    steps = steps[steps > 0.0]
+    return float(steps.min()) if steps.size else 0.0

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which joints of a JointState are driven wheels: by their names, and by how they turn.
+"""Which joints of a JointState are driven wheels, by names and turns; which topic has the wheels.
 
 One topic often holds all joints of a robot: wheels, an arm, a gripper, a camera's pan and tilt. A
 gripper has a left and a right finger as well; but they stay within a turn, and wheels do not.
@@ -13,17 +13,16 @@ import re
 from array import array
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import stamp_of
+from werrimbi_odom.files.bag import Bag, stamp_of
+from werrimbi_odom.files.bag_contents import JOINT_STATE, Contents, Wheels
+from werrimbi_odom.files.bag_joints import wheel_names
+from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.model.pose import Floats
-
-if TYPE_CHECKING:
-    from werrimbi_odom.files.bag import Bag
 
 _NO_WHEELS = """
 ankle arm blade brush camera cutter door elbow finger flipper foot forearm gimbal grip gripper hand
@@ -185,3 +184,33 @@ def _integrated(speeds: _Values) -> float:
 def _words(name: str) -> set[str]:
     parts = re.findall(r"[A-Z]?[a-z]+|[A-Z]+", name)
     return {part.lower() for part in parts}
+
+
+def chosen_wheels(
+    bag: Bag, contents: Contents, wish: str | None, source: RobotFile | None
+) -> tuple[Wheels | None, WheelJoints]:
+    """What tells how the wheels turned, and the joints of it; the firmware's odometry last."""
+    known = ((), ()) if source is None else tuple(wheel_names(source, side) for side in SIDES)
+    able = sorted(contents.wheels, key=lambda each: each.gives == "odometry")
+    able = [each for each in able if each.name == wish] or able
+    found: list[tuple[Wheels, WheelJoints]] = []
+    for each in able:
+        joints = WheelJoints()
+        if each.kind == JOINT_STATE:
+            turned = turned_joints(bag, each.name)
+            joints = joints_told_apart(tuple(turned), turned, (known[0], known[1]))
+            each = replace(each, joints=tuple(turned))
+        found.append((each, joints))
+        if each.kind != JOINT_STATE or joints.left:
+            break
+    return min(found, key=_rank, default=(None, WheelJoints()))
+
+
+def _rank(found: tuple[Wheels, WheelJoints]) -> int:
+    """Wheels by name or message first, then joints that roll, then odometry, then others."""
+    wheels, joints = found
+    if wheels.gives == "odometry":
+        return 2
+    if wheels.joints and not joints.left:
+        return 1 if joints.rolled else 3
+    return 0

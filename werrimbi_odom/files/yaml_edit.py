@@ -1,62 +1,43 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Values changed and added in YAML text that keeps its comments, order and look."""
+"""The text of a robot file with other values and effects; all that stands around them stays.
+
+The YAML reader says where each value stands. There it is replaced in the text, and what comes or
+goes are whole lines. A block in brackets is written anew, in its brackets.
+"""
 
 from __future__ import annotations
 
 import io
+import json
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ruamel.yaml import YAML
-from ruamel.yaml.comments import CommentedMap, CommentedSeq
-from ruamel.yaml.error import CommentMark
-from ruamel.yaml.nodes import ScalarNode
-from ruamel.yaml.representer import RoundTripRepresenter
-from ruamel.yaml.scalarfloat import ScalarFloat
-from ruamel.yaml.scalarstring import DoubleQuotedScalarString
-from ruamel.yaml.tokens import CommentToken
+from ruamel.yaml.comments import CommentedMap
+from ruamel.yaml.nodes import MappingNode, Node, ScalarNode, SequenceNode
 
+from werrimbi_odom.files.effect_parameters import EFFECTS
 from werrimbi_odom.files.parameters import Value
 from werrimbi_odom.files.yaml_text import plain, round_trip
+from werrimbi_odom.model.effect import AppliedEffect, Parameter
 
 _PLAIN_TEXT = re.compile(r"[A-Za-z_/~][\w/~{}-]*(\.\w+)*\Z", re.ASCII)
 _NOT_TEXT = re.compile(r"(y|n|yes|no|on|off|true|false|null|~)\Z", re.IGNORECASE)
 """What a reader of YAML 1.1, as in ROS, does not take for text unless it is quoted."""
+_UNPRINTABLE = re.compile("[\x7f-\x9f\u2028\u2029\ufeff]")
+_COMMENT_COLUMN = 40
+_WIDTH = 110
 
 
-def is_text(value: str) -> bool:
-    """Whether a reader of YAML 1.1, too, takes it for text without quotes."""
-    return bool(_PLAIN_TEXT.match(value)) and not _NOT_TEXT.match(value)
-
-
-def float_text(value: float) -> str:
-    """A float that a reader of YAML 1.1 takes for one."""
-    digits = repr(value)
-    return digits if "." in digits else digits.replace("e", ".0e")
-
-
-class _Representer(RoundTripRepresenter):
-    """Floats with a point, also before an exponent: without one YAML 1.1 reads a text."""
-
-    def represent_float(self, data: float) -> ScalarNode:
-        return self.represent_scalar("tag:yaml.org,2002:float", float_text(data))
-
-    def represent_scalar_float(self, data: ScalarFloat) -> ScalarNode:
-        """A float in the look it had; ruamel drops digits of long ones with an exponent."""
-        node: ScalarNode = super().represent_scalar_float(data)
-        return node if float(node.value) == data else self.represent_float(float(data))
-
-
-_Representer.add_representer(float, _Representer.represent_float)
-_Representer.add_representer(ScalarFloat, _Representer.represent_scalar_float)
-
-
-def edited(
-    text: str, place: tuple[str, str], values: Mapping[str, Value], order: Sequence[str]
+def with_values(
+    text: str,
+    place: tuple[str, str],
+    values: Mapping[str, Value],
+    order: Sequence[str],
+    effects: Sequence[AppliedEffect] | None = None,
 ) -> str:
-    """The text with `values` in the block at `place`.
+    """The text with `values`, and with exactly these effects, in the block at `place`.
 
     Parameters
     ----------
@@ -66,105 +47,257 @@ def edited(
         What is there already and says the same is not touched.
     order : sequence of names
         An added name goes behind the nearest one before it in this order.
+    effects : sequence of AppliedEffect, optional
+        By default those that are there stay.
+    """
+    text = text if text.endswith("\n") else f"{text}\n"
+    yaml = round_trip()
+    given = yaml.load(text)[place[0]][place[1]]
+    above = _child(yaml.compose(io.StringIO(text)), place[0])
+    node = _child(above, place[1])
+    if node.flow_style:
+        new = {**_tree(given), **values}
+        new = new if effects is None else _with_effects(new, effects)
+        start, end = node.start_mark.index, node.end_mark.index
+        return text[:start] + _written(new, quoted=True) + text[end:]
+    block = _Block(text, node, given, [])
+    for name in sorted(values, key=order.index):
+        if name in block.nodes:
+            block.change(name, values[name])
+        else:
+            before = [each for each in order[: order.index(name)] if each in block.nodes]
+            at = block.behind(before[-1]) if before else block.begin
+            block.insert(at, [f"{name}: {_written(values[name])}"])
+    if effects is not None:
+        step = max(block.column - above.start_mark.column, 2)
+        _change_effects(block, effects, " " * step)
+    return block.edited()
+
+
+def known_values(applied: AppliedEffect) -> dict[str, float]:
+    """Every value of an effect that a file can hold: not what each run has anew."""
+    values: Mapping[str, float] = {**applied.effect.nulls, **applied.values}
+    return {name: float(values[name]) for name in values if name not in applied.unknown}
+
+
+class _Block:
+    """A mapping in the text, a key a line, and what is to become of it.
+
+    Parameters
+    ----------
+    edits
+        From where, to where (in characters), and what is to stand there instead.
     """
 
-    def change(block: CommentedMap) -> None:
-        for name, value in values.items():
-            if name not in block:
-                _add(block, name, _as_yaml(value), order)
-            elif not _same(block[name], value):
-                block[name] = _replaced(block[name], value)
+    def __init__(
+        self, text: str, node: MappingNode, given: CommentedMap, edits: list[tuple[int, int, str]]
+    ) -> None:
+        self.text, self.given, self.edits = text, given, edits
+        self.column = int(node.start_mark.column)
+        self.begin = int(node.start_mark.index) - self.column
+        self.nodes = {str(key.value): (key, value) for key, value in node.value}
 
-    return edited_block(text, place, change)
+    def below(self, name: str) -> _Block:
+        """The block of a key."""
+        return _Block(self.text, self.nodes[name][1], self.given[name], self.edits)
+
+    def behind(self, name: str) -> int:
+        """Where the line after all of a key begins."""
+        return self.text.index("\n", _end(self.text, *self.nodes[name])) + 1
+
+    def insert(self, at: int, lines: Sequence[str]) -> None:
+        """Put in lines, indented as the keys are."""
+        new = "".join(f"{' ' * self.column}{line}\n" for line in lines)
+        self.edits.append((at, at, new))
+
+    def cut(self, name: str) -> None:
+        """Take out the lines of a key."""
+        start = self.nodes[name][0].start_mark
+        self.edits.append((start.index - start.column, self.behind(name), ""))
+
+    def change(self, name: str, value: Any, *, named: bool = False) -> None:
+        """Replace a value, unless it says the same; a comment beside it keeps its column.
+
+        Parameters
+        ----------
+        named
+            Whether what stands beside an item of a list is told of that item.
+        """
+        key, node = self.nodes[name]
+        old = _tree(self.given[name])
+        known = tuple(old) if isinstance(old, list) else old
+        if type(known) is type(value) and known == value:
+            return
+        start, end, new = node.start_mark.index, _end(self.text, key, node), _written(value)
+        if _is_empty(node):
+            start, new = end, f" {new}"
+        elif isinstance(node, SequenceNode) and not node.flow_style:
+            end = self.text.index("\n", end)
+            if value:
+                new = self._items(node, old, value, named)
+            else:
+                colon = self.text.index(":", key.end_mark.index) + 1
+                self.edits.append((colon, colon, " []"))
+                start, new = self.text.rindex("\n", 0, start), ""
+        beside = self.text[end : self.text.index("\n", end)]
+        comment = beside.lstrip(" ")
+        gap = len(beside) - len(comment) if comment.startswith("#") else 0
+        room = max(end + gap - start - len(new), min(gap, 2))
+        self.edits.append((start, end + gap, new + " " * room if gap else new))
+
+    def _items(
+        self, node: SequenceNode, old: Sequence[Any], value: Sequence[str], named: bool
+    ) -> str:
+        """Item below item; one that stays keeps what stands beside it."""
+        ends = [_end(self.text, None, item) for item in node.value]
+        nexts = [self.text.rindex("\n", 0, item.start_mark.index) for item in node.value[1:]]
+        nexts.append(self.text.index("\n", ends[-1]))
+        beside = {name: self.text[a:b] for name, a, b in zip(old, ends, nexts, strict=True)}
+        if old[-1] not in value and not named:
+            beside.setdefault(value[-1], beside[old[-1]])
+        lines = [f"- {_written(item)}{beside.get(item, '')}" for item in value]
+        return f"\n{' ' * int(node.start_mark.column)}".join(lines)
+
+    def edited(self) -> str:
+        """The text, changed."""
+        parts, done = [], 0
+        for start, end, new in sorted(self.edits, key=lambda edit: edit[:2]):
+            parts += [self.text[done:start], new]
+            done = end
+        return "".join([*parts, self.text[done:]])
 
 
-def edited_block(text: str, place: tuple[str, str], change: Callable[[CommentedMap], None]) -> str:
-    """The text after `change` has been made to the block at `place`."""
-    yaml = round_trip()
-    yaml.Representer = _Representer
-    content = yaml.load(text)
-    below = content[place[0]]
-    if below[place[1]] is None:
-        below[place[1]] = CommentedMap()
-    block = below[place[1]]
-    _keep_indent(yaml, below, block)
-    yaml.explicit_start = text.startswith("---") or "\n---" in text
-    change(block)
-    stream = io.StringIO()
-    yaml.dump(content, stream)
-    return stream.getvalue()
+def _change_effects(block: _Block, effects: Sequence[AppliedEffect], step: str) -> None:
+    """Have exactly these effects in a block; `step`: by which what is below a key is indented."""
+    names = tuple(applied.name for applied in effects)
+    gone = {name for name in block.given.get(EFFECTS) or () if name not in names}
+    cut = [key for key in block.nodes if key.partition(".")[0] in gone]
+    if EFFECTS in block.nodes:
+        block.change(EFFECTS, names, named=True)
+        behind = block.behind(EFFECTS)
+    else:
+        behind = block.behind([key for key in block.nodes if key not in cut][-1])
+        if names:
+            line = f"{EFFECTS}: [{', '.join(names)}]"
+            block.insert(behind, [_beside(line, "in order of application")])
+    for applied in effects:
+        behind = _change_effect(block, applied, behind, step)
+    for key in cut:
+        block.cut(key)
 
 
-def _same(old: Any, value: Value) -> bool:
-    known = plain(old)
-    if isinstance(known, list):
-        known = tuple(known)
-    return type(known) is type(value) and known == value
+def _change_effect(block: _Block, applied: AppliedEffect, behind: int, step: str) -> int:
+    """Have an effect's values in a block; returns where the next one's belong."""
+    name, known, declared = applied.name, known_values(applied), applied.effect.parameters
+    holder, prefix = block, f"{name}."
+    if name in block.nodes:
+        if block.nodes[name][1].flow_style:
+            own = _tree(block.given[name])
+            block.change(name, _needed(own, known, declared))
+            return block.behind(name)
+        holder, prefix = block.below(name), ""
+    there = {key.removeprefix(prefix): key for key in holder.nodes if key.startswith(prefix)}
+    stay = [key for parameter, key in there.items() if parameter in known]
+    if stay:
+        for parameter, key in there.items():
+            if parameter in known:
+                holder.change(key, known[parameter])
+            else:
+                holder.cut(key)
+        more = {key: known[key] for key in _needed(there, known, declared) if key not in there}
+        lines = [_line(prefix + key, value, declared[key]) for key, value in more.items()]
+        holder.insert(holder.behind(stay[-1]), lines)
+        return block.behind(name if holder is not block else stay[-1])
+    for key in [name] if holder is not block else there.values():
+        block.cut(key)
+    if known:
+        lines = [_line(step + key, value, declared[key]) for key, value in known.items()]
+        block.insert(behind, [f"{name}:", *lines])
+    return behind
 
 
-def _as_yaml(value: Value) -> Any:
-    if isinstance(value, str):
-        return value if is_text(value) else DoubleQuotedScalarString(value)
-    if isinstance(value, tuple):
-        names = CommentedSeq(_as_yaml(item) for item in value)
-        names.fa.set_flow_style()
-        return names
-    return value
-
-
-def _replaced(old: Any, value: Value) -> Any:
-    """The new value in the look of the old one: a list item below item stays so."""
-    new = _as_yaml(value)
-    if isinstance(old, CommentedSeq) and isinstance(new, CommentedSeq):
-        if not old.fa.flow_style():
-            new.fa.set_block_style()
-        last = old.ca.items.get(len(old) - 1)
-        if last is not None:
-            new.ca.items[len(new) - 1] = last
+def _with_effects(block: dict[str, Any], effects: Sequence[AppliedEffect]) -> dict[str, Any]:
+    """A block in brackets with exactly these effects."""
+    kept = {applied.name: applied for applied in effects}
+    gone = set(block.get(EFFECTS) or ()) - set(kept)
+    new = {key: value for key, value in block.items() if key.partition(".")[0] not in gone}
+    if kept or EFFECTS in new:
+        new[EFFECTS] = list(kept)
+    for name, applied in kept.items():
+        known = known_values(applied)
+        dotted = [key for key in new if key.startswith(f"{name}.")]
+        own = new.pop(name, None) or {key.partition(".")[2]: new.pop(key) for key in dotted}
+        if known:
+            new[name] = _needed(own, known, applied.effect.parameters) if own else known
     return new
 
 
-def _keep_indent(yaml: YAML, below: CommentedMap, block: CommentedMap) -> None:
-    """Indent as the source does; ruamel has one width for all mappings and one for all lists."""
-    yaml.map_indent = max(int(below.lc.col), 2)
-    for value in block.values():
-        if isinstance(value, CommentedSeq) and not value.fa.flow_style() and len(value):
-            offset = max(int(value.lc.col) - int(block.lc.col), 0)
-            yaml.sequence_indent, yaml.sequence_dash_offset = offset + 2, offset
-            return
+def _needed(
+    own: Mapping[str, Any], known: Mapping[str, float], declared: Mapping[str, Parameter]
+) -> dict[str, float]:
+    """Values that must be told: those that are told already, and those that are not null."""
+    return {
+        name: value for name, value in known.items() if name in own or value != declared[name].null
+    }
 
 
-def _add(block: CommentedMap, name: str, value: Any, order: Sequence[str]) -> None:
-    before = order[: order.index(name)]
-    previous = next((item for item in reversed(before) if item in block), None)
-    if previous is None:
-        block.insert(0, name, value)
-        return
-    block.insert(list(block).index(previous) + 1, name, value)
-    # ruamel hangs the lines of comment below a value on that value. They tell of what comes next,
-    # so the new line goes above them.
-    lines_below = _take_lines_below(block, previous)
-    if lines_below:
-        block.ca.items[name] = [None, None, _comment("\n" + lines_below), None]
+def _child(node: Node, key: str) -> MappingNode:
+    assert isinstance(node, MappingNode)
+    found = next(value for name, value in node.value if name.value == key)
+    assert isinstance(found, MappingNode)
+    return found
 
 
-def _take_lines_below(block: CommentedMap, name: str) -> str:
-    value = block[name]
-    items, slot = block.ca.items, 2
-    key: str | int = name
-    if isinstance(value, CommentedSeq) and not value.fa.flow_style() and len(value):
-        items, slot = value.ca.items, 0
-        key = len(value) - 1
-    tokens = items.get(key)
-    if tokens is None or tokens[slot] is None:
-        return ""
-    beside, _, below = tokens[slot].value.partition("\n")
-    if beside:
-        tokens[slot] = _comment(beside + "\n", tokens[slot].start_mark)
-    else:
-        tokens[slot] = None
-    return str(below)
+def _end(text: str, key: Node | None, node: Any) -> int:
+    """Where the last thing of a value ends; a block's own end lies behind the comments below it."""
+    if _is_empty(node) and key is not None:
+        return text.index(":", key.end_mark.index) + 1
+    if isinstance(node, ScalarNode) or node.flow_style or not node.value:
+        end = node.end_mark
+        return int(end.index) - int(end.column == 0 and end.line > node.start_mark.line)
+    last = node.value[-1]
+    return _end(text, *last) if isinstance(node, MappingNode) else _end(text, None, last)
 
 
-def _comment(text: str, mark: Any = None) -> CommentToken:
-    return CommentToken(text, mark or CommentMark(0), None)
+def _is_empty(node: Node) -> bool:
+    return bool(node.start_mark.index == node.end_mark.index)
+
+
+def _tree(value: Any) -> Any:
+    """Plain values all the way down."""
+    if isinstance(value, CommentedMap):
+        return {str(key): _tree(below) for key, below in value.items()}
+    return plain(value)
+
+
+def _written(value: Any, *, quoted: bool = False) -> str:
+    """A value on one line, as readers of YAML 1.1, too, take it; `quoted`: all texts are."""
+    if isinstance(value, bool) or value is None:
+        return json.dumps(value)
+    if isinstance(value, float):  # with a point also before an exponent, without which it is a text
+        digits = repr(value)
+        return digits if "." in digits else digits.replace("e", ".0e")
+    if isinstance(value, str):
+        if not quoted and _PLAIN_TEXT.match(value) and not _NOT_TEXT.match(value):
+            return value
+        text = json.dumps(value, ensure_ascii=False)
+        return _UNPRINTABLE.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
+    if isinstance(value, Mapping):
+        each = (": ".join(_written(part, quoted=quoted) for part in pair) for pair in value.items())
+        return f"{{{', '.join(each)}}}"
+    if isinstance(value, Sequence):
+        return f"[{', '.join(_written(item, quoted=quoted) for item in value)}]"
+    return str(value)
+
+
+def _line(key: str, value: float, parameter: Parameter) -> str:
+    """A value with its unit and meaning beside it, as far as there is room."""
+    says = f"{parameter.unit}, {parameter.says}" if parameter.unit else parameter.says
+    name = key.lstrip()
+    line = f"{key[: len(key) - len(name)]}{_written(name)}: {_written(value)}"
+    short = says if len(says) + _COMMENT_COLUMN <= _WIDTH else parameter.unit
+    return _beside(line, short) if short else line
+
+
+def _beside(line: str, comment: str) -> str:
+    return f"{line:<{_COMMENT_COLUMN - 4 - 2}}  # {comment}"

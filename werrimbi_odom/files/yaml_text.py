@@ -23,7 +23,7 @@ from ruamel.yaml.events import (
 from ruamel.yaml.scalarbool import ScalarBoolean
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.small_text import read_small_text
+from werrimbi_odom.files.text_files import read_small_text
 
 MAX_DEPTH = 8
 _ERRORS_OF_SCALARS = (ValueError, ArithmeticError, LookupError, TypeError, AttributeError)

@@ -13,10 +13,9 @@ from contextlib import contextmanager, suppress
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.fleet.code_version import PACKAGE, code_here, doubts, refusal
-from werrimbi_odom.fleet.parcel import packed
+from werrimbi_odom.fleet.parcel import PACKAGE, code_here, doubts, packed, refusal
 from werrimbi_odom.fleet.robot_task import Task, bug, failed
-from werrimbi_odom.report.fleet.rows import Row
+from werrimbi_odom.report.fleet import Row
 
 if TYPE_CHECKING:
     from distributed import Client, Future
@@ -137,8 +136,7 @@ def _work() -> Callable[[bytes, dict[str, str]], tuple[Any, str]]:
 
     def work(data: bytes, wanted: dict[str, str]) -> tuple[Any, str]:
         try:
-            from werrimbi_odom.fleet.code_version import code_here, refusal
-            from werrimbi_odom.fleet.parcel import row_of_parcel
+            from werrimbi_odom.fleet.parcel import code_here, refusal, row_of_parcel
         except ImportError as error:
             return None, f"cannot import werrimbi_odom ({error})"
         why = refusal(wanted, code_here())
@@ -152,7 +150,7 @@ def _probe() -> Callable[[], dict[str, str]]:
 
     def probe() -> dict[str, str]:
         try:
-            from werrimbi_odom.fleet.code_version import code_here
+            from werrimbi_odom.fleet.parcel import code_here
 
             return dict(code_here())
         except ImportError as error:

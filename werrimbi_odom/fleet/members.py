@@ -14,7 +14,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import SUFFIXES
 from werrimbi_odom.files.recordings import BAG, refuse_twice
 from werrimbi_odom.files.run_folder import TICKS
-from werrimbi_odom.files.small_text import readable
+from werrimbi_odom.files.text_files import readable
 
 ROBOT = "robot.yaml"
 TRAIN, RUNS, HOLDOUT = "train", "runs", "holdout"

@@ -17,7 +17,7 @@ from threading import Thread
 from typing import TypeVar
 
 from werrimbi_odom.fleet.robot_task import Task, bug, failed, row_of
-from werrimbi_odom.report.fleet.rows import Row
+from werrimbi_odom.report.fleet import Row
 
 Asked = TypeVar("Asked")
 Found = TypeVar("Found")

@@ -14,7 +14,7 @@ from werrimbi_odom.api.verbs import diagnosed
 from werrimbi_odom.effects.collection import all_effects
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Asked, read
-from werrimbi_odom.report.fleet.rows import Row
+from werrimbi_odom.report.fleet import Row
 
 _ONE_AT_A_TIME = Lock()
 """Effects of a file become modules of the whole process, and so is the limit on threads its."""

@@ -11,10 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from textwrap import dedent
-from typing import TYPE_CHECKING, Literal
+from typing import Literal
 
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
+from werrimbi_odom.report.style import Figure
 
 
 @dataclass(frozen=True)
@@ -65,7 +64,7 @@ class Shown:
     title: str
     see: str
     """One sentence: what to see."""
-    figures: Mapping[str, go.Figure] = field(default_factory=dict)
+    figures: Mapping[str, Figure] = field(default_factory=dict)
     """By the words to choose them by; the first is shown."""
     choose: str = ""
     """What is chosen, where there are several."""

@@ -7,9 +7,28 @@ from __future__ import annotations
 import math
 from typing import Any
 
+import numpy as np
+
 from werrimbi_odom.inference.events.common_cause import Alike
-from werrimbi_odom.inference.events.events import Event, Events
-from werrimbi_odom.report.numbers import from_start, in_unit, with_std
+from werrimbi_odom.inference.events.events import Event, Events, Way
+from werrimbi_odom.report.numbers import from_start, in_unit, picked, with_std
+from werrimbi_odom.report.path_figure import add_path
+from werrimbi_odom.report.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    MOST,
+    ORANGE,
+    PAPER,
+    Figure,
+    along_path,
+    blank,
+    escaped,
+    from_above,
+    paled,
+    plain,
+    small,
+)
 
 _TOLD = 6
 """Events that are told one by one, the largest against their noise."""
@@ -98,21 +117,14 @@ def events_json(happened: Events, track: float) -> list[dict[str, Any]]:
     """Field for field; times in the run's own clock [s]."""
     return [
         {
-            "run": str(event.run),
-            "t_s": event.time,
-            "channel": event.channel,
-            "size": event.size,
-            "std": event.std,
-            "unit": event.unit,
+            **picked(event, "run t_s:time channel size std unit"),
             "words": event_words(event, track, either=either(happened)),
             "sizes": dict(zip(_SIZES, event.sizes, strict=True)),
             "stds": dict(zip(_SIZES, event.stds, strict=True)),
             "x_m": event.place[0],
             "y_m": event.place[1],
-            "stays": event.stays,
-            "held_out": event.held_out,
+            **picked(event, "stays held_out p_value"),
             "left_out": happened.left_out,
-            "p_value": event.p_value,
         }
         for event in happened.events
     ]
@@ -141,15 +153,9 @@ def alike_json(happened: Events) -> dict[str, Any] | None:
     common = happened.alike
     if common is None:
         return None
-    return {
-        "what": common.what,
-        "count": common.count,
-        "of": common.of,
-        "x_m": common.at[0],
-        "y_m": common.at[1],
-        "p_value": common.p_value,
-        "words": alike_words(common),
-    }
+    x, y = common.at
+    words = alike_words(common)
+    return {**picked(common, "what count of p_value"), "x_m": x, "y_m": y, "words": words}
 
 
 def when(event: Event) -> str:
@@ -181,3 +187,94 @@ def _slipped(event: Event, track: float) -> str | None:
 
 _SURELY = 3.0
 """Standard deviations."""
+
+
+_LOOKS = {
+    "along": ("along", ORANGE, "square"),
+    "sideways": ("sideways", BLUE, "diamond"),
+    "heading": ("heading", GREEN, "circle"),
+    "reference": ("the reference jumped", GREY, "x"),
+}
+_DRIVE = 30  # height of a drive's line [pixels]
+
+
+def on_the_path(happened: Events, track: float) -> Figure | None:
+    """Where events happened; None where the reference saw no place."""
+    seen = [way for way in happened.ways if np.isfinite(way.x).any()]
+    if not seen:
+        return None
+    figure = blank()
+    for number, way in enumerate(seen):
+        rows = along_path(way.x + 1j * way.y, max(MOST // len(seen), 200))
+        add_path(
+            figure,
+            small(way.x[rows]),
+            small(way.y[rows]),
+            "measured",
+            {"color": paled(GREY, 0.5), "width": 3},
+            said=escaped(_name(way)),
+            legendgroup="measured",
+            showlegend=number == 0,
+        )
+    _marks(figure, happened, track, [event.place for event in happened.events])
+    return from_above(figure, 620, zeroline=False)
+
+
+def over_time(happened: Events, track: float) -> Figure:
+    """When events happened, drive by drive."""
+    figure = blank()
+    starts = {}
+    for way in happened.ways:
+        name = escaped(_name(way))
+        starts[(way.run, way.held_out)] = (name, float(way.time[0]))
+        figure.add_scatter(
+            x=[0.0, float(way.time[-1] - way.time[0])],
+            y=[name, name],
+            mode="lines",
+            line={"color": paled(GREY, 0.5), "width": 3},
+            showlegend=False,
+            hoverinfo="skip",
+        )
+    places = []
+    for event in happened.events:
+        name, start = starts[(event.run, event.held_out)]
+        places.append((event.seen - start, name))
+    _marks(figure, happened, track, places)
+    figure.update_xaxes(title="time since the drive's first pose [s]", zeroline=False)
+    figure.update_yaxes(autorange="reversed", showgrid=False)
+    return plain(figure, height=140 + _DRIVE * len(happened.ways))
+
+
+def _marks(
+    figure: Figure,
+    happened: Events,
+    track: float,
+    places: list[tuple[float, float]] | list[tuple[float, str]],
+) -> None:
+    for channel, (words, colour, symbol) in _LOOKS.items():
+        own = [index for index, event in enumerate(happened.events) if event.channel == channel]
+        if not own:
+            continue
+        figure.add_scatter(
+            x=[places[index][0] for index in own],
+            y=[places[index][1] for index in own],
+            mode="markers",
+            name=words,
+            marker={
+                "color": colour,
+                "symbol": symbol,
+                "size": 12,
+                "line": {"color": PAPER, "width": 1.5},
+            },
+            hovertext=[_said(happened, happened.events[index], track) for index in own],
+            hovertemplate="%{hovertext}<extra></extra>",
+        )
+
+
+def _said(happened: Events, event: Event, track: float) -> str:
+    where = f"{escaped(event.run.name)}, {when(event)}"
+    return f"{where}<br>{escaped(event_words(event, track, either=either(happened)))}"
+
+
+def _name(way: Way) -> str:
+    return f"{way.run.name} (held out)" if way.held_out else way.run.name

@@ -1,191 +1,77 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What recordings hold, in words and for programs."""
+"""What recordings hold: as a document, for programs, and the command that comes next."""
 
 from __future__ import annotations
 
-import math
 import shlex
-from collections.abc import Iterator
+from dataclasses import asdict
 from typing import Any
 
-from werrimbi_odom.files.bag_contents import SCAN
-from werrimbi_odom.files.reference_choice import other_scans
-from werrimbi_odom.files.stamps import Stamps
-from werrimbi_odom.inference.legs.spans import Driven
 from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of
-from werrimbi_odom.report.document import Document, Paragraph, paragraphs
-from werrimbi_odom.report.info_wheels import (
-    WITHOUT_WHEELS,
-    no_wheels_words,
-    rate_words,
-    wheels_words,
-)
-from werrimbi_odom.report.numbers import TIME_OF_DAY, listed
-from werrimbi_odom.report.phrases import left_out_words
-
-_MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"}
-_WANDERS = 0.1  # of stamps against receipt, from which on it is worth saying [s]
+from werrimbi_odom.report.document import Document, Paragraph
+from werrimbi_odom.report.info_words import WITHOUT_WHEELS, words_of
+from werrimbi_odom.report.numbers import picked
+from werrimbi_odom.report.phrases import left_out_json
 
 
 def document_of(found: Info) -> Document:
     """Everything that is told."""
-    words = [part for each in found.held for part in _of_one(each, found)]
+    words = [part for each in found.held for part in words_of(each, found)]
     step, command = next_step(found)
     words += [Paragraph(step, apart=True), *([Paragraph(command, "command")] if command else [])]
     return Document(title="What the recordings hold", words=words)
 
 
-def _of_one(held: Held, found: Info) -> list[Paragraph]:
-    head = Paragraph(str(held.path), apart=True)
-    return [head, *paragraphs(f"- {each}" for each in _lines(held, found))]
+def info_json(found: Info) -> dict[str, Any]:
+    """For programs; times in each run's own clock [s]."""
+    return {
+        "runs": [_json_of(each, found) for each in found.held],
+        "robot": found.given or found.written,
+        "first_robot": picked(found.first, _FIRST) if found.given is None else None,
+        "next": next_step(found)[1] or None,
+    }
 
 
-def _lines(held: Held, found: Info) -> Iterator[str]:
-    if held.contents is not None:
-        yield wheels_words(held)
-        yield from no_wheels_words(held.joints)
-        yield from _references(held)
-        yield from _stamps(held)
-    else:
-        yield "Wheels: ticks.csv, counters."
-        measures = measures_of(held)
-        if measures != "nothing":
-            yield f"Reference: reference.csv, {_MEASURES[measures]}."
-    if held.restamped:
-        yield (
-            "By their counts, a timer read the wheels' counters evenly, and the stamps say when a "
-            f"message came: they are put back to when it was read, by {_ms(held.restamped)} (rms)."
-        )
-    if held.scans_restamped:
-        yield (
-            "By its path, the lidar turned evenly, and its scans are not stamped so: they are put "
-            f"back by {_ms(held.scans_restamped)} (rms)."
-        )
-    if held.problem:
-        yield f"It cannot be used as it is: {held.problem}."
-    if held.driven is not None:
-        yield _driven(held, held.driven, found.sizes)
-    yield from left_out_words(held.left_out)
-    if held.run is None:
-        return
-    yield from (f"{each}." for each in held.run.damage)
+_FIRST = (
+    "wheel_radius:radius wheel_separation:separation ticks_per_revolution:ticks "
+    "left_wheel_names:left right_wheel_names:right"
+)
+
+
+def _json_of(held: Held, found: Info) -> dict[str, Any]:
+    contents, drive = held.contents, held.driven
+    taken = "" if held.wheels is None else held.wheels.name
     can, cannot = can_tell(held, found.sizes)
-    if can:
-        yield f"It can show {listed(can)}."
-    yield from (f"It cannot show {each}." for each in cannot)
-    if held.driven is not None and not found.sizes and measures_of(held) != "nothing":
-        yield "Whether it can show base and radii is told once their sizes are known."
-
-
-def _references(held: Held) -> Iterator[str]:
-    assert held.contents is not None
-    for each in held.contents.references:
-        taken = " It is taken." if each == held.reference else ""
-        kind = f"{each.name}: {_MEASURES[each.measures]}{rate_words(held, each.name)}"
-        if each.independent:
-            yield f"Reference {kind} ({each.why}).{taken}"
-            if taken and held.run is not None:
-                yield from (
-                    f"R{note[1:]}."
-                    for note in held.run.notes
-                    if note.startswith("reference ")
-                    and (each.kind == SCAN or "accelerometer" in note)
-                )
-        else:
-            yield f"No reference: {each.name}, {each.why}."
-    yield from (
-        f"No reference as it is: {name}, {what}." for name, what in other_scans(held.contents)
-    )
-    if held.reference is None:
-        yield "Nothing in the bag measures the robot but its own wheels."
-
-
-def _stamps(held: Held) -> Iterator[str]:
-    for name, stamps in held.stamps.items():
-        chosen = [held.wheels and held.wheels.name, held.reference and held.reference.name]
-        if any(each and name in (*each.split(","), each.partition(":")[0]) for each in chosen):
-            yield _clock(name, stamps)
-    yield from _apart(held)
-
-
-def _clock(name: str, stamps: Stamps) -> str:
-    if stamps.jitter is None:
-        words = (
-            f"{name} has no stamps: the times of receipt are used, whose intervals vary by "
-            f"± {_ms(stamps.received_jitter)}"
-        )
-    else:
-        pair = f"± {_ms(stamps.jitter)} against ± {_ms(stamps.received_jitter)} of receipt"
-        if stamps.believed == "header":
-            words = f"Stamps of {name}: believe the headers, whose intervals vary by {pair}"
-        else:
-            words = (
-                f"Stamps of {name}: the headers are used, though their intervals vary by {pair}: "
-                "the times of receipt are the evener"
-            )
-        if abs(stamps.offset or 0.0) > TIME_OF_DAY:
-            apart = "they are of another clock than receipt (a simulation's, or one that began"
-            return f"{words}; {apart} when a computer was switched on)."
-        if (stamps.wander or 0.0) > _WANDERS:
-            words += (
-                f"; what lies between stamp and receipt wanders by {stamps.wander:.2g} s, and is "
-                f"{stamps.offset:.2g} s as a rule and {stamps.latest:.2g} s at most"
-            )
-            if (stamps.offset or 0.0) < 0.0:
-                words += " (negative: two clocks that differ)"
-    extras = []
-    if stamps.bursts > 0.01:
-        extras.append(f"{100 * stamps.bursts:.0f} % come together with the one before")
-    if stamps.late > 0.01:
-        extras.append(f"{100 * stamps.late:.0f} % are late by a tenth of a second and more")
-    if stamps.back:
-        extras.append(f"the stamps go back {stamps.back} times")
-    return f"{words}{'; ' if extras else ''}{', '.join(extras)}."
-
-
-def _apart(held: Held) -> Iterator[str]:
-    names = [each.name.split(",")[0].partition(":")[0] for each in _chosen(held)]
-    offsets = [held.stamps[name].offset for name in names if name in held.stamps]
-    if len(offsets) == 2 and offsets[0] is not None and offsets[1] is not None:
-        apart = offsets[0] - offsets[1]
-        if abs(apart) > _WANDERS:
-            yield (
-                f"Their clocks are apart: the reference's stamps are {abs(apart):.3g} s "
-                f"{'later' if apart > 0 else 'earlier'} than those of the wheels, by when both "
-                "were received."
-            )
-
-
-def _chosen(held: Held) -> list[Any]:
-    return [each for each in (held.wheels, held.reference) if each is not None]
-
-
-def _ms(seconds: float) -> str:
-    return f"{1e3 * seconds:.0f} ms"
-
-
-def _driven(held: Held, drive: Driven, sizes: bool) -> str:
-    times: dict[str, float] = {}
-    for span in drive.spans:
-        times[span.what] = times.get(span.what, 0.0) + span.end - span.begin
-    whole = drive.spans[-1].end - drive.spans[0].begin if drive.spans else 0.0
-    told = [
-        f"{verb} for {times[what]:.1f} s"
-        for what, verb in (
-            ("drove", "drove"),
-            ("stood", "stood"),
-            ("held", "was held"),
-            ("carried", "was carried or turned by hand"),
-        )
-        if what in times
-    ]
-    way = ""
-    if sizes and "drove" in times:
-        turned = math.degrees(drive.turned)
-        way = f" By its wheels it went {drive.way:.1f} m and turned {turned:.0f}°"
-        way += f", and changed its direction {drive.reversals} times." if drive.reversals else "."
-    return f"In {whole:.1f} s the robot {listed(told) if told else 'did nothing'}.{way}"
+    return {
+        "run": held.path,
+        "problem": held.problem or None,
+        "wheels": [
+            picked(each, "topic:name type:kind gives joints messages")
+            | {"taken": each.name == taken}
+            for each in (contents.wheels if contents is not None else ())
+        ],
+        "wheel_joints": picked(held.joints, "left right no_wheels:others"),
+        "references": [
+            picked(each, "topic:name type:kind measures independent why messages")
+            | {"taken": each == held.reference}
+            for each in contents.references
+        ]
+        if contents is not None
+        else [{"topic": "reference.csv", "measures": measures_of(held), "taken": True}],
+        "stamps": {
+            name: asdict(each) | {"believed": each.believed} for name, each in held.stamps.items()
+        },
+        "spans": [
+            picked(span, "from_s:begin to_s:end what") for span in (drive.spans if drive else ())
+        ],
+        "distance_m": drive.way if drive is not None and found.sizes else None,
+        "turned_rad": drive.turned if drive is not None and found.sizes else None,
+        "left_out": left_out_json(held.left_out),
+        **picked(held, "restamped_s:restamped scans_restamped_s:scans_restamped"),
+        "can_show": can,
+        "cannot_show": cannot,
+    }
 
 
 def next_step(found: Info) -> tuple[str, str]:

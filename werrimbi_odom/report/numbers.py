@@ -6,7 +6,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from operator import attrgetter
+from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 TIME_OF_DAY = 1e7
 """Seconds that no clock shows that began with a drive, or with its robot."""
@@ -122,19 +126,22 @@ def listed(words: Sequence[str], last: str = "and") -> str:
 
 
 def plain(value: Any) -> Any:
-    """Values that JSON has; null for what is not finite."""
+    """Values that JSON has; null for what is not finite, text for a path."""
     if isinstance(value, Mapping):
         return {key: plain(part) for key, part in value.items()}
     if isinstance(value, (list, tuple)):
         return [plain(part) for part in value]
+    if isinstance(value, (np.ndarray, np.generic)):
+        return plain(value.tolist())
     if isinstance(value, float) and not math.isfinite(value):
         return None
-    return value
+    return str(value) if isinstance(value, Path) else value
 
 
 def picked(item: object, names: str) -> dict[str, Any]:
-    """Some of its attributes, by name."""
-    return {name: getattr(item, name) for name in names.split()}
+    """Some of its attributes by name; KEY:ATTRIBUTE under another one."""
+    pairs = (name.partition(":") for name in names.split())
+    return {key: attrgetter(attribute or key)(item) for key, _, attribute in pairs}
 
 
 def counted(number: int, word: str) -> str:

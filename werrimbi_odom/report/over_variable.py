@@ -4,8 +4,6 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from werrimbi_odom.inference.comparison.compare import Comparison
@@ -21,11 +19,7 @@ from werrimbi_odom.inference.diagnosis.response import BeforeAfter
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.report.comparison.figures import CHANNELS, measured_channels
-from werrimbi_odom.report.diagnosis.evidence_figures import (
-    amount_words,
-    unit_of,
-    variable_words,
-)
+from werrimbi_odom.report.diagnosis.dependence import error_of, label_of, unit_of
 from werrimbi_odom.report.style import (
     BLUE,
     FAINT,
@@ -33,15 +27,14 @@ from werrimbi_odom.report.style import (
     GREY,
     MARKS,
     ORANGE,
+    Figure,
+    blank,
     escaped,
     paled,
     plain,
     small,
     spread_and_extremes,
 )
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
 
 WHEEL_ANGLES = ("left wheel's angle [°]", "right wheel's angle [°]")
 
@@ -65,7 +58,7 @@ def _bars(std: Floats, colour: str, thickness: float = 2, width: float = 5) -> d
     return {"array": 2.0 * std, "color": colour, "thickness": thickness, "width": width}
 
 
-def over(figure: go.Figure, variable: str, error: str, height: int, *, turn: bool) -> go.Figure:
+def over(figure: Figure, variable: str, error: str, height: int, *, turn: bool) -> Figure:
     """Zero is a line; `turn`: over one turn, in degrees."""
     figure.add_hline(y=0.0, line={"color": GREY, "width": 1})
     figure.update_xaxes(title=variable, **({"dtick": 45, "range": [0, 360]} if turn else {}))
@@ -73,13 +66,11 @@ def over(figure: go.Figure, variable: str, error: str, height: int, *, turn: boo
     return plain(figure, height=height)
 
 
-def wheel_angle_figure(comparison: Comparison, variable: str) -> go.Figure:
+def wheel_angle_figure(comparison: Comparison, variable: str) -> Figure:
     """Error of a wheel's travel, in mm for each metre rolled, over its turn; a wave a run."""
-    import plotly.graph_objects as go
-
     side = -1 if variable == WHEEL_ANGLES[0] else 1
     word = "left" if side < 0 else "right"
-    figure = go.Figure()
+    figure = blank()
     longest = sorted(
         range(len(comparison.runs)), key=lambda index: -comparison.runs[index].distance_m
     )[:_MOST_RUNS]
@@ -132,7 +123,7 @@ def variables_of(comparison: Comparison) -> list[str]:
     return [*ordered, *WHEEL_ANGLES]
 
 
-def error_against_figure(comparison: Comparison, variable: str) -> go.Figure:
+def error_against_figure(comparison: Comparison, variable: str) -> Figure:
     """Errors of the legs over one variable: each leg a dot, means of equal parts with error bars.
 
     Parameters
@@ -199,7 +190,7 @@ def error_against_figure(comparison: Comparison, variable: str) -> go.Figure:
     return figure
 
 
-def _range(figure: go.Figure, values: Floats, place: int) -> None:
+def _range(figure: Figure, values: Floats, place: int) -> None:
     """Most of the points; the few far out may be zoomed to."""
     if values.size == 0:
         return
@@ -208,13 +199,11 @@ def _range(figure: go.Figure, values: Floats, place: int) -> None:
     figure.update_yaxes(range=[min(low, 0.0) - room, max(high, 0.0) + room], row=place, col=1)
 
 
-def before_after_figure(found: BeforeAfter) -> go.Figure:
+def before_after_figure(found: BeforeAfter) -> Figure:
     """Error along the variable with error bars, before (and after)."""
-    import plotly.graph_objects as go
-
     unit, factor = unit_of(found.cell.amount)
     scale = float(np.degrees(1.0)) if found.turns else 1.0
-    figure = go.Figure()
+    figure = blank()
     words = f"with {found.effect}" if found.effect else ""
     for name, item, colour, symbol, dash in (
         (
@@ -243,12 +232,12 @@ def before_after_figure(found: BeforeAfter) -> go.Figure:
     label = labelled(found.cell)
     if found.turns and found.aligned:
         label = label.replace(" [°]", ", from where the fit puts its zero [°]")
-    error = f"{amount_words(found.cell.amount)}<br>[{unit}]"
+    error = f"{error_of(found.cell.amount)}<br>[{unit}]"
     return over(figure, label, error, 430, turn=found.turns)
 
 
 def labelled(cell: Dependence) -> str:
     """The variable with its unit."""
     unit = "°" if cell.form == "turns" else cell.variable.unit
-    name = variable_words(cell.variable.name)
+    name = label_of(cell.variable.name)
     return f"{name} [{unit}]" if unit else name

@@ -17,8 +17,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from werrimbi_odom.files.replacing import replacing
-from werrimbi_odom.files.small_text import readable
+from werrimbi_odom.files.text_files import readable, replacing
 from werrimbi_odom.report.document import Document, Entry, Paragraph, Part, Shown, Table
 from werrimbi_odom.report.style import IN_THE_DARK
 

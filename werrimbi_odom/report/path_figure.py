@@ -6,15 +6,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, styled
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
+from werrimbi_odom.report.style import BLUE, GREEN, GREY, ORANGE, Figure, blank, styled
 
 Floats = NDArray[np.float64]
 
@@ -66,11 +63,9 @@ def magnification(drawing: PathDrawing) -> float:
     return max((size for size in (1.0, 2.0, 5.0, 10.0, 20.0, 50.0) if size <= wanted), default=1.0)
 
 
-def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> go.Figure:
+def path_figure(drawing: PathDrawing, *, ellipses: int = 16) -> Figure:
     """The figure, interactive; equal scales on both axes."""
-    import plotly.graph_objects as go
-
-    figure = go.Figure()
+    figure = blank()
     magnified = drawing.magnified or magnification(drawing)
     name = "95 % ellipse" if magnified == 1.0 else f"95 % ellipse, drawn {magnified:g} × larger"
     if drawing.reference_x is not None and drawing.reference_y is not None:
@@ -115,7 +110,7 @@ _PLACE = "<br>x %{x:.3f} m<br>y %{y:.3f} m<extra></extra>"
 
 
 def add_path(
-    figure: go.Figure,
+    figure: Figure,
     x: NDArray[Any],
     y: NDArray[Any],
     name: str,
@@ -131,7 +126,7 @@ def add_path(
 
 
 def add_mark(
-    figure: go.Figure, at: complex, name: str, marker: Mapping[str, Any], **more: object
+    figure: Figure, at: complex, name: str, marker: Mapping[str, Any], **more: object
 ) -> None:
     """One place (x + iy) on it: a start, an end."""
     x, y = [float(at.real)], [float(at.imag)]

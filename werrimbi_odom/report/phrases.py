@@ -12,7 +12,7 @@ from werrimbi_odom.inference.comparison.reference_checks import ReferenceRemark
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.inference.legs.gaps import LeftOut
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.report.numbers import from_start, with_std
+from werrimbi_odom.report.numbers import from_start, picked, with_std
 
 _MOST = 5  # stretches that are told one by one
 _TOLD = 3  # the same, of a reference that is suspect
@@ -52,16 +52,7 @@ def jumps_words(parts: Sequence[LeftOut]) -> list[str]:
 
 def left_out_json(parts: Sequence[LeftOut]) -> list[dict[str, Any]]:
     """Field for field; times in the run's own clock [s]."""
-    return [
-        {
-            "run": str(part.run),
-            "from_s": part.begin,
-            "to_s": part.end,
-            "why": part.why,
-            "words": part.words,
-        }
-        for part in parts
-    ]
+    return [picked(part, "run from_s:begin to_s:end why words") for part in parts]
 
 
 _NAMES = dict(zip(MULTIPLIERS, ("wheel base", "left wheel", "right wheel"), strict=True))
@@ -148,13 +139,11 @@ def remarks_json(remarks: Sequence[ReferenceRemark]) -> list[dict[str, Any]]:
     """Field for field; sizes are shares of the path, or angles [rad]."""
     return [
         {
-            "what": remark.what,
-            "size": remark.size,
+            **picked(remark, "what size"),
             "unit": "" if remark.what in ("short", "metre") else "rad",
             "usual": remark.usual,
             "stretches": [
-                {"run": str(part.run), "from_s": part.begin, "to_s": part.end, "size": part.size}
-                for part in remark.stretches
+                picked(part, "run from_s:begin to_s:end size") for part in remark.stretches
             ],
             "words": remark_words(remark),
         }

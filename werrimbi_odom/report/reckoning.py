@@ -8,6 +8,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,9 @@ from werrimbi_odom.model.covariance import PoseCovariance
 from werrimbi_odom.model.pose import Floats, Pose, between, compose, wrap
 from werrimbi_odom.model.reference_measurement import Path as ShownPath
 from werrimbi_odom.model.trajectory import Trajectory
-from werrimbi_odom.report.numbers import counted
+from werrimbi_odom.report.document import Document, Shown, Table
+from werrimbi_odom.report.numbers import counted, picked
+from werrimbi_odom.report.path_figure import PathDrawing, path_figure, spread_along_path
 
 KINDS = ("line", "arc", "spin")
 _NO_MOTION = 1e-3
@@ -81,7 +84,8 @@ class Reckoning:
         p = self.covariance
         along = cos * cos * p.xx + 2.0 * cos * sin * p.xy + sin * sin * p.yy
         across = sin * sin * p.xx - 2.0 * cos * sin * p.xy + cos * cos * p.yy
-        return _root(along), _root(across), _root(p.yawyaw)
+        along, across, yaw = (math.sqrt(max(each, 0.0)) for each in (along, across, p.yawyaw))
+        return along, across, yaw
 
     @cached_property
     def _pieces(self) -> dict[str, list[tuple[float, float]]]:
@@ -93,11 +97,8 @@ class Reckoning:
 
     def as_json(self) -> dict[str, Any]:
         """For --json."""
-        along, across, heading = self.sigmas
         return {
-            "run": str(self.run.path),
-            "distance_m": self.distance,
-            "duration_s": self.duration,
+            **picked(self, "run:run.path distance_m:distance duration_s:duration"),
             "pieces": {
                 kind: {
                     "count": len(pieces),
@@ -106,13 +107,11 @@ class Reckoning:
                 }
                 for kind, pieces in self._pieces.items()
             },
-            "start": {**_pose_json(self.start.pose), "says": self.start.told},
+            "start": {**picked(self.start.pose, _POSE), "says": self.start.told},
             "final": {
                 "t_s": float(self.driven.time[-1]),
-                **_pose_json(self.final),
-                "sigma_along_m": along,
-                "sigma_across_m": across,
-                "sigma_yaw_rad": heading,
+                **picked(self.final, _POSE),
+                **dict(zip(_SIGMAS, self.sigmas, strict=True)),
                 "covariance": self.covariance._asdict(),
             },
             "rows": self.driven.tally.as_dict(),
@@ -154,23 +153,21 @@ def reckoning_of(
     learnt : tuple of str
         Remarks on what was learnt from the reference.
     """
-    reference = run.reference
-    if reference is None:
-        return Reckoning(run, start, driven, shown, None, learnt)
-    known = np.flatnonzero(reference.has_position | reference.has_yaw)
-    if known.size == 0:
-        remarks = (*learnt, "the reference measured nothing")
-        return Reckoning(run, start, driven, shown, None, remarks)
-    first, last = known[0], _last_row(reference, known, driven)
-    found = [*learnt, *_late_or_early(reference, known, driven)]
-    if driven.tally.clock_jumps:
-        found.append("the ticks' clock was set back, so poses of one time cannot be compared")
-        return Reckoning(run, start, driven, shown, None, tuple(found))
-    if last is None:
-        found.append("reference and ticks have no time in common; are both clocks the same?")
-        return Reckoning(run, start, driven, shown, None, tuple(found))
-    end = _end_error(reference, start.shown, shown, int(first), int(last))
-    return Reckoning(run, start, driven, shown, end, tuple(found))
+    reference, remarks, end = run.reference, [*learnt], None
+    if reference is not None:
+        known = np.flatnonzero(reference.has_position | reference.has_yaw)
+        if known.size:
+            remarks += _late_or_early(reference, known, driven)
+            last = _last_row(reference, known, driven)
+        if known.size == 0:
+            remarks.append("the reference measured nothing")
+        elif driven.tally.clock_jumps:
+            remarks.append("the ticks' clock was set back, so poses of one time cannot be compared")
+        elif last is None:
+            remarks.append("reference and ticks have no time in common; are both clocks the same?")
+        else:
+            end = _end_error(reference, start.shown, shown, int(known[0]), last)
+    return Reckoning(run, start, driven, shown, end, tuple(remarks))
 
 
 def _last_row(reference: Reference, known: Any, driven: Trajectory) -> int | None:
@@ -203,9 +200,8 @@ def _end_error(
     )
 
 
-def _pose_at(driven: Trajectory | ShownPath, time: float) -> Pose:
-    parts = (driven.x, driven.y, driven.yaw)
-    return Pose(*(float(np.interp(time, driven.time, part)) for part in parts))
+def _pose_at(path: Trajectory | ShownPath, time: float) -> Pose:
+    return Pose(*(float(np.interp(time, path.time, part)) for part in (path.x, path.y, path.yaw)))
 
 
 def _sigmas(error: Floats, covariance: Floats) -> float:
@@ -237,7 +233,6 @@ def _late_or_early(reference: Reference, known: Any, driven: Trajectory) -> Iter
 
 
 def _rows_told(tally: dict[str, int]) -> str:
-    told = [f"{tally['messages']}, {tally['accepted']} used"]
     events = {
         "duplicates": "with the stamp of the one before",
         "out_of_order": "late",
@@ -249,8 +244,8 @@ def _rows_told(tally: dict[str, int]) -> str:
         "resets": "resets",
         "jumps": "jumps",
     }
-    told += [f"{tally[name]} {words}" for name, words in events.items() if tally[name]]
-    return ", ".join(told)
+    told = [f"{tally[name]} {words}" for name, words in events.items() if tally[name]]
+    return ", ".join([str(tally["messages"]), f"{tally['accepted']} used", *told])
 
 
 def _errors_told(end: EndError) -> Iterator[str]:
@@ -273,21 +268,42 @@ def _told(pose: Pose) -> str:
     return ", ".join(parts)
 
 
-def _pose_json(pose: Pose) -> dict[str, float]:
-    return {"x_m": pose.x, "y_m": pose.y, "yaw_rad": pose.yaw}
+_POSE = "x_m:x y_m:y yaw_rad:yaw"
+_SIGMAS = ("sigma_along_m", "sigma_across_m", "sigma_yaw_rad")
 
 
 def _end_json(end: EndError | None) -> dict[str, Any]:
     if end is None:
-        return {"reference_last": None, "end_error_m": None, "end_error_rad": None}
+        return dict.fromkeys(("reference_last", "end_error_m", "end_error_rad"))
     return {
-        "reference_last": {"t_s": end.time, **_pose_json(end.measured)},
-        "end_error_m": end.position,
-        "end_error_rad": end.heading,
-        "end_error_position_sigmas": end.position_sigmas,
-        "end_error_heading_sigmas": end.heading_sigmas,
+        "reference_last": {"t_s": end.time, **picked(end.measured, _POSE)},
+        **picked(end, "end_error_m:position end_error_rad:heading"),
+        **picked(end, "end_error_position_sigmas:position_sigmas"),
+        **picked(end, "end_error_heading_sigmas:heading_sigmas"),
     }
 
 
-def _root(variance: float) -> float:
-    return math.sqrt(max(variance, 0.0))
+_POINTS = 2000  # of the path, that are drawn
+
+
+def document_of(found: Reckoning, robot: Path) -> Document:
+    """Everything that is told; `robot`: its file."""
+    title = f"{found.run.name}: wheel odometry"
+    table = Table(f"{title} of {robot}", (), list(found.rows()))
+    return Document(title=title, words=[table], draw=lambda: [_path(found)])
+
+
+def _path(found: Reckoning) -> Shown:
+    driven, reference = found.driven, found.run.reference
+    some = np.concatenate([[0], spread_along_path(driven.x, driven.y, _POINTS)])
+    drawing = PathDrawing(
+        driven.x[some],
+        driven.y[some],
+        driven.covariance.matrix()[some][:, :2, :2],
+        *((None, None) if reference is None else (reference.x, reference.y)),
+    )
+    see = (
+        "Ellipses hold the robot 95 times in 100, if the model is right: what was measured should "
+        "lie in them."
+    )
+    return Shown("path", "The path, and how sure it is", see, {"": path_figure(drawing)})

@@ -1,24 +1,28 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Reports and figures to files: pages always, pictures where a browser is there to draw them."""
+"""Reports and figures to files: pages always, pictures where a browser is there to draw them.
+
+Where there is none, matplotlib draws lines, marks and bars of a figure; heat maps it leaves out.
+"""
 
 from __future__ import annotations
 
 import logging
+import re
 import shutil
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from importlib.util import find_spec
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import Any
+
+import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.replacing import replacing
+from werrimbi_odom.files.text_files import replacing
 from werrimbi_odom.report.document import Document
 from werrimbi_odom.report.page import drawing_program, write_page
-from werrimbi_odom.report.style import KEPT_HERE
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
+from werrimbi_odom.report.style import KEPT_HERE, Figure
 
 PAGES, PICTURES = (".html", ".htm"), (".pdf", ".png")
 """How reports end."""
@@ -31,7 +35,7 @@ def find_browser() -> str | None:
     return next((path for name in BROWSERS if (path := shutil.which(name))), None)
 
 
-def save_page(figure: go.Figure, path: Path) -> None:
+def save_page(figure: Figure, path: Path) -> None:
     """One self-contained interactive page; opens without a network."""
     path.parent.mkdir(parents=True, exist_ok=True)
     page = figure.to_html(include_plotlyjs=False, full_html=True, config=dict(KEPT_HERE))
@@ -40,28 +44,31 @@ def save_page(figure: go.Figure, path: Path) -> None:
         file.write(page.replace("<head>", f"<head><script>{program}</script>", 1))
 
 
-def save_png(figure: go.Figure, path: Path, *, scale: float = 1.5) -> bool:
+def save_png(figure: Figure, path: Path, *, scale: float = 1.5) -> bool:
     """A PNG; False, and nothing written, where no browser is installed (kaleido draws with one)."""
-    browser = find_browser()
-    if browser is None:
+    if find_browser() is None:
         return False
-    import kaleido
-
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(path.stem + ".part.png")
+    _draw([(figure, temporary)], {"scale": scale})
+    temporary.replace(path)
+    return True
+
+
+def _draw(pictures: Iterable[tuple[Figure, Path]], *options: Mapping[str, object]) -> None:
+    """By one browser, each with its own options."""
+    import kaleido
+
+    drawn = [
+        {"fig": figure, "path": path, "opts": {"format": path.suffix[1:].lower(), **how}}
+        for (figure, path), how in zip(pictures, options, strict=True)
+    ]
     # Its browser's first words may be cut short; it logs that with a traceback and goes on well.
     logging.disable(logging.CRITICAL)
     try:
-        kaleido.write_fig_sync(
-            figure,
-            path=temporary,
-            opts={"format": "png", "scale": scale},
-            kopts={"path": browser},
-        )
+        kaleido.write_fig_from_object_sync(drawn, kopts={"path": find_browser()})
     finally:
         logging.disable(logging.NOTSET)
-    temporary.replace(path)
-    return True
 
 
 def refuse_report(path: Path) -> None:
@@ -103,15 +110,12 @@ def save_report(document: Document, path: Path) -> list[Path]:
         for number, shown in enumerate(main)
     ]
     save_pictures(
-        [
-            (next(iter(shown.figures.values())), file)
-            for shown, file in zip(main, files, strict=True)
-        ]
+        [(next(iter(each.figures.values())), file) for each, file in zip(main, files, strict=True)]
     )
     return files
 
 
-def save_pictures(pictures: Sequence[tuple[go.Figure, Path]], *, scale: float = 2.0) -> None:
+def save_pictures(pictures: Sequence[tuple[Figure, Path]], *, scale: float = 2.0) -> None:
     """Figures as they are on white paper, drawn by one browser; .pdf is made of lines, not dots.
 
     Raises
@@ -119,32 +123,14 @@ def save_pictures(pictures: Sequence[tuple[go.Figure, Path]], *, scale: float = 
     InputError
         When a file cannot be written.
     """
-    import kaleido
-
     with tempfile.TemporaryDirectory(prefix="werrimbi-") as folder:
         drawn = [
             Path(folder) / f"{number}{file.suffix}" for number, (_, file) in enumerate(pictures)
         ]
-        logging.disable(logging.CRITICAL)
-        try:
-            kaleido.write_fig_from_object_sync(
-                [
-                    {
-                        "fig": figure,
-                        "path": part,
-                        "opts": {
-                            "format": part.suffix[1:].lower(),
-                            "scale": scale,
-                            "width": 1000,
-                            "height": int(figure.layout.height or 600),
-                        },
-                    }
-                    for (figure, _), part in zip(pictures, drawn, strict=True)
-                ],
-                kopts={"path": find_browser()},
-            )
-        finally:
-            logging.disable(logging.NOTSET)
+        figures = [figure for figure, _ in pictures]
+        size = {"scale": scale, "width": 1000}
+        sizes = [{**size, "height": int(each.layout.height or 600)} for each in figures]
+        _draw(zip(figures, drawn, strict=True), *sizes)
         for (_, file), part in zip(pictures, drawn, strict=True):
             try:
                 beside = file.with_name(f".{file.name}.part")
@@ -152,3 +138,88 @@ def save_pictures(pictures: Sequence[tuple[go.Figure, Path]], *, scale: float = 
                 beside.replace(file)
             except OSError as error:
                 raise InputError(f"{file} cannot be written: {error.strerror}") from error
+
+
+_DASHES = {"dash": "--", "dot": ":", "dashdot": "-."}
+_MARKS = {"circle": "o", "square": "s", "x": "x", "diamond": "D"}
+_INCH = 100.0
+"""Pixels of plotly's sizes."""
+
+
+def save_simple_png(figure: Figure, path: Path) -> bool:
+    """A PNG; False, and nothing written, where matplotlib is not installed."""
+    if find_spec("matplotlib") is None:
+        return False
+    from matplotlib.figure import Figure as Canvas
+
+    layout = figure.layout
+    size = (float(layout.width or 1000) / _INCH, float(layout.height or 600) / _INCH)
+    canvas = Canvas(figsize=size, layout="constrained")
+    axes = canvas.add_subplot()
+    bars = [trace for trace in figure.data if trace.type == "bar"]
+    for number, trace in enumerate(bars):
+        _bars(axes, trace, number, len(bars))
+    for trace in figure.data:
+        if trace.type == "scatter":
+            _scatter(axes, trace)
+    for shape in layout.shapes:
+        if shape.type == "line" and shape.y0 == shape.y1:  # plotly's add_hline
+            axes.axhline(shape.y0, **_line(shape.line))
+    axes.set_xlabel(_said(layout.xaxis.title.text))
+    axes.set_ylabel(_said(layout.yaxis.title.text))
+    axes.set_title(_said(layout.title.text), loc="left")
+    if layout.yaxis.range:
+        axes.set_ylim(layout.yaxis.range)
+    if layout.yaxis.scaleanchor:
+        axes.set_aspect("equal", adjustable="datalim")
+    for side in ("top", "right"):
+        axes.spines[side].set_visible(False)
+    canvas.legend(loc="outside lower left", ncols=3, frameon=False)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    canvas.savefig(path, dpi=150)
+    return True
+
+
+def _bars(axes: Any, trace: Any, number: int, count: int) -> None:
+    """One of `count` bars at each name."""
+    width = 0.65 / count
+    places = np.arange(len(trace.x)) + (number - 0.5 * (count - 1)) * width
+    drawn = axes.bar(places, trace.y, width, color=trace.marker.color, label=trace.name)
+    if trace.text is not None:
+        axes.bar_label(drawn, trace.text, label_type="center", color=trace.textfont.color)
+    axes.set_xticks(np.arange(len(trace.x)), [_said(name) for name in trace.x])
+
+
+def _scatter(axes: Any, trace: Any) -> None:
+    """A line, an area or marks; in the legend unless plotly leaves it out."""
+    label = trace.name if trace.showlegend is not False else None
+    x, y = (
+        np.array([np.nan if value is None else value for value in part], dtype=np.float64)
+        for part in (trace.x, trace.y)
+    )
+    if trace.fill == "toself":
+        axes.fill(x, y, color=trace.line.color, alpha=0.16, label=label, linewidth=0)
+        axes.plot(x, y, **_line(trace.line))
+        return
+    look: dict[str, Any] = {"alpha": trace.opacity, "label": label}
+    if "lines" in (trace.mode or "lines"):
+        look |= _line(trace.line)
+    else:
+        look |= {"linestyle": "none", "color": trace.marker.color}
+    if "markers" in (trace.mode or ""):
+        look |= {"marker": _MARKS.get(trace.marker.symbol, "o"), "color": trace.marker.color}
+    axes.plot(x, y, **look)
+
+
+def _line(line: Any) -> dict[str, Any]:
+    return {
+        "color": line.color,
+        "linewidth": 0.7 * (line.width or 2.0),
+        "linestyle": _DASHES.get(line.dash, "-"),
+    }
+
+
+def _said(text: str | None) -> str:
+    """Text without plotly's marks."""
+    plain = re.sub(r"<[^>]*>", "", (text or "").replace("<br>", "\n"))
+    return plain.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&")

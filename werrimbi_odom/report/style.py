@@ -8,13 +8,15 @@ Fewer points are drawn, never fewer counted: what is left out is not seen at any
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
-    import plotly.graph_objects as go
+    from plotly.graph_objects import Figure as Figure
+else:  # plotly is imported when something is drawn: a robot may not have it
+    Figure = Any
 
 # Okabe and Ito's palette.
 BLUE, ORANGE, GREEN, GREY = "#0072B2", "#D55E00", "#009E73", "#6B6B6B"
@@ -47,7 +49,23 @@ RISING = (
 is told apart with any kind of colour blindness. Pages turn it round in the dark."""
 
 
-def coloured(figure: go.Figure, most: float, title: str, **bar: object) -> go.Figure:
+def blank() -> Figure:
+    """A figure with nothing on it yet."""
+    from plotly.graph_objects import Figure as Blank
+
+    return Blank()
+
+
+def from_above(
+    figure: Figure, height: int, x: str = "x [m]", y: str = "y [m]", **axes: object
+) -> Figure:
+    """A figure of the floor, for a page: equal scales on both axes."""
+    figure.update_xaxes(title=x, **axes)
+    figure.update_yaxes(title=y, scaleanchor="x", scaleratio=1, **axes)
+    return plain(figure, height=height)
+
+
+def coloured(figure: Figure, most: float, title: str, **bar: object) -> Figure:
     """Colours from nothing to most, with a bar beside the figure that says what they mean."""
     bar = {"title": {"text": title}, "thickness": 14, **bar}
     scale = [list(stop) for stop in RISING]
@@ -61,7 +79,7 @@ def paled(colour: str, share: float) -> str:
     return f"{colour}{round(255 * share):02X}"
 
 
-def styled(figure: go.Figure, title: str, subtitle: str, *, width: int, height: int) -> go.Figure:
+def styled(figure: Figure, title: str, subtitle: str, *, width: int, height: int) -> Figure:
     """The figure with heading, legend and size; equal scales on both axes."""
     heading = f"<b>{title}</b>"
     if subtitle:
@@ -79,7 +97,7 @@ def styled(figure: go.Figure, title: str, subtitle: str, *, width: int, height: 
     return figure
 
 
-def plain(figure: go.Figure, *, height: int, legend: bool = True) -> go.Figure:
+def plain(figure: Figure, *, height: int, legend: bool = True) -> Figure:
     """A figure for a page: no heading (the page has it), as wide as its place, either theme."""
     figure.update_layout(
         template="none",

@@ -28,8 +28,8 @@ from std_srvs.srv import Trigger
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.parameters import Value
-from werrimbi_odom.files.replacing import place_of, replacing
 from werrimbi_odom.files.robot_file import read_robot_file
+from werrimbi_odom.files.text_files import place_of, replacing
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.ros import inputs
 from werrimbi_odom.ros.diagnostics import diagnostic, tell

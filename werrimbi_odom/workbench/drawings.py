@@ -12,7 +12,7 @@ import json
 import math
 import re
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,7 +21,7 @@ from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.leg_errors import CHI2_95
 from werrimbi_odom.model.pose import Floats
-from werrimbi_odom.report.adding.figures import ErrorOfModel, error_falling_figure
+from werrimbi_odom.report.adding.document import ErrorOfModel, error_falling_figure
 from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.report.style import (
     BLUE,
@@ -31,15 +31,14 @@ from werrimbi_odom.report.style import (
     KEPT_HERE,
     MARKS,
     ORANGE,
+    Figure,
     along_path,
+    blank,
     escaped,
     plain,
     small,
 )
 from werrimbi_odom.workbench.steps import Step
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
 
 BUTTONS = ["select2d", "lasso2d", "autoScale2d", "toImage"]
 """Of plotly's tool bar, that nobody needs here."""
@@ -78,7 +77,7 @@ def classes_of(comparison: Comparison) -> NDArray[np.intp]:
     return np.asarray(np.where(comparison.legs.outlier, 3, grade))
 
 
-def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None) -> go.Figure:
+def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None) -> Figure:
     """The legs where they were driven, told apart by how far they err from what was promised.
 
     Where `which` is given, those stand out and the rest is faint. Colour, width and dash tell the
@@ -115,11 +114,9 @@ def floor_figure(comparison: Comparison, which: NDArray[np.bool_] | None = None)
     return figure
 
 
-def empty_floor() -> go.Figure:
+def empty_floor() -> Figure:
     """Nothing on it yet: seen from above, equal scales, to be moved about."""
-    import plotly.graph_objects as go
-
-    figure = go.Figure()
+    figure = blank()
     figure.update_xaxes(title="x [m]")
     figure.update_yaxes(title="y [m]", scaleanchor="x", scaleratio=1)
     plain(figure, height=480).update_xaxes(zeroline=False).update_yaxes(zeroline=False)
@@ -193,7 +190,7 @@ def _joined(
     )
 
 
-def gain_figure(steps: Sequence[Step]) -> go.Figure:
+def gain_figure(steps: Sequence[Step]) -> Figure:
     """Held-out and fitted drives apart, and what noise alone would leave of the held-out ones."""
     added = steps[-1].added
     explained = added is not None and added.explained
@@ -261,7 +258,7 @@ def _round(length: float) -> float:
     return next(step * ten for step in (5.0, 2.0, 1.0) if step * ten <= length * (1.0 + 1e-9))
 
 
-def shown(figure: go.Figure | str, dark: bool) -> dict[str, Any]:
+def shown(figure: Figure | str, dark: bool) -> dict[str, Any]:
     """A figure (or its JSON) as the page draws it; in the dark every colour has its twin."""
     words = figure if isinstance(figure, str) else str(figure.to_json())
     if dark:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Long work in a process of its own: told how far it is, stopped when nobody wants it any more.
+"""What the page asks of a process of its own: told how far it is, stopped when nobody wants it.
 
 Few imports: the first process is begun before anything else is.
 """
@@ -18,11 +18,11 @@ from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.workbench.tasks import Task
 
 if TYPE_CHECKING:
     from werrimbi_odom.effects.collection import Collection
     from werrimbi_odom.files.recordings import Recordings
+    from werrimbi_odom.model.robot import Robot
 
 
 def begin(asked: Connection) -> None:
@@ -145,3 +145,26 @@ class Job:
             if what == "refused":
                 raise InputError(value)
             self.share, self.words = value, words
+
+
+@dataclass(frozen=True)
+class Diagnose:
+    """Find out what a robot's model is missing."""
+
+    robot: Robot
+
+
+@dataclass(frozen=True)
+class Add:
+    """Fit more effects together, and compare."""
+
+    effects: tuple[str, ...]
+    robot: Robot
+
+
+@dataclass(frozen=True)
+class Open:
+    """Cut the drives into legs, and compare the robot as given."""
+
+
+Task = Diagnose | Add | Open

@@ -12,16 +12,13 @@ from nicegui import Client, app, ui
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.workbench.drawings import empty_floor
-from werrimbi_odom.workbench.figure import ask_for_drawing
-from werrimbi_odom.workbench.html import box, button, listen, text
-from werrimbi_odom.workbench.opening import Opening
-from werrimbi_odom.workbench.tab import Shared, Tab, new_tab
+from werrimbi_odom.workbench.html import ask_for_drawing, box, button, listen, text
+from werrimbi_odom.workbench.tab import Opening, Shared, Tab, new_tab
 from werrimbi_odom.workbench.views.add import add_view
 from werrimbi_odom.workbench.views.compare import compare_view
 from werrimbi_odom.workbench.views.diagnose import diagnose_view
-from werrimbi_odom.workbench.views.opening import failed_view, opening_view
 from werrimbi_odom.workbench.views.save import save_view
-from werrimbi_odom.workbench.views.strip import strip, under_way
+from werrimbi_odom.workbench.views.strip import failed_view, opening_view, strip, under_way
 
 STYLE = Path(__file__).with_name("page.css")
 VIEW = {

@@ -13,12 +13,11 @@ from werrimbi_odom.inference.diagnosis.response import before_after
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.progress import Show
-from werrimbi_odom.report.diagnosis.figures import set_up_figure
-from werrimbi_odom.report.diagnosis.manoeuvre_figure import ideal_of, manoeuvre_figure
+from werrimbi_odom.report.diagnosis.figures import ideal_of, manoeuvre_figure, set_up_figure
 from werrimbi_odom.report.over_variable import before_after_figure
+from werrimbi_odom.workbench.job import Add, Diagnose
 from werrimbi_odom.workbench.opened import Opened, split
 from werrimbi_odom.workbench.steps import Diagnosed, Step
-from werrimbi_odom.workbench.tasks import Add, Diagnose
 
 
 def diagnosed(task: Diagnose, given: Recordings, show: Show) -> Diagnosed:

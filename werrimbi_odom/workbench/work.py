@@ -23,8 +23,8 @@ from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.inference.comparison.reference_noise import Measure
 from werrimbi_odom.model.effect import Effect
 from werrimbi_odom.progress import Show
+from werrimbi_odom.workbench.job import Diagnose, Open, Task
 from werrimbi_odom.workbench.opened import Opened, opened
-from werrimbi_odom.workbench.tasks import Diagnose, Open, Task
 
 
 def _read_only(values: dict[str, Any]) -> Mapping[str, Any]:

@@ -12,7 +12,7 @@ from werrimbi_odom.inference.drafting.in_a_line import symbols_of
 from werrimbi_odom.report.adding.document import figures_of
 from werrimbi_odom.report.adding.words import json_of, words_of
 from werrimbi_odom.report.document import Document, Paragraph, Shown
-from werrimbi_odom.report.numbers import error_words
+from werrimbi_odom.report.numbers import error_words, picked
 from werrimbi_odom.report.page import as_html
 
 
@@ -83,10 +83,7 @@ def draft_json(draft: Draft, tried: Added) -> dict[str, Any]:
         **json_of(tried),
         "verdict": draft.diagnosis.verdict,
         "draft": {
-            "channel": claim.channel,
-            "per": claim.amount.per,
-            "variable": claim.variable,
-            "p_value": claim.p_value,
+            **picked(claim, "channel per:amount.per variable p_value"),
             "form": draft.form,
             "law": draft.law or None,
             "of_two": _json_of_two(draft),
@@ -105,8 +102,7 @@ def _json_of_two(draft: Draft) -> dict[str, Any] | None:
         return None
     one, sides = two.one, two.held_out
     return {
-        "variables": list(two.variables),
-        "terms_tried": two.terms_tried,
+        **picked(two, "variables terms_tried"),
         "one": one and {"effect": one.name, "variable": one.claim.variable, "form": one.form},
         "held_out_with_one": sides and sides.after,
         "held_out_with_two": sides and sides.before,

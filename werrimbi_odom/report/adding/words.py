@@ -215,11 +215,8 @@ def json_of(added: Added) -> dict[str, Any]:
         "effects": [effect.name for effect in added.effects],
         "parameters": {
             name: {
-                **picked(item, "value std"),
-                **picked(item.declared, "unit null"),
-                "remark": item.remark,
-                "of_runs": list(item.of_runs),
-                "says": item.declared.says,
+                **picked(item, "value std remark of_runs"),
+                **picked(item.declared, "unit null says"),
             }
             for name, item in added.parameters.items()
         },
@@ -237,46 +234,29 @@ def json_of(added: Added) -> dict[str, Any]:
             "written": added.explained,
             **{
                 name: {
-                    "value": item.value,
+                    **picked(item, "value determined"),
                     "std": item.std if added.explained else None,
-                    "determined": item.determined,
                 }
                 for name, item in added.noises.items()
             },
         },
-        "put_right_with_it": list(added.also),
-        "per_run": list(added.per_run),
-        "fitted_on_all": added.written_from_all,
-        "remaining": [
-            {"channel": cell.channel, "variable": cell.name, "p_value": cell.p_value}
-            for cell in added.remaining
-        ],
+        **picked(added, "put_right_with_it:also per_run fitted_on_all:written_from_all"),
+        "remaining": [picked(cell, "channel variable:name p_value") for cell in added.remaining],
         "p_value": max((p for p in added.chances.values() if p is not None), default=None),
-        "p_values": dict(added.chances),
-        "objection": added.objection,
-        "objections": dict(added.objections),
-        "covariance": added.covariance,
-        "explains": added.verdict.good,
+        **picked(added, "p_values:chances objection objections covariance explains:verdict.good"),
         "left_out": left_out_json(added.left_out),
         "events": events_json(added.happened, added.robot.track),
     }
 
 
 def _side(added: Added, side: Side) -> dict[str, Any]:
-    after = side.figures("after")
+    before, after = side.figures("before"), side.figures("after")
     return {
-        "before": side.figures("before").rmse_position_m,
-        "after": after.rmse_position_m,
-        "rmse_yaw_rad": {
-            "before": side.figures("before").rmse_yaw_rad,
-            "after": after.rmse_yaw_rad,
-        },
+        **picked(before, "before:rmse_position_m median_before:median_position_m"),
+        **picked(after, "after:rmse_position_m median_after:median_position_m"),
+        "rmse_yaw_rad": {"before": before.rmse_yaw_rad, "after": after.rmse_yaw_rad},
         "calibrated": side.figures("calibrated").rmse_position_m,
         "noise_alone": added.noise_alone(side),
-        "median_before": side.figures("before").median_position_m,
-        "median_after": after.median_position_m,
-        "nees": after.nees,
-        "coverage_95": after.coverage_95,
-        "legs": after.count,
+        **picked(after, "nees coverage_95 legs:count"),
         "outliers": int(side.after.outlier.sum()),
     }

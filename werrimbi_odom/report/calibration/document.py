@@ -5,13 +5,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import TYPE_CHECKING
+from dataclasses import dataclass
 
+import numpy as np
+
+from werrimbi_odom.report.adding.document import clouds_of_legs
 from werrimbi_odom.report.document import Document, Part, Shown, Table
 from werrimbi_odom.report.page import table_html
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
+from werrimbi_odom.report.path_figure import Floats, ellipse
+from werrimbi_odom.report.style import BLUE, GREY, ORANGE, Figure, blank, from_above, plain
 
 
 def calibration_document(
@@ -19,7 +21,7 @@ def calibration_document(
     words: Sequence[Part],
     heading: str,
     see: str,
-    figure: Callable[[], go.Figure],
+    figure: Callable[[], Figure],
     changes: Mapping[str, tuple[float, float]],
 ) -> Document:
     """A document with one figure.
@@ -40,3 +42,168 @@ def calibration_document(
         return [Shown("figure", heading, see, {"": figure()}), *([written] if rows else [])]
 
     return Document(title=title, words=words, draw=draw)
+
+
+_MILLI = 1e3
+
+
+@dataclass(frozen=True, slots=True)
+class OffsetCloud:
+    """Offsets of one set of squares [m], shape (n, 2) and (m, 2), and what to call them."""
+
+    name: str
+    cw: Floats
+    ccw: Floats
+
+
+def umbmark_figure(before: OffsetCloud, after: OffsetCloud | None) -> Figure:
+    """Offsets of clockwise and anticlockwise squares with their centres of gravity (figure 3).
+
+    Circles of radius E_max,syst go through the further centre of each set. Equal scales.
+    """
+    figure = blank()
+    clouds = [(before, True)] + ([(after, False)] if after else [])
+    for cloud, filled in clouds:
+        _circle(figure, cloud, "dash" if filled else "dot")
+    for cloud, filled in clouds:
+        for sense, offsets, colour, symbol in (
+            ("cw", cloud.cw, BLUE, "square"),
+            ("ccw", cloud.ccw, ORANGE, "circle"),
+        ):
+            _offsets(figure, f"{sense}, {cloud.name}", offsets, colour, symbol, filled)
+    figure.add_scatter(
+        x=[None],
+        y=[None],
+        mode="markers",
+        name="centres of gravity",
+        marker={"symbol": "x", "size": 13, "color": GREY},
+    )
+    x, y = "x, along the first leg [mm]", "y, to its left [mm]"
+    return from_above(figure, 760, x, y, zeroline=True)
+
+
+def _offsets(
+    figure: Figure, name: str, offsets: Floats, colour: str, symbol: str, filled: bool
+) -> None:
+    x, y = _MILLI * offsets.T
+    figure.add_scatter(
+        x=x,
+        y=y,
+        mode="markers",
+        name=name,
+        legendgroup=name,
+        marker={
+            "symbol": symbol if filled else f"{symbol}-open",
+            "size": 10,
+            "color": colour,
+            "opacity": 0.55 if filled else 1.0,
+            "line": {"width": 0.0 if filled else 1.8, "color": colour},
+        },
+        hovertemplate=f"{name}<br>x %{{x:.1f}} mm<br>y %{{y:.1f}} mm<extra></extra>",
+    )
+    centre_x, centre_y = float(x.mean()), float(y.mean())
+    figure.add_scatter(
+        x=[centre_x],
+        y=[centre_y],
+        mode="markers",
+        name="centre of gravity",
+        legendgroup=name,
+        showlegend=False,
+        marker={"symbol": "x", "size": 14, "color": colour, "line": {"width": 1, "color": "white"}},
+        hovertemplate=(
+            f"{name}: centre of gravity<br>x %{{x:.1f}} mm<br>y %{{y:.1f}} mm<extra></extra>"
+        ),
+    )
+
+
+def _circle(figure: Figure, cloud: OffsetCloud, dash: str) -> None:
+    radius = _MILLI * max(
+        float(np.hypot(*offsets.mean(axis=0))) for offsets in (cloud.cw, cloud.ccw)
+    )
+    angle = np.linspace(0.0, 2.0 * np.pi, 145)
+    name = f"E<sub>max,syst</sub> {cloud.name}: {radius:.{1 if radius < 10.0 else 0}f} mm"
+    figure.add_scatter(
+        x=radius * np.cos(angle),
+        y=radius * np.sin(angle),
+        mode="lines",
+        name=name,
+        line={"color": GREY, "width": 1.3, "dash": dash},
+        hoverinfo="skip",
+    )
+
+
+def noise_figure(errors: Floats, data: Floats, model: Floats) -> Figure:
+    """Errors of repeated drives with the 95 % ellipses of data and model (figure 4 a to c).
+
+    Parameters
+    ----------
+    errors : ndarray, shape (n, 3)
+        x, y [m], yaw [rad].
+    data, model : ndarray, shape (3, 3)
+        Covariances; both ellipses are drawn about the mean of the runs.
+    """
+    from plotly.subplots import make_subplots
+
+    axes = (("x", "mm"), ("y", "mm"), ("yaw", "mrad"))
+    panels = ((0, 1), (0, 2), (1, 2))
+    figure = make_subplots(rows=1, cols=3, horizontal_spacing=0.075)
+    scaled = _MILLI * errors
+    for column, (across, up) in enumerate(panels, start=1):
+        first = column == 1
+        figure.add_scatter(
+            x=scaled[:, across],
+            y=scaled[:, up],
+            mode="markers",
+            name=f"{len(errors)} runs",
+            legendgroup="runs",
+            showlegend=first,
+            marker={"color": GREY, "size": 6, "opacity": 0.7},
+            row=1,
+            col=column,
+        )
+        for name, covariance, colour, dash in (
+            ("95 % ellipse of the runs", data, BLUE, "dash"),
+            ("95 % ellipse of the model", model, ORANGE, "solid"),
+        ):
+            x, y = ellipse(
+                float(scaled[:, across].mean()),
+                float(scaled[:, up].mean()),
+                _MILLI**2 * covariance[np.ix_((across, up), (across, up))],
+                points=145,
+            )
+            figure.add_scatter(
+                x=x,
+                y=y,
+                mode="lines",
+                name=name,
+                legendgroup=name,
+                showlegend=first,
+                line={"color": colour, "width": 2.2, "dash": dash},
+                hoverinfo="skip",
+                row=1,
+                col=column,
+            )
+        (name_x, unit_x), (name_y, unit_y) = axes[across], axes[up]
+        figure.update_xaxes(
+            title=f"e<sub>{name_x}</sub> [{unit_x}]", zeroline=True, row=1, col=column
+        )
+        figure.update_yaxes(
+            title=f"e<sub>{name_y}</sub> [{unit_y}]",
+            title_standoff=4,
+            zeroline=True,
+            row=1,
+            col=column,
+        )
+    return plain(figure, height=560)
+
+
+def leg_figure(before: Floats, after: Floats) -> Figure:
+    """Measured minus predicted position at the end of each leg, before and after.
+
+    Parameters
+    ----------
+    before, after : ndarray, shape (m, 2) or (m, 3)
+        Errors in the frame of the robot at the leg's start [m]; NaN where not measured.
+    """
+    looks = (("before", before, ORANGE, "circle-open"), ("after", after, BLUE, "circle"))
+    return clouds_of_legs(looks, digits=1, height=820)

@@ -1,14 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a calibration from any driving found, in plain words and a table."""
+"""What a calibration from any driving found, in plain words, a table and JSON."""
 
 from __future__ import annotations
+
+from typing import Any
 
 from werrimbi_odom.inference.calibration.any_driving import Calibration
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
 from werrimbi_odom.report.diagnosis.evidence_figures import ordered_cells
 from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
-from werrimbi_odom.report.numbers import listed, scaled_with_std
+from werrimbi_odom.report.numbers import listed, picked, scaled_with_std
 
 _MOST = 3  # dependences that are told
 _UNITS = {
@@ -36,8 +38,7 @@ def fit_in_words(result: Calibration) -> list[Part]:
             f"{_capital(listed(unwritten))} {stays} in the robot file: a noise that no wheel has "
             "is not written."
         )
-    left_out = sum(int(legs.sum()) for legs in result.excluded)
-    if left_out:
+    if left_out := _left_out(result):
         said.append(f"{left_out} legs on which the reference jumped were left out.")
     if not result.trusted:
         said.append(
@@ -98,3 +99,34 @@ def _values(result: Calibration) -> Table:
 
 def _capital(words: str) -> str:
     return words[0].upper() + words[1:]
+
+
+def fit_json(result: Calibration) -> dict[str, Any]:
+    """Values, how they hang together, and whether they may be believed."""
+    parameters: dict[str, Any] = {
+        name: picked(item, "value std determined") for name, item in result.multipliers.items()
+    }
+    for name, noise in result.noises.items():
+        sure = noise.determined and result.trusted
+        parameters[name] = {
+            **picked(noise, "value determined"),
+            "std": noise.std if sure else None,
+            "interval_95": noise.interval if sure else None,
+        }
+    return {
+        "parameters": parameters,
+        "correlation": {
+            "names": [number.name for number in result.fit.free],
+            "matrix": result.correlation,
+        },
+        **picked(result, "numbers:fit.numbers not_determined:fit.held or_as_well:twin trusted"),
+        "something_else_is_missing": [
+            *result.strange,
+            *(f"{item.channel} error goes with {item.name}" for item in result.misfit),
+        ],
+        "outliers": _left_out(result),
+    }
+
+
+def _left_out(result: Calibration) -> int:
+    return sum(int(legs.sum()) for legs in result.excluded)

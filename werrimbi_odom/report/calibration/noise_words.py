@@ -1,15 +1,18 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the drives out and back say about the wheels' noise, in plain words."""
+"""What the drives out and back say about the wheels' noise, in plain words and as JSON."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from werrimbi_odom.inference.calibration.out_and_back import NoiseEstimate, NoiseFit, pivot_scatter
 from werrimbi_odom.inference.rules import ADVISED_RUNS, SURE_WHEN_ASKED
 from werrimbi_odom.report.document import Part, Table, paragraphs
-from werrimbi_odom.report.numbers import scaled_with_std
+from werrimbi_odom.report.numbers import picked, scaled_with_std
 
 PIVOT_TURNS = 10.0
 
@@ -110,3 +113,25 @@ def _misfit(fit: NoiseFit) -> str:
 
 def _k(value: float) -> str:
     return f"{value:.2e}"
+
+
+def noise_json(fit: NoiseFit, distance: float, columns: Sequence[str]) -> dict[str, Any]:
+    """Everything that was found; `columns`: names of the errors at the end of a run."""
+    wheels = {"left_wheel_noise": fit.left, "right_wheel_noise": fit.right}
+    missing = fit.missing_reference
+    return {
+        "parameters": {
+            name: picked(each, "value std low_95:low high_95:high") for name, each in wheels.items()
+        },
+        "distance_m": distance,
+        **picked(fit, "runs wheels_told_apart:split_known difference_std correlation"),
+        "ellipse_matching": dict(zip(wheels, fit.by_moments, strict=True)),
+        "systematic": {
+            name: {"value": value, "std": std}
+            for name, value, std in zip(columns, fit.mean, fit.mean_std, strict=True)
+        },
+        **picked(fit, "systematic_p:mean_p misfit_p"),
+        "missing_reference": missing
+        and dict(zip(("sigma_xy_m", "sigma_yaw_rad"), missing, strict=True)),
+        "covariance": picked(fit, "runs:data model"),
+    }

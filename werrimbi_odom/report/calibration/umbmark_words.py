@@ -1,10 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What UMBmark found, in plain words for someone with a tape measure."""
+"""What UMBmark found, in plain words for someone with a tape measure, and as JSON."""
 
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
+from typing import Any
 
 from werrimbi_odom.inference.calibration.squares import (
     OTHER_VEHICLES,
@@ -18,7 +20,7 @@ from werrimbi_odom.inference.rules import ADVISED_SQUARES, SURE_WHEN_ASKED
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.report.document import Paragraph, Part, Table, paragraphs
-from werrimbi_odom.report.numbers import scaled_with_std
+from werrimbi_odom.report.numbers import picked, scaled_with_std
 
 
 def found_in_words(squares: Squares, result: Umbmark, old: Robot) -> list[Part]:
@@ -179,3 +181,42 @@ def _mm(length: float) -> str:
 
 def _mrad(angle: float) -> str:
     return f"{1e3 * angle:.2f} mrad"
+
+
+def umbmark_json(
+    squares: Squares, result: Umbmark, old: Robot, later: Squares | None, again: Squares | None
+) -> dict[str, Any]:
+    """Everything that was found; `later` and `again` as in `gained_in_words`."""
+
+    def centres(of: Squares) -> dict[str, Any]:
+        return {"cw": of.cw.mean(axis=0), "ccw": of.ccw.mean(axis=0)}
+
+    angles = "alpha_rad:alpha alpha_by_x_rad:alpha_by_x alpha_by_y_rad:alpha_by_y"
+    return {
+        "parameters": {name: asdict(each) for name, each in result.multipliers(old).items()},
+        "e_max_syst_m": {
+            "before": result.e_max,
+            "after": later and e_max_syst(later),
+            "same_runs_corrected": again and e_max_syst(again),
+        },
+        "e_max_of_scatter_m": {
+            "before": e_max_of_scatter(squares),
+            "after": later and e_max_of_scatter(later),
+        },
+        "centre_of_gravity": centres(squares),
+        "centre_of_gravity_after": later and centres(later),
+        "side_m": squares.side,
+        "runs": {"cw": len(squares.cw), "ccw": len(squares.ccw)},
+        "alpha_rad": asdict(result.alpha),
+        "beta_rad": asdict(result.beta),
+        "E_d": asdict(result.ratio),
+        "C_B": asdict(result.base),
+        "C_L": asdict(result.left),
+        "C_R": asdict(result.right),
+        "first_order": {
+            **picked(result.angles, angles),
+            **picked(result.angles, angles.replace("alpha", "beta")),
+            **picked(result.paper, "E_d:ratio C_B:base C_L:left C_R:right"),
+        },
+        "disagreement_p": result.disagreement_p,
+    }

@@ -34,7 +34,7 @@ def json_of(comparison: Comparison) -> dict[str, Any]:
         "leg_m": comparison.main.leg,
         "verdict": {
             **picked(verdict, "good enough mean_is_right gross covariance noise"),
-            "noise_factor": [verdict.factor.value, verdict.factor.low, verdict.factor.high],
+            "noise_factor": list(picked(verdict.factor, "value low high").values()),
             "systematic": [_systematic(part) for part in verdict.systematic],
             "depends_on": [picked(item, "channel variable p_value") for item in verdict.depends],
         },
@@ -54,13 +54,10 @@ def json_of(comparison: Comparison) -> dict[str, Any]:
 
 def legs_json(figures: LegFigures) -> dict[str, Any]:
     """Figures over some legs, with the names of the contract."""
-    item = figures.figures
     return {
-        "count": item.count,
-        "outliers": figures.outliers,
-        **picked(item, "rmse_position_m median_position_m"),
-        "rmse_all_position_m": figures.rmse_all_position_m,
-        **picked(item, "rmse_yaw_rad nees coverage_95"),
+        **picked(figures.figures, "count rmse_position_m median_position_m"),
+        **picked(figures.figures, "rmse_yaw_rad nees coverage_95"),
+        **picked(figures, "outliers rmse_all_position_m"),
         "nees_without_systematic": figures.scatter_nees,
         "noise_factor": list(figures.noise),
     }
@@ -68,8 +65,7 @@ def legs_json(figures: LegFigures) -> dict[str, Any]:
 
 def _run(item: RunFigures) -> dict[str, Any]:
     return {
-        "run": str(item.run.path),
-        **picked(item, "distance_m duration_s end_error_m end_error_rad rmse_path_m"),
+        **picked(item, "run:run.path distance_m duration_s end_error_m end_error_rad rmse_path_m"),
         "legs": legs_json(item.legs),
     }
 
@@ -86,16 +82,16 @@ def _systematic(part: Systematic) -> dict[str, Any]:
     return {**asdict(part), "finding": part.finding}
 
 
+_MEANS = ("mean_along_m", "mean_sideways_m", "mean_heading_rad")
+
+
 def _variable(item: ByVariable) -> dict[str, Any]:
     return {
         "p_values": dict(item.p_values),
         "bins": [
             {
-                "low": part.low,
-                "high": part.high,
-                "mean_along_m": part.mean[0],
-                "mean_sideways_m": part.mean[1],
-                "mean_heading_rad": part.mean[2],
+                **picked(part, "low high"),
+                **dict(zip(_MEANS, part.mean, strict=True)),
                 **asdict(part.figures),
             }
             for part in item.bins
@@ -104,13 +100,8 @@ def _variable(item: ByVariable) -> dict[str, Any]:
 
 
 def _cell(cell: Cell) -> dict[str, Any]:
-    return {
-        "x_m": cell.x,
-        "y_m": cell.y,
-        "side_m": cell.side,
-        **picked(cell, "p_value stands_out"),
-        **asdict(cell.figures),
-    }
+    names = "x_m:x y_m:y side_m:side p_value stands_out"
+    return {**picked(cell, names), **asdict(cell.figures)}
 
 
 def _outliers(comparison: Comparison) -> list[dict[str, Any]]:
@@ -118,7 +109,7 @@ def _outliers(comparison: Comparison) -> list[dict[str, Any]]:
     legs = comparison.legs
     return [
         {
-            "run": str(comparison.runs[legs.run[index]].run.path),
+            "run": comparison.runs[legs.run[index]].run.path,
             "t_start_s": float(legs.start_time[index]),
             "t_end_s": float(legs.end_time[index]),
         }
@@ -132,22 +123,11 @@ def _each_leg(comparison: Comparison) -> dict[str, Any]:
     errors = legs.errors
     sigmas = np.sqrt(np.maximum(np.diagonal(errors.covariance, axis1=1, axis2=2), 0.0))
     sigmas = np.where(np.isfinite(errors.error), sigmas, np.nan)
-    columns: dict[str, Any] = {
-        "run": legs.run,
-        "t_start_s": legs.start_time,
-        "t_end_s": legs.end_time,
-        "x_m": legs.x,
-        "y_m": legs.y,
-        "motion": errors.kind,
-        "outlier": legs.outlier,
-        "travel_m": errors.along,
-        "turn_rad": errors.turn,
-        "error_along_m": errors.error[:, 0],
-        "error_sideways_m": errors.error[:, 1],
-        "error_heading_rad": errors.error[:, 2],
-        "sigma_along_m": sigmas[:, 0],
-        "sigma_sideways_m": sigmas[:, 1],
-        "sigma_heading_rad": sigmas[:, 2],
+    channels = ("along_m", "sideways_m", "heading_rad")
+    return {
+        **picked(legs, "run t_start_s:start_time t_end_s:end_time x_m:x y_m:y"),
+        **picked(legs, "motion:errors.kind outlier travel_m:errors.along turn_rad:errors.turn"),
+        **{f"error_{name}": column for name, column in zip(channels, errors.error.T, strict=True)},
+        **{f"sigma_{name}": column for name, column in zip(channels, sigmas.T, strict=True)},
         **legs.variables,
     }
-    return {name: np.asarray(values).tolist() for name, values in columns.items()}

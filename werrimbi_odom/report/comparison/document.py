@@ -4,19 +4,18 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+import math
 
-from werrimbi_odom.inference.comparison.compare import Comparison
-from werrimbi_odom.inference.comparison.verdict import verdict_of
+from werrimbi_odom.inference.comparison.compare import KINDS, Comparison, LegFigures, OfLength
+from werrimbi_odom.inference.comparison.groups import ByVariable
+from werrimbi_odom.inference.comparison.verdict import Verdict, verdict_of
+from werrimbi_odom.inference.rules import SURE_OF_LEGS
 from werrimbi_odom.report.comparison.figures import legs_by_motion_figure, nees_figure
 from werrimbi_odom.report.comparison.measured_path_figure import path_figure
-from werrimbi_odom.report.comparison.tables import tables_of
 from werrimbi_odom.report.comparison.words import words_of
-from werrimbi_odom.report.document import Document, Shown
+from werrimbi_odom.report.document import Document, Part, Shown, Table, paragraphs
 from werrimbi_odom.report.over_variable import error_against_figure, variables_of
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
+from werrimbi_odom.report.style import Figure
 
 _RUNS = 40  # that can be chosen one by one: more would make the file too large to mail
 
@@ -70,7 +69,7 @@ def _figures(comparison: Comparison) -> list[Shown]:
     ]
 
 
-def _paths(comparison: Comparison) -> dict[str, go.Figure]:
+def _paths(comparison: Comparison) -> dict[str, Figure]:
     """All drives together, then each for itself."""
     found = {}
     count = len(comparison.runs)
@@ -82,3 +81,126 @@ def _paths(comparison: Comparison) -> dict[str, go.Figure]:
             comparison, index
         )
     return found
+
+
+_MOST = 3  # variables with a table of their own
+_NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
+_FIGURES = ("legs", "position", "heading", "NEES", "inside 95 %")
+
+
+def tables_of(comparison: Comparison, verdict: Verdict) -> tuple[Part, ...]:
+    """All tables, each with its heading."""
+    tables: list[Part] = [_motions(comparison.main), _lengths(comparison)]
+    if len(comparison.runs) > 1 or math.isfinite(comparison.runs[0].end_error_m):
+        tables.append(_runs(comparison))
+    said = list(dict.fromkeys(item.variable for item in verdict.depends))
+    by_name = {item.name: item for item in comparison.variables}
+    tables += [_variable(by_name[name]) for name in said[:_MOST]]
+    calm = [item.name.split(" [")[0] for item in comparison.variables if not _depends(item)]
+    if calm:
+        tables += paragraphs([f"The errors are not seen to go with: {', '.join(calm)}."])
+    return tuple(tables)
+
+
+def _depends(item: ByVariable) -> bool:
+    return any(p_value < SURE_OF_LEGS for p_value in item.p_values.values())
+
+
+def _motions(main: OfLength) -> Table:
+    rows = [
+        [_NAMES[kind], *_cells(main.by_motion[kind])]
+        for kind in KINDS
+        if main.by_motion[kind].figures.count
+    ]
+    rows.append(["all", *_cells(main.all)])
+    return Table(f"Errors of legs of {main.leg:g} m (rms)", ("by motion", *_FIGURES), rows)
+
+
+def _lengths(comparison: Comparison) -> Table:
+    rows = [[f"{item.leg:g} m", *_cells(item.all)] for item in comparison.lengths]
+    return Table("Errors by length of leg (rms)", ("leg", *_FIGURES), rows)
+
+
+def _cells(figures: LegFigures) -> list[str]:
+    item = figures.figures
+    return [
+        str(item.count),
+        _length(item.rmse_position_m),
+        _angle(item.rmse_yaw_rad),
+        _number(item.nees),
+        _percent(item.coverage_95),
+    ]
+
+
+def _runs(comparison: Comparison) -> Table:
+    rows = [
+        [
+            _short(item.run.name),
+            f"{item.distance_m:.1f} m",
+            f"{item.duration_s:.0f} s",
+            _length(item.end_error_m),
+            _angle(abs(item.end_error_rad)),
+            _length(item.legs.figures.rmse_position_m),
+            _number(item.legs.figures.nees),
+        ]
+        for item in comparison.runs
+    ]
+    return Table(
+        "Runs, dead reckoning begun at the first pose of the reference",
+        ("run", "driven", "time", "end error", "heading", "legs", "NEES"),
+        rows,
+    )
+
+
+def _short(name: str, most: int = 26) -> str:
+    return name if len(name) <= most else f"{name[: most - 3]}..."
+
+
+def _variable(item: ByVariable) -> Table:
+    name, _, unit = item.name.partition(" [")
+    unit = unit.rstrip("]")
+    with_it = [channel for channel, p in item.p_values.items() if p < SURE_OF_LEGS]
+    angles = item.name.startswith("heading")
+    rows = []
+    for part in item.bins:
+        low, high = part.low, part.high
+        if angles:
+            low, high = math.degrees(low), math.degrees(high)
+        rows.append(
+            [
+                f"{low:.3g} to {high:.3g}",
+                str(part.figures.count),
+                _length(part.mean[0], signed=True),
+                _length(part.mean[1], signed=True),
+                _angle(part.mean[2], signed=True),
+                _number(part.figures.nees),
+            ]
+        )
+    heads = ("degrees" if angles else unit or name, "legs", "along", "sideways", "heading", "NEES")
+    title = f"Mean errors by {name} ({', '.join(with_it)} {'go' if len(with_it) > 1 else 'goes'}"
+    return Table(f"{title} with it)", heads, rows)
+
+
+def _length(value: float, *, signed: bool = False) -> str:
+    if not math.isfinite(value):
+        return "-"
+    sign = "+" if signed else ""
+    if abs(value) >= 1.0:
+        return f"{value:{sign}.2f} m"
+    return f"{1e3 * value:{sign}.1f} mm"
+
+
+def _angle(value: float, *, signed: bool = False) -> str:
+    if not math.isfinite(value):
+        return "-"
+    return f"{math.degrees(value):{'+' if signed else ''}.2f}°"
+
+
+def _number(value: float) -> str:
+    if not math.isfinite(value):
+        return "-"
+    return f"{value:.2f}" if value < 100.0 else f"{value:.0f}" if value < 1e5 else f"{value:.0e}"
+
+
+def _percent(value: float) -> str:
+    return f"{100.0 * value:.0f} %" if math.isfinite(value) else "-"

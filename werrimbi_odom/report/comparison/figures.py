@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,12 +15,11 @@ from werrimbi_odom.report.style import (
     GREY,
     INK,
     ORANGE,
+    Figure,
+    blank,
     paled,
     plain,
 )
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
 
 NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
 CHANNELS = (("along", "mm", 1e3), ("sideways", "mm", 1e3), ("heading", "°", float(np.degrees(1.0))))
@@ -35,12 +33,11 @@ def measured_channels(comparison: Comparison) -> list[int]:
     ]
 
 
-def nees_figure(comparison: Comparison) -> go.Figure:
+def nees_figure(comparison: Comparison) -> Figure:
     """NEES by length of leg and type of motion, with the range that an honest one lies in."""
-    import plotly.graph_objects as go
     from scipy.stats import chi2
 
-    figure = go.Figure()
+    figure = blank()
     free = len(measured_channels(comparison))
     lengths = [f"{item.leg:g} m" for item in comparison.lengths]
     looks = {
@@ -117,7 +114,7 @@ def _bars(at: Sequence[float], low: Sequence[float], high: Sequence[float]) -> t
 _TWO_SIGMA = 1.959964
 
 
-def legs_by_motion_figure(comparison: Comparison) -> go.Figure:
+def legs_by_motion_figure(comparison: Comparison) -> Figure:
     """Errors of the legs by type of motion, beside what the covariance promised for them."""
     from plotly.subplots import make_subplots
 
@@ -187,7 +184,7 @@ def _first_kind(comparison: Comparison) -> str:
 
 
 def _promise(
-    figure: go.Figure, name: str, promised: float, unit: str, place: int, *, first: bool
+    figure: Figure, name: str, promised: float, unit: str, place: int, *, first: bool
 ) -> None:
     figure.add_bar(
         x=[name],

@@ -4,13 +4,12 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.dead_reckoning import covariance_along, middles
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.comparison.figures import CHANNELS
 from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.report.path_figure import add_mark, add_path, ellipse, spread_along_path
 from werrimbi_odom.report.style import (
@@ -21,23 +20,22 @@ from werrimbi_odom.report.style import (
     MOST,
     ORANGE,
     PAPER,
+    Figure,
     along_path,
+    blank,
     coloured,
     escaped,
+    from_above,
     paled,
-    plain,
     small,
     spread_and_extremes,
 )
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
 
 _FEW = 3  # runs, of which the dead reckoning is drawn too when all are shown at once
 _ELLIPSES = 12
 
 
-def path_figure(comparison: Comparison, run: int | None = None) -> go.Figure:
+def path_figure(comparison: Comparison, run: int | None = None) -> Figure:
     """Measured path with its legs coloured by position error; of one run the model's path too.
 
     Parameters
@@ -45,9 +43,7 @@ def path_figure(comparison: Comparison, run: int | None = None) -> go.Figure:
     run : int, optional
         Index of one run; None: all of them, and the model's paths only where they are few.
     """
-    import plotly.graph_objects as go
-
-    figure = go.Figure()
+    figure = blank()
     which = range(len(comparison.paths)) if run is None else (run,)
     single = len(which) == 1
     most = max(FEWEST, MOST // max(len(which), 1))
@@ -60,15 +56,11 @@ def path_figure(comparison: Comparison, run: int | None = None) -> go.Figure:
         _ellipses(figure, comparison, which[0])
     for index in which if len(which) <= _FEW else ():
         _ends(figure, comparison, index, first=index == which[0])
-    figure.update_xaxes(title="x [m]", zeroline=False)
-    figure.update_yaxes(title="y [m]", zeroline=False, scaleanchor="x", scaleratio=1)
-    plain(figure, height=680)
-    figure.update_layout(dragmode="pan")
-    return figure
+    return from_above(figure, 680, zeroline=False).update_layout(dragmode="pan")
 
 
 def _paths(
-    figure: go.Figure,
+    figure: Figure,
     comparison: Comparison,
     index: int,
     most: int,
@@ -107,7 +99,7 @@ def _paths(
     )
 
 
-def _ends(figure: go.Figure, comparison: Comparison, index: int, *, first: bool) -> None:
+def _ends(figure: Figure, comparison: Comparison, index: int, *, first: bool) -> None:
     path = comparison.paths[index]
     known = np.flatnonzero(np.isfinite(path.measured) & np.isfinite(path.predicted))
     if known.size == 0:
@@ -131,7 +123,7 @@ def leg_errors_to_colour(comparison: Comparison) -> tuple[Floats, str]:
     return np.degrees(np.abs(errors.error[:, 2])), "°"
 
 
-def _legs(figure: go.Figure, comparison: Comparison, run: int | None) -> None:
+def _legs(figure: Figure, comparison: Comparison, run: int | None) -> None:
     legs = comparison.legs
     size, unit = leg_errors_to_colour(comparison)
     kept = ~legs.outlier
@@ -176,22 +168,14 @@ def _told(comparison: Comparison, row: int) -> str:
     error = legs.errors.error[row]
     promised = np.sqrt(np.diagonal(legs.errors.covariance[row]))
     name = escaped(comparison.runs[int(legs.run[row])].run.name)
-    lines = [f"{name}, {leg_when(comparison, row)}"]
-    lines.append(str(legs.errors.kind[row]))
-    for word, value, sigma, scale, unit in zip(
-        ("along", "sideways", "heading"),
-        error,
-        promised,
-        (1e3, 1e3, np.degrees(1.0)),
-        ("mm", "mm", "°"),
-        strict=True,
-    ):
+    lines = [f"{name}, {leg_when(comparison, row)}", str(legs.errors.kind[row])]
+    for (word, unit, scale), value, sigma in zip(CHANNELS, error, promised, strict=True):
         if np.isfinite(value):
             lines.append(f"{word} {scale * value:+.2f} {unit} (promised ± {scale * sigma:.2f})")
     return "<br>".join(lines)
 
 
-def _ellipses(figure: go.Figure, comparison: Comparison, index: int) -> None:
+def _ellipses(figure: Figure, comparison: Comparison, index: int) -> None:
     """95 % ellipses of the dead reckoning, at equal distances along the model's path."""
     path = comparison.paths[index]
     if not np.isfinite(path.measured).any():
@@ -199,15 +183,14 @@ def _ellipses(figure: go.Figure, comparison: Comparison, index: int) -> None:
     places = path.predicted
     chosen = spread_along_path(places.real, places.imag, _ELLIPSES)
     covariance = covariance_along(comparison, index)[chosen]
-    x: list[Floats] = []
-    y: list[Floats] = []
-    for at, shape in zip(places[chosen], covariance, strict=True):
-        outline = ellipse(float(at.real), float(at.imag), shape, points=49)
-        x += [outline[0], np.array([np.nan])]
-        y += [outline[1], np.array([np.nan])]
+    outlines = [
+        np.append(ellipse(at.real, at.imag, shape, points=49), [[np.nan], [np.nan]], axis=1)
+        for at, shape in zip(places[chosen].tolist(), covariance, strict=True)
+    ]
+    x, y = np.concatenate(outlines, axis=1)
     figure.add_scatter(
-        x=small(np.concatenate(x)),
-        y=small(np.concatenate(y)),
+        x=small(x),
+        y=small(y),
         mode="lines",
         name="where the truth should be (95 % ellipse)",
         line={"color": ORANGE, "width": 1.5},

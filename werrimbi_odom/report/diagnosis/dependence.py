@@ -8,27 +8,29 @@ import math
 
 import numpy as np
 
-from werrimbi_odom.inference.diagnosis.evidence import Dependence, place_of
+from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence, place_of
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.style import escaped
 
-_VARIABLES = {
+VARIABLES = {
     "speed": "the robot's speed",
     "wheel_speed": "the speed of the wheel",
     "direction": "whether it drives forwards or backwards",
     "acceleration": "the acceleration",
     "yaw_rate": "the rate of turning",
     "yaw_rate_size": "the size of the rate of turning",
-    "time": "the time since the start of the drive",
-    "distance": "the distance driven since the start",
     "travel_since_reversal": "the travel since the last reversal",
-    "heading": "the direction in the room that the robot faces",
     "left_wheel_angle": "the angle of the left wheel (once a turn)",
     "right_wheel_angle": "the angle of the right wheel (once a turn)",
     "left_wheel_angle_twice": "the angle of the left wheel (twice a turn)",
     "right_wheel_angle_twice": "the angle of the right wheel (twice a turn)",
+    "heading": "the direction in the room that the robot faces",
     "position": "the place on the floor",
+    "time": "the time since the start of the drive",
+    "distance": "the distance driven since the start",
 }
+"""In words; in the order in which figures have them."""
 
 _SHORT = {
     CONSTANT: "always",
@@ -80,6 +82,29 @@ def short_words(cell: Dependence) -> str:
     return f"{name}, per {cell.amount.per}" if cell.variable.name == CONSTANT else name
 
 
+def label_of(name: str) -> str:
+    """A variable's name for a figure."""
+    return escaped(short_name(name))
+
+
+def error_of(amount: Amount) -> str:
+    """Which error, for a figure."""
+    wheel = f"error of the {amount.channel} wheel's travel"
+    named = {"along": "error along", "sideways": "sideways error", "heading": "heading error"}
+    return named.get(amount.channel, wheel)
+
+
+def unit_of(amount: Amount) -> tuple[str, float]:
+    """Unit in which an error for each unit of its amount is told, and the factor to it."""
+    degree = math.degrees(1.0)
+    if amount.channel == "heading":
+        return {
+            "turn": ("% of the turn", 100.0),
+            "duration": ("° per s", degree),
+        }.get(amount.per, ("° per m", degree))
+    return ("mm per radian turned", 1e3) if amount.per == "turn" else ("mm per m", 1e3)
+
+
 def variable_words(cell: Dependence) -> str:
     """What the error goes with."""
     if cell.variable.name == CONSTANT:
@@ -89,7 +114,7 @@ def variable_words(cell: Dependence) -> str:
             "turn": "the angle turned",
             "duration": "the time",
         }[cell.amount.per]
-    return _VARIABLES.get(cell.variable.name, f"the measured channel {cell.variable.name}")
+    return VARIABLES.get(cell.variable.name, f"the measured channel {cell.variable.name}")
 
 
 def amount_words(cell: Dependence) -> str:

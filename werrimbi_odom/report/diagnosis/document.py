@@ -14,18 +14,22 @@ from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.manoeuvres.drives import pace_of
 from werrimbi_odom.inference.manoeuvres.proposal import Manoeuvre
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.report.diagnosis.dependence_figure import dependence_figure
-from werrimbi_odom.report.diagnosis.events_figure import on_the_path, over_time
+from werrimbi_odom.report.diagnosis.dependence import label_of
 from werrimbi_odom.report.diagnosis.evidence_figures import (
+    dependence_figure,
     evidence_map_figure,
     ordered_cells,
-    variable_words,
 )
-from werrimbi_odom.report.diagnosis.figures import ranking_figure, set_up_figure
-from werrimbi_odom.report.diagnosis.manoeuvre_figure import ideal_of, manoeuvre_figure
+from werrimbi_odom.report.diagnosis.figures import (
+    ideal_of,
+    manoeuvre_figure,
+    ranking_figure,
+    set_up_figure,
+)
 from werrimbi_odom.report.diagnosis.tables import tables_of
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.document import Document, Shown
+from werrimbi_odom.report.events import on_the_path, over_time
 from werrimbi_odom.report.over_variable import before_after_figure
 from werrimbi_odom.report.sketches import effect_sketch
 
@@ -111,7 +115,7 @@ def _before_after(diagnosis: Diagnosis) -> list[Shown]:
     found = before_after(diagnosis)
     if found is None:
         return []
-    variable = variable_words(found.cell.variable.name)
+    variable = label_of(found.cell.variable.name)
     if found.effect is None:
         title = f"What the error does over {variable}"
         see = (
@@ -173,7 +177,7 @@ def _evidence(diagnosis: Diagnosis) -> list[Shown]:
 
 
 def _cell_name(cell: Dependence) -> str:
-    return f"{cell.channel} with {html.unescape(variable_words(cell.variable.name))}"
+    return f"{cell.channel} with {html.unescape(label_of(cell.variable.name))}"
 
 
 def _strongest(cells: list[Dependence]) -> str:

@@ -1,56 +1,38 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The evidence map as a heat map."""
+"""The evidence map, and the dependence behind a field: a curve, waves, or a map of the floor."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from werrimbi_odom.inference.diagnosis.diagnosis import VERY_SURE
-from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Amount, Dependence
-from werrimbi_odom.inference.diagnosis.variables import CONSTANT
-from werrimbi_odom.report.diagnosis.dependence import short_name
-from werrimbi_odom.report.style import coloured, escaped, plain
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
+from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
+from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
+from werrimbi_odom.report.diagnosis.dependence import VARIABLES, error_of, label_of, unit_of
+from werrimbi_odom.report.over_variable import labelled, over
+from werrimbi_odom.report.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    MARKS,
+    ORANGE,
+    Figure,
+    blank,
+    coloured,
+    escaped,
+    from_above,
+    plain,
+    small,
+)
 
 FAINTEST = 150.0
 """Fall of chi-squared that is given full colour at the least: noise alone stays pale."""
 
 _CHANNELS = {"left": "left wheel", "right": "right wheel"}
-
-
-def variable_words(name: str) -> str:
-    """A variable's name for a figure."""
-    return escaped(short_name(name))
-
-
-def amount_words(amount: Amount) -> str:
-    """An error for each unit of its amount."""
-    what = {
-        "left": "error of the left wheel's travel",
-        "right": "error of the right wheel's travel",
-        "along": "error along",
-        "sideways": "sideways error",
-        "heading": "heading error",
-    }[amount.channel]
-    return what
-
-
-def unit_of(amount: Amount) -> tuple[str, float]:
-    """Unit in which an error for each unit of its amount is told, and the factor to it."""
-    degree = math.degrees(1.0)
-    if amount.channel == "heading":
-        return {
-            "turn": ("% of the turn", 100.0),
-            "duration": ("° per s", degree),
-        }.get(amount.per, ("° per m", degree))
-    return ("mm per radian turned", 1e3) if amount.per == "turn" else ("mm per m", 1e3)
 
 
 def best_cells(cells: Sequence[Dependence]) -> dict[tuple[str, str], Dependence]:
@@ -74,43 +56,32 @@ def ordered_cells(cells: Sequence[Dependence]) -> list[Dependence]:
 
 def evidence_map_figure(
     cells: Sequence[Dependence], *, opens: str = "", height: int = 430
-) -> go.Figure:
+) -> Figure:
     """Error channel against measured variable: the darker, the more of the misfit goes with it.
 
     The custom data of a field are channel, variable, `opens`, and the field's number in
     `ordered_cells`, for whoever listens to clicks.
     """
-    import plotly.graph_objects as go
-
     best = best_cells(cells)
     order = {id(cell): number for number, cell in enumerate(ordered_cells(cells))}
     names = list(dict.fromkeys(cell.variable.name for cell in cells))
-    names.sort(key=lambda name: (name != CONSTANT, _place_of(name), name))
-    values = np.full((len(CHANNELS), len(names)), np.nan)
-    marks = [["" for _ in names] for _ in CHANNELS]
-    texts = [["" for _ in names] for _ in CHANNELS]
-    custom: list[list[list[object]]] = [
-        [[channel, name, "", ""] for name in names] for channel in CHANNELS
-    ]
+    places = {name: number for number, name in enumerate((CONSTANT, *VARIABLES))}
+    names.sort(key=lambda name: (places.get(name, len(places)), name))
+    grid = [[best.get((channel, name)) for name in names] for channel in CHANNELS]
     top = max((max(_worth(cell), 0.0) for cell in best.values()), default=0.0)
-    for row, channel in enumerate(CHANNELS):
-        for column, name in enumerate(names):
-            cell = best.get((channel, name))
-            if cell is None:
-                continue
-            values[row, column] = np.sqrt(max(_worth(cell), 0.0))
-            sure = cell.p_value < VERY_SURE
-            marks[row][column] = "★" if sure and _worth(cell) == top else "●" if sure else ""
-            texts[row][column] = _told(cell)
-            custom[row][column] = [channel, name, opens, order[id(cell)]]
-    full = float(np.sqrt(max(top, FAINTEST)))
-    figure = go.Figure()
+    figure = blank()
     figure.add_heatmap(
-        z=values,
-        x=[variable_words(name) for name in names],
+        z=np.array([[_shade(cell) for cell in row] for row in grid]),
+        x=[label_of(name) for name in names],
         y=list(CHANNELS),
-        text=texts,
-        customdata=custom,
+        text=[["" if cell is None else _told(cell) for cell in row] for row in grid],
+        customdata=[
+            [
+                [channel, name, *(("", "") if cell is None else (opens, order[id(cell)]))]
+                for name, cell in zip(names, row, strict=True)
+            ]
+            for channel, row in zip(CHANNELS, grid, strict=True)
+        ],
         hovertemplate="%{text}<extra></extra>",
         hoverongaps=False,
         coloraxis="coloraxis",
@@ -118,25 +89,22 @@ def evidence_map_figure(
         ygap=2,
     )
     # Marks have their own ink on a disc of paper, so that they are read on any field.
-    where = [
-        (variable_words(names[column]), CHANNELS[row], marks[row][column])
-        for row in range(len(CHANNELS))
-        for column in range(len(names))
-        if marks[row][column]
-    ]
+    marked = [cell for row in grid for cell in row if cell and cell.p_value < VERY_SURE]
+    stars = [_worth(cell) == top for cell in marked]
     figure.add_scatter(
-        x=[item[0] for item in where],
-        y=[item[1] for item in where],
+        x=[label_of(cell.variable.name) for cell in marked],
+        y=[cell.channel for cell in marked],
         mode="markers",
         marker={
-            "symbol": ["star" if item[2] == "★" else "circle" for item in where],
-            "size": [17 if item[2] == "★" else 9 for item in where],
+            "symbol": ["star" if star else "circle" for star in stars],
+            "size": [17 if star else 9 for star in stars],
             "color": "#FFFFFE",
             "line": {"width": 1.5, "color": "#000001"},
         },
         hoverinfo="skip",
         showlegend=False,
     )
+    full = float(np.sqrt(max(top, FAINTEST)))
     shown = _ticks(max(top, FAINTEST))
     coloured(
         figure,
@@ -158,6 +126,10 @@ def evidence_map_figure(
     return figure
 
 
+def _shade(cell: Dependence | None) -> float:
+    return float("nan") if cell is None else float(np.sqrt(max(_worth(cell), 0.0)))
+
+
 def _ticks(top: float) -> list[float]:
     """Values for the scale, which goes by the root, far enough apart to be read."""
     found = [0.0]
@@ -167,31 +139,126 @@ def _ticks(top: float) -> list[float]:
     return found
 
 
-def _place_of(name: str) -> int:
-    known = [
-        "speed",
-        "wheel_speed",
-        "direction",
-        "acceleration",
-        "yaw_rate",
-        "yaw_rate_size",
-        "travel_since_reversal",
-        "left_wheel_angle",
-        "right_wheel_angle",
-        "left_wheel_angle_twice",
-        "right_wheel_angle_twice",
-        "heading",
-        "position",
-        "time",
-        "distance",
-    ]
-    return known.index(name) if name in known else len(known)
-
-
 def _told(cell: Dependence) -> str:
     chance = "beyond any chance" if cell.p_value < 1e-12 else f"p = {cell.p_value:.1e}"
     return (
-        f"<b>{cell.channel}</b> with <b>{variable_words(cell.variable.name)}</b>"
+        f"<b>{cell.channel}</b> with <b>{label_of(cell.variable.name)}</b>"
         f"<br>in proportion to {cell.amount.per}, as a {cell.form}"
         f"<br>χ² falls by {cell.gain:.0f} for {cell.degrees} numbers; {chance}"
     )
+
+
+_POINTS = 160
+
+
+def dependence_figure(cell: Dependence, run_names: Sequence[str] = ()) -> Figure:
+    """The error of a cell over its variable, as the evidence map has fitted it."""
+    if cell.form == "place":
+        return _floor(cell)
+    figure = blank()
+    unit, factor = unit_of(cell.amount)
+    if cell.form == "turns":
+        _turns(figure, cell, unit, factor, run_names)
+    else:
+        _curve(figure, cell, unit, factor)
+    error = f"{error_of(cell.amount)}<br>[{unit}]"
+    over(figure, labelled(cell), error, 360, turn=cell.form == "turns")
+    if cell.variable.name == CONSTANT:
+        figure.update_xaxes(showticklabels=False, title="whatever is driven")
+    return figure
+
+
+def _curve(figure: Figure, cell: Dependence, unit: str, factor: float) -> None:
+    left, right = functions_of(cell.variable)[cell.form]
+    values = cell.variable.left
+    functions = left
+    if not cell.variable.shared:
+        values, functions = (
+            np.concatenate([values, cell.variable.right]),
+            np.concatenate([left, right]),
+        )
+    order = np.argsort(values)
+    chosen = np.unique(order[np.linspace(0, values.size - 1, _POINTS).astype(int)])
+    chosen = chosen[np.argsort(values[chosen])]
+    figure.add_scatter(
+        x=small(values[chosen]),
+        y=small(factor * (functions[chosen] @ cell.coefficients)),
+        mode="lines",
+        line={"color": BLUE, "width": 3},
+        name=cell.form,
+        hovertemplate=f"%{{x:.3g}}: %{{y:+.3g}} {unit}<extra></extra>",
+        showlegend=False,
+    )
+    if cell.variable.name == CONSTANT:
+        level = factor * float(cell.coefficients[0])
+        figure.add_hline(y=level, line={"color": BLUE, "width": 3})
+        figure.add_annotation(
+            text=f"{level:+.3g} {unit}, whatever is driven",
+            x=0.5,
+            y=level,
+            xref="paper",
+            yanchor="bottom" if level > 0.0 else "top",
+            showarrow=False,
+        )
+
+
+def _turns(
+    figure: Figure, cell: Dependence, unit: str, factor: float, run_names: Sequence[str]
+) -> None:
+    angle = np.linspace(0.0, 2.0 * np.pi, 121)
+    waves = np.stack(
+        [np.cos(cell.variable.harmonic * angle), np.sin(cell.variable.harmonic * angle)], axis=-1
+    )
+    looks = (
+        (BLUE, "solid"),
+        (ORANGE, "dash"),
+        (GREEN, "dot"),
+        (INK, "dashdot"),
+        (GREY, "solid"),
+        (ORANGE, "solid"),
+    )
+    own = np.atleast_2d(cell.coefficients)
+    for number, (coefficients, (colour, dash)) in enumerate(zip(own, looks, strict=False)):
+        name = run_names[number] if cell.variable.per_run and number < len(run_names) else ""
+        figure.add_scatter(
+            x=small(np.degrees(angle)),
+            y=small(factor * (waves @ coefficients)),
+            mode="lines",
+            line={"color": colour, "width": 2.5, "dash": dash},
+            name=escaped(name),
+            showlegend=bool(name),
+            hovertemplate=f"%{{x:.0f}}°: %{{y:+.3g}} {unit}<extra></extra>",
+        )
+
+
+def _floor(cell: Dependence) -> Figure:
+    """The error of a cell by place: larger where it is darker, signs by shape."""
+    unit, factor = unit_of(cell.amount)
+    cells, _ = functions_of(cell.variable)["place"]
+    values = factor * (cells @ cell.coefficients)
+    rows = np.linspace(0, values.size - 1, min(values.size, MARKS)).astype(int)
+    x, y, error = cell.variable.left[rows], cell.variable.right[rows], values[rows]
+    largest = max(float(np.max(np.abs(error), initial=0.0)), 1e-12)
+    figure = blank()
+    for name, which, symbol in (
+        ("more than predicted", error > 0.0, "triangle-up"),
+        ("less than predicted", error <= 0.0, "triangle-down"),
+    ):
+        figure.add_scatter(
+            x=small(x[which]),
+            y=small(y[which]),
+            mode="markers",
+            name=name,
+            marker={
+                "symbol": symbol,
+                "size": small(5.0 + 7.0 * np.abs(error[which]) / largest),
+                "color": small(np.abs(error[which])),
+                "coloraxis": "coloraxis",
+                "line": {"width": 0},
+            },
+            customdata=small(error[which]),
+            hovertemplate=f"x %{{x:.2f}} m, y %{{y:.2f}} m<br>%{{customdata:+.3g}} {unit}"
+            "<extra></extra>",
+        )
+    coloured(figure, largest, f"{error_of(cell.amount)}<br>[{unit}]")
+    return from_above(figure, 480)

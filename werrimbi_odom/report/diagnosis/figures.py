@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis, Ranked
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.fitting.free_parameters import Model
 from werrimbi_odom.inference.fitting.prediction import legs_shown, right_handed
+from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, Pace, ideal_run
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
@@ -20,16 +21,17 @@ from werrimbi_odom.report.style import (
     BLUE,
     GREEN,
     GREY,
+    INK,
     MARKS,
     ORANGE,
+    Figure,
+    blank,
     escaped,
+    from_above,
     paled,
     plain,
     small,
 )
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
 
 _MOST_BARS = 10
 _PER_EFFECT = 52  # height of its two bars and the gap [pixels]
@@ -37,15 +39,13 @@ _GAP = 0.3
 _WORST = -60.0  # a bar that is longer to the left goes out of the figure [%]
 
 
-def ranking_figure(diagnosis: Diagnosis) -> go.Figure:
+def ranking_figure(diagnosis: Diagnosis) -> Figure:
     """Effects that were fitted, the best first: by how much each lowers the error of the legs.
 
     A filled bar is the error of held-out drives, the outlined one that of the drives of the fit.
     """
-    import plotly.graph_objects as go
-
     ranked = [item for item in diagnosis.ranking if item.holdout or item.train][:_MOST_BARS]
-    figure = go.Figure()
+    figure = blank()
     names = [_label(item, diagnosis) for item in ranked]
     for word, side, look in (
         (
@@ -125,7 +125,7 @@ def _text(sides: Sides | None) -> str:
     return " → ".join(error_words(value, sides.unit) for value in (sides.before, sides.after))
 
 
-def set_up_figure(diagnosis: Diagnosis) -> go.Figure:
+def set_up_figure(diagnosis: Diagnosis) -> Figure:
     """Turn and travel of each leg, measured against predicted: as given, and put right.
 
     Whatever is set up rightly lies on the diagonal; a wrong sign or factor is another line.
@@ -197,3 +197,101 @@ def _legs(diagnosis: Diagnosis, robot: Robot) -> tuple[Floats, Floats]:
     turn = wrap_all(finish[:, 2] - start[:, 2])
     predicted = legs_shown(Model(robot, tuple({} for _ in runs.runs)), runs)
     return np.stack([moved.real, moved.imag, turn], axis=-1), predicted
+
+
+_TICK = 0.05  # [s]
+_ARROWS = 10
+
+
+def ideal_of(name: str) -> Ideal | None:
+    """The manoeuvre of a name; None for what is no drive (a marker to be remounted)."""
+    return next((item for item in MANOEUVRES if item.name == name), None)
+
+
+def manoeuvre_figure(ideal: Ideal, robot: Robot, pace: Pace) -> Figure:
+    """Where the wheels roll, for a robot of this size that drives as this one did.
+
+    Parameters
+    ----------
+    robot : Robot
+        Gives the base; its effects are left aside.
+    """
+    robot = replace(robot, effects=())
+    run = ideal_run(ideal, robot, pace, ticks=_TICK, poses=_TICK, measures=(True, True))
+    reference = run.reference
+    assert reference is not None
+    place = reference.x + 1j * reference.y
+    yaw = np.unwrap(reference.yaw)
+    time = reference.time
+    half = 0.5 * robot.track
+    figure = blank()
+    for side, colour, name in ((1.0, BLUE, "left wheel"), (-1.0, ORANGE, "right wheel")):
+        track = place + side * half * 1j * np.exp(1j * yaw)
+        figure.add_scatter(
+            x=small(track.real),
+            y=small(track.imag),
+            mode="lines",
+            name=f"track of the {name}",
+            line={"color": paled(colour, 0.75), "width": 2},
+            customdata=small(time),
+            hovertemplate=(
+                f"{name}<br>x %{{x:.2f}} m, y %{{y:.2f}} m<br>after %{{customdata:.0f}} s"
+                "<extra></extra>"
+            ),
+        )
+    _arrows(figure, place, yaw, half)
+    _robot(figure, half)
+    return from_above(figure, 480)
+
+
+def _arrows(figure: Figure, place: np.ndarray, yaw: Floats, half: float) -> None:
+    """Heads along the way, pointing where the robot goes (backwards too)."""
+    moved = np.abs(np.diff(place))
+    length = np.concatenate([[0.0], np.cumsum(moved)])
+    if length[-1] < half:
+        return
+    wanted = (np.arange(_ARROWS) + 0.5) / _ARROWS * length[-1]
+    at = np.clip(np.searchsorted(length, wanted), 1, place.size - 1)
+    course = np.degrees(np.angle(place[at] - place[at - 1]))
+    figure.add_scatter(
+        x=small(place[at].real),
+        y=small(place[at].imag),
+        mode="markers",
+        name="way of the robot",
+        marker={
+            "symbol": "arrow",
+            "size": 13,
+            "angle": (90.0 - course).tolist(),
+            "color": GREEN,
+        },
+        hoverinfo="skip",
+    )
+
+
+def _robot(figure: Figure, half: float) -> None:
+    """Outline at the start, facing x: body, wheels, nose."""
+    body = half * np.array(
+        [-1.3 - 0.85j, 1.0 - 0.85j, 1.5 + 0j, 1.0 + 0.85j, -1.3 + 0.85j, -1.3 - 0.85j]
+    )
+    parts: list[np.ndarray] = [body]
+    for side in (1.0, -1.0):
+        parts.append(
+            half
+            * (
+                np.array([-0.5, 0.5, 0.5, -0.5, -0.5])
+                + 1j * side
+                + 0.12j * np.array([-1, -1, 1, 1, -1])
+            )
+        )
+    gap = np.array([np.nan + 0j])
+    line = np.concatenate([piece for part in parts for piece in (part, gap)])
+    figure.add_scatter(
+        x=small(line.real),
+        y=small(line.imag),
+        mode="lines",
+        name="the robot at the start, to scale",
+        line={"color": INK, "width": 2},
+        fill="toself",
+        fillcolor=paled(GREY, 0.25),
+        hoverinfo="skip",
+    )

@@ -7,19 +7,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-import numpy as np
-
 from werrimbi_odom.effects.page import page_of
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
 from werrimbi_odom.inference.diagnosis.estimated_values import (
     Value,
-    at_bounds,
     best_sizes,
     mistakes,
     ranked_of,
     values_of,
 )
-from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.diagnosis.rivals import own_scale_instead
 from werrimbi_odom.inference.manoeuvres.advice import Told
@@ -142,10 +138,10 @@ def _fall(told: Told, sides: Sides) -> list[str]:
     before, after = sides.before, sides.after
     if not (math.isfinite(before) and math.isfinite(after)):
         return []
-    where = f"on {judged(told)}"
+    where, kind = f"on {judged(told)}", error_kind(sides)
     if after >= before:
         both = (
-            f"{where} the {_of(sides)} error is {error_words(before, sides.unit)} without it and "
+            f"{where} the {kind} error is {error_words(before, sides.unit)} without it and "
             f"{error_words(after, sides.unit)} with it"
         )
         if sides.rose:
@@ -157,17 +153,18 @@ def _fall(told: Told, sides: Sides) -> list[str]:
     told_before, told_after = (error_words(each, sides.unit) for each in (before, after))
     if told_before == told_after:
         return [
-            f"What it costs: hardly anything {where}; the {_of(sides)} error there is "
+            f"What it costs: hardly anything {where}; the {kind} error there is "
             f"{told_before} with it and without."
         ]
     part = math.sqrt(before**2 - after**2)
     return [
-        f"What it costs: {error_words(part, sides.unit)} {_each(told)}; {where} the {_of(sides)} "
+        f"What it costs: {error_words(part, sides.unit)} {_each(told)}; {where} the {kind} "
         f"error falls from {told_before} to {told_after} when it is put in."
     ]
 
 
-def _of(sides: Sides) -> str:
+def error_kind(sides: Sides) -> str:
+    """Of what an error is."""
     return "heading" if sides.unit == "rad" else "position"
 
 
@@ -196,20 +193,7 @@ def whole(told: Told) -> list[str]:
     goes = f"{'falls' if sides.after < sides.before else 'goes'} from {before} to {after}"
     if before == after:
         goes = f"stays at {before}"
-    return [f"With all of them put in, the {_of(sides)} error on {judged(told)} {goes}."]
-
-
-def without_events(told: Told) -> list[str]:
-    """What the errors are without the legs in which something happened at once."""
-    every, quiet = told.diagnosis.holdout, told.diagnosis.quiet[1]
-    if (quiet.before, quiet.after) == (every.before, every.after) or not math.isfinite(quiet.after):
-        return []
-    before, after = (error_words(error, quiet.unit) for error in (quiet.before, quiet.after))
-    change = f"goes from {before} to {after}" if told.diagnosis.found else f"is {after}"
-    return [
-        "In the errors they count, as in those of `werrimbi compare`. Without their legs the "
-        f"{_of(quiet)} error on {judged(told)} {change}."
-    ]
+    return [f"With all of them put in, the {error_kind(sides)} error on {judged(told)} {goes}."]
 
 
 def ruler(diagnosis: Diagnosis, effect: Effect | None, head: str) -> list[str]:
@@ -223,70 +207,3 @@ def ruler(diagnosis: Diagnosis, effect: Effect | None, head: str) -> list[str]:
     numbers = expected_words(effect.name, values, diagnosis.robot) if values else ""
     ending = f"; {numbers}" if numbers else ""
     return [f"{head}: {' '.join(text.split())}{ending}."]
-
-
-def at_bounds_words(diagnosis: Diagnosis) -> dict[str, str]:
-    """Effects that would help, but only at a value that physics does not allow, and that value."""
-    return {
-        name: f"{parameter} = {quantity(value, math.nan, unit)}"
-        for name, (parameter, value, unit) in at_bounds(diagnosis).items()
-    }
-
-
-def otherwise(diagnosis: Diagnosis) -> list[str]:
-    """Drives that were recorded otherwise than the fitted ones, by what differs."""
-    alike: dict[tuple[str, ...], list[RecordedOtherwise]] = {}
-    for each in diagnosis.otherwise:
-        alike.setdefault(each.effects, []).append(each)
-    lines = []
-    for drives in alike.values():
-        names = listed([each.run for each in drives])
-        what = "; ".join(finding.words for finding in drives[0].findings)
-        one = len(drives) == 1
-        lines.append(
-            f"But: {'drive' if one else 'drives'} {names} {'was' if one else 'were'} recorded "
-            f"otherwise than the drives that the diagnosis is of: {what}. "
-            f"{'It has' if one else 'They have'} no part in what is said here, but for the figures "
-            "of held-out drives where there are no others."
-        )
-    return lines
-
-
-def not_shown(told: Told) -> list[str]:
-    """Effects that would have stayed hidden, and what would show them."""
-    # What is named was seen, larger than usual.
-    found = told.diagnosis.found
-    hidden = [sight for sight in told.sights if sight.hidden and sight.effect not in found]
-    if not hidden:
-        return []
-    by_drive = [
-        f"{sight.effect} ({sight.shown_by} would show it)" for sight in hidden if sight.shown_by
-    ]
-    lines = []
-    if by_drive:
-        lines.append(
-            f"These drives cannot show whether there is, of usual size, {listed(by_drive, 'or')}."
-        )
-    needing = [sight.effect for sight in hidden if sight.needs_more]
-    if needing:
-        runs, better = told.diagnosis.runs, "positions and headings does (motion capture, scans)"
-        if runs.own_axes:
-            better = "finely, in axes of the floor, does (motion capture)"
-        elif np.isfinite(runs.start).all(axis=1).any():
-            better = "more finely, and more often, does (motion capture)"
-        lines.append(
-            f"No drive shows {listed(needing)} with such a reference; one that measures {better}."
-        )
-    return lines
-
-
-def by_headings_alone(diagnosis: Diagnosis) -> list[str]:
-    """The size of both wheels, where a base was found that is one with it."""
-    if not diagnosis.runs.headings_alone or "track_width" not in diagnosis.found:
-        return []
-    size = values_of(diagnosis, "wheel_radius_scale")["multiplier"].value
-    larger = f"{100.0 * abs(size - 1.0):.2g} % {'larger' if size > 1.0 else 'smaller'}"
-    return [
-        f"Headings know the wheels' size over the base alone: wheels that are both {larger} than "
-        "entered look the same to them as that base. A straight line of 10 m beside a tape tells."
-    ]

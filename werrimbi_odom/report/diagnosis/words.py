@@ -19,20 +19,24 @@ from werrimbi_odom.inference.manoeuvres.advice import Told, significant
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.changes import changes_words
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
-from werrimbi_odom.report.diagnosis.left import law, scatter
 from werrimbi_odom.report.diagnosis.phrases import (
     about,
     also,
-    at_bounds_words,
-    by_headings_alone,
     cost,
     judged,
-    not_shown,
-    otherwise,
     ruler,
     sizes,
     sizes_found,
     whole,
+)
+from werrimbi_odom.report.diagnosis.remarks import (
+    at_bounds_told,
+    by_headings_alone,
+    instead_of_held,
+    law,
+    not_shown,
+    otherwise,
+    scatter,
     without_events,
 )
 from werrimbi_odom.report.document import Paragraph, paragraphs
@@ -121,7 +125,7 @@ def _none(told: Told, steps: NextSteps) -> list[str]:
         lines.append(
             f"Its errors on {judged(told)} are {error_words(errors, diagnosis.holdout.unit)}{like}."
         )
-    lines += _instead_of_held(diagnosis)
+    lines += instead_of_held(diagnosis)
     if wanders:
         lines.append(
             "But: for seconds together the errors are alike, more than noise is, and the parts of "
@@ -159,7 +163,7 @@ def _named(told: Told, steps: NextSteps) -> list[str]:
     sizes = sizes_found(diagnosis)
     if sizes:
         lines.append(f"On the robot: {sizes}.")
-    lines += [*whole(told), *law(told), *scatter(told), *_at_bounds(diagnosis)]
+    lines += [*whole(told), *law(told), *scatter(told), *at_bounds_told(diagnosis)]
     lines += _next_add(told, steps)
     return [*lines, *by_headings_alone(told.diagnosis), *not_shown(told)]
 
@@ -215,7 +219,7 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
     for other in diagnosis.found[1:]:
         if other not in rivals and other not in mistakes(diagnosis):
             lines += also(told, other)
-    return [*lines, *law(told), *scatter(told), *_at_bounds(diagnosis)]
+    return [*lines, *law(told), *scatter(told), *at_bounds_told(diagnosis)]
 
 
 def _unknown(told: Told, steps: NextSteps) -> list[str]:
@@ -258,7 +262,7 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
                 else "The above explains far more than it does, so that is not what it is."
             )
         )
-    lines += _at_bounds(diagnosis)
+    lines += at_bounds_told(diagnosis)
     lines.append("Next: write it as an effect of your own, from what these drives show:")
     lines.append(f"    {steps.draft}")
     if told.manoeuvre is not None:
@@ -294,24 +298,6 @@ def _set_up(diagnosis: Diagnosis) -> list[str]:
     return [
         *lines,
         *(f"This robot is a skid steer ({each.effect}): {each.words}." for each in skids),
-    ]
-
-
-def _instead_of_held(diagnosis: Diagnosis) -> list[str]:
-    """What the drives cannot tell from an effect that the file holds, and what can."""
-    return [
-        f"But: that it is {name}, which the robot file holds, these drives do not show: "
-        f"{listed(others, 'or')} in its place would explain them as well. `werrimbi explain` says "
-        "how each is checked on the robot; a reference that measures more often tells them apart."
-        for name, others in diagnosis.rivals_of_held.items()
-    ]
-
-
-def _at_bounds(diagnosis: Diagnosis) -> list[str]:
-    return [
-        f"But: {name} would lower the error too, only with {value}, the limit of what physics "
-        "allows: it is not that effect."
-        for name, value in at_bounds_words(diagnosis).items()
     ]
 
 

@@ -5,10 +5,10 @@
 from __future__ import annotations
 
 from werrimbi_odom.model.effect import Effect
-from werrimbi_odom.report.sketches import body, records, wheels
+from werrimbi_odom.report.sketches import robot, wheels
 from werrimbi_odom.report.sketches.parts import drawing
 
-DRAWINGS = {**wheels.DRAWINGS, **body.DRAWINGS, **records.DRAWINGS}
+DRAWINGS = {**wheels.DRAWINGS, **robot.DRAWINGS}
 
 
 def effect_sketch(effect: Effect) -> str | None:

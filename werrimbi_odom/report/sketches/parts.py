@@ -15,6 +15,7 @@ BLUE, ORANGE, GREEN, GREY = (
     "var(--green, #009E73)",
     "var(--grey, #6B6B6B)",
 )
+SIDES = {"left": BLUE, "right": ORANGE}
 WIDTH, HEIGHT = 340, 170
 
 DASH = "6 5"

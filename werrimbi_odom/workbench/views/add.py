@@ -9,8 +9,7 @@ from werrimbi_odom.report.adding.words import remark_told, value_told, words_of
 from werrimbi_odom.report.document import Table
 from werrimbi_odom.report.numbers import listed
 from werrimbi_odom.workbench.drawings import gain_figure
-from werrimbi_odom.workbench.figure import figure
-from werrimbi_odom.workbench.html import box, button, prose, text
+from werrimbi_odom.workbench.html import box, button, figure, prose, text
 from werrimbi_odom.workbench.steps import Step
 from werrimbi_odom.workbench.tab import Tab, millimetres, percent
 

@@ -11,7 +11,7 @@ import numpy as np
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.consistency import consistency
 from werrimbi_odom.inference.comparison.leg_errors import LegStatistics
-from werrimbi_odom.report.comparison.tables import tables_of
+from werrimbi_odom.report.comparison.document import tables_of
 from werrimbi_odom.report.comparison.words import words_of
 from werrimbi_odom.workbench.html import box, button, prose, text
 from werrimbi_odom.workbench.parts import (
@@ -21,7 +21,7 @@ from werrimbi_odom.workbench.parts import (
     motion_parts,
 )
 from werrimbi_odom.workbench.tab import Tab, millimetres
-from werrimbi_odom.workbench.views.floor import floor
+from werrimbi_odom.workbench.views.beside import floor
 
 
 def compare_view(tab: Tab) -> None:

@@ -11,16 +11,14 @@ from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
 from werrimbi_odom.inference.manoeuvres.advice import Told
 from werrimbi_odom.inference.rules import SURE
 from werrimbi_odom.report.diagnosis.dependence import dependence_words, short_words
-from werrimbi_odom.report.diagnosis.phrases import at_bounds_words
+from werrimbi_odom.report.diagnosis.remarks import at_bounds_words
 from werrimbi_odom.report.diagnosis.words import NextSteps, words_of
 from werrimbi_odom.report.numbers import chance_words, error_words, listed
-from werrimbi_odom.workbench.figure import figure
-from werrimbi_odom.workbench.html import box, button, prose, text
+from werrimbi_odom.workbench.html import box, button, figure, prose, text
 from werrimbi_odom.workbench.parts import CellPart
 from werrimbi_odom.workbench.steps import Diagnosed
 from werrimbi_odom.workbench.tab import Tab, millimetres
-from werrimbi_odom.workbench.views.floor import floor
-from werrimbi_odom.workbench.views.why import why
+from werrimbi_odom.workbench.views.beside import floor, why
 
 SHORT = 5
 """Paragraphs of the verdict that are open at once."""

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Always in view: the four steps, the held-out error and how it fell, undo and redo."""
+"""Always in view: the four steps, the held-out error, undo and redo; and what is seen before."""
 
 from __future__ import annotations
 
@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 from nicegui import ui
 
+from werrimbi_odom.workbench.drawings import measured_drawing
 from werrimbi_odom.workbench.html import box, button, text
-from werrimbi_odom.workbench.tab import VIEWS, Tab, millimetres, percent
+from werrimbi_odom.workbench.tab import VIEWS, Opening, Tab, millimetres, percent
 
 TITLES = {"compare": "Compare", "diagnose": "Diagnose", "add": "Add", "save": "Save"}
 
@@ -124,3 +125,30 @@ def under_way(tab: Tab) -> None:
         bar.props["value"] = f"{job.share:.3f}"
 
     ui.timer(0.2, look)
+
+
+def opening_view(opening: Opening) -> None:
+    """What is known before anything is compared: the measured paths."""
+    with box("header"), box("div", "title"):
+        text("h1", "werrimbi workbench")
+        runs = (*opening.given.runs, *opening.given.holdout)
+        text("p", f"{opening.given.source.path.name}: {len(runs)} drives.")
+    with box("section", "work", aria_label="Work under way"):
+        words = text("p", "Comparing …")
+        bar: Any = box("progress", max="1", value="0", aria_label="Comparing, share done")
+    drawn = measured_drawing(runs)
+    if drawn is not None:
+        text("h2", "Measured paths; where the model fails on them is being worked out")
+        ui.html(drawn, sanitize=False)
+
+    def look() -> None:
+        words.set_text(f"Comparing: {opening.job.words} ({100.0 * opening.job.share:.0f} %)")
+        bar.props["value"] = f"{opening.job.share:.3f}"
+
+    ui.timer(0.2, look)
+
+
+def failed_view(reason: str) -> None:
+    """Why nothing could be opened; the command says the same, and ends."""
+    text("h1", "werrimbi workbench")
+    text("p", f"These drives cannot be opened: {reason}", "verdict", role="alert")

@@ -4,29 +4,39 @@
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from datetime import datetime, timezone
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from werrimbi_odom.inference.changes.dated import History
+from werrimbi_odom.inference.changes.dated import Dated, History
 from werrimbi_odom.inference.changes.history import Number
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.changes import changes_json
 from werrimbi_odom.report.document import Document, Shown
-from werrimbi_odom.report.history.words import TITLES, dated_names, table_of, there, words_of
+from werrimbi_odom.report.history_words import (
+    TITLES,
+    against,
+    alarms,
+    dated_names,
+    table_of,
+    there,
+    told_as,
+    words_of,
+)
+from werrimbi_odom.report.numbers import picked
 from werrimbi_odom.report.style import (
     BLUE,
     GREEN,
     GREY,
     ORANGE,
+    Figure,
     escaped,
     paled,
     plain,
     spread_and_extremes,
 )
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
 
 _HEIGHT = 190
 """Of a panel."""
@@ -58,7 +68,7 @@ def _figures(history: History) -> list[Shown]:
     ]
 
 
-def history_figure(history: History) -> go.Figure:
+def history_figure(history: History) -> Figure:
     """Panels above each other, with one axis of dates."""
     from plotly.subplots import make_subplots
 
@@ -81,7 +91,7 @@ def history_figure(history: History) -> go.Figure:
 
 
 def _panel(
-    figure: go.Figure,
+    figure: Figure,
     row: int,
     number: Number,
     history: History,
@@ -176,3 +186,50 @@ def _dates(history: History) -> list[Any]:
         datetime.fromtimestamp(drive.date, timezone.utc).strftime("%Y-%m-%d %H:%M:%S")
         for drive in history.drives
     ]
+
+
+def json_of(history: History) -> dict[str, Any]:
+    """Everything that was found."""
+    course = history.course
+    paths = [str(drive.run) for drive in history.drives]
+    return {
+        "drives": [
+            {
+                **picked(drive, "run date_from way_m:told.way"),
+                "date": _date(drive),
+                "numbers": {
+                    number.name: {
+                        name: values[index]
+                        for name, values in picked(
+                            number, "value:own std:own_std pooled pooled_std"
+                        ).items()
+                    }
+                    for number in course.numbers
+                },
+            }
+            for index, drive in enumerate(history.drives)
+        ],
+        "numbers": {
+            number.name: {
+                **picked(number, "unit robot_file:given scatter"),
+                "now": number.level[-1],
+                "std": number.level_std[-1],
+            }
+            for number in course.numbers
+        },
+        "changes": [
+            {**each, "date": _date(history.drives[int(move.from_run)])}
+            for move, each in zip(
+                course.changes, changes_json(told_as(history, paths), history.robot), strict=True
+            )
+        ],
+        "alarms": [asdict(alarm) for alarm in alarms(history)],
+        "like": [asdict(each) for each in against(history)],
+        "unusable": [picked(each, "run why") for each in history.unusable],
+    }
+
+
+def _date(drive: Dated) -> str | None:
+    if drive.date_from == "order":
+        return None
+    return datetime.fromtimestamp(drive.date, timezone.utc).isoformat(timespec="seconds")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Sketches of what the robot does: its wheels, axle, gears and tyres, its castor, the floor."""
+"""Sketches of how the robot moves on its floor, and of what the reference shows of it."""
 
 from __future__ import annotations
 
@@ -38,79 +38,17 @@ def _track_width() -> Parts:
     ]
 
 
-def _unequal_radii() -> Parts:
+def _slip_above() -> Parts:
     return [
-        floor(112),
-        circle(95, 80, 32, colour=BLUE),
-        circle(205, 87, 25, colour=ORANGE),
-        line((95, 80), (205, 87)),
-        words(95, 40, "left", colour=BLUE),
-        words(205, 50, "right", colour=ORANGE),
-        arc(300, 30, 80, 215, 275, colour=ORANGE, head=True),
-    ]
-
-
-def _radius_scale() -> Parts:
-    return [
-        floor(125),
-        circle(80, 90, 35, colour=ORANGE),
-        circle(80, 98, 27, colour=GREY, dash=DASH),
-        line((80, 90), (104, 65), colour=ORANGE),
-        words(125, 62, "true", colour=ORANGE, anchor="start"),
-        words(125, 82, "entered", colour=GREY, anchor="start"),
-        arrow((130, 108), (300, 108)),
-        arrow((130, 118), (255, 118), colour=GREY),
-    ]
-
-
-def _squash() -> Parts:
-    return [
-        floor(120),
-        circle(75, 82, 38, colour=BLUE),
-        words(75, 86, "slow", colour=BLUE),
-        arrow((120, 60), (150, 60), colour=GREY),
-        arc(235, 88, 38, -57, 237, colour=ORANGE),
-        line((214, 120), (256, 120), colour=ORANGE, width=3),
-        words(235, 92, "fast", colour=ORANGE),
-        arrow((280, 60), (328, 60), colour=GREY),
-        arrow((290, 84), (290, 119), both=True),
-    ]
-
-
-def _by_channel() -> Parts:
-    return [
-        floor(125),
-        circle(70, 85, 40, colour=ORANGE),
-        circle(70, 93, 32, colour=GREY, dash=DASH),
-        line((150, 120), (150, 40), colour=GREY),
-        line((150, 120), (320, 120), colour=GREY),
-        line((150, 100), (190, 60), (235, 92), (280, 52), (318, 70), colour=ORANGE),
-        words(235, 40, "a column of ticks.csv", colour=GREY),
-    ]
-
-
-def _load() -> Parts:
-    return [
-        floor(122),
-        oblong(170, 66, 110, 28, fill=GREY),
-        oblong(112, 92, 22, 60, colour=BLUE),
-        oblong(228, 96, 26, 52, colour=ORANGE),
-        words(60, 92, "inner", colour=BLUE),
-        words(280, 92, "outer", colour=ORANGE),
-        arrow((140, 34), (205, 34)),
-        words(132, 30, "load", colour=ORANGE, anchor="end"),
-    ]
-
-
-def _carpet() -> Parts:
-    ribs = [line((25, y), (185, y), colour=GREY, width=1.0) for y in range(24, 138, 14)]
-    return [
-        *ribs,
-        robot(75, 94, size=0.7),
-        arrow((100, 94), (190, 94), colour=GREEN),
-        words(200, 98, "along it: more", colour=GREEN, anchor="start"),
-        arrow((75, 70), (75, 20)),
-        words(200, 34, "across it: less", colour=ORANGE, anchor="start"),
+        line((50, 120), (335, 120), colour=GREY),
+        line((50, 120), (50, 25), colour=GREY),
+        line((50, 120), (180, 120), colour=GREEN),
+        line((180, 120), (310, 40)),
+        line((180, 126), (180, 30), colour=GREY, dash=DASH),
+        words(115, 108, "it holds", colour=GREEN),
+        words(236, 62, "it slips", colour=ORANGE, anchor="end"),
+        words(192, 138, "acceleration", colour=GREY, anchor="start"),
+        words(58, 32, "lost", colour=GREY, anchor="start"),
     ]
 
 
@@ -124,20 +62,6 @@ def _longitudinal_slip() -> Parts:
         arrow((95, 128), (58, 128)),
         words(110, 137, "the tyre creeps back", colour=ORANGE, anchor="start"),
         line((240, 105), (265, 75), (295, 75), (318, 105), colour=GREY),
-    ]
-
-
-def _slip_above() -> Parts:
-    return [
-        line((50, 120), (335, 120), colour=GREY),
-        line((50, 120), (50, 25), colour=GREY),
-        line((50, 120), (180, 120), colour=GREEN),
-        line((180, 120), (310, 40)),
-        line((180, 126), (180, 30), colour=GREY, dash=DASH),
-        words(115, 108, "it holds", colour=GREEN),
-        words(236, 62, "it slips", colour=ORANGE, anchor="end"),
-        words(192, 138, "acceleration", colour=GREY, anchor="start"),
-        words(58, 32, "lost", colour=GREY, anchor="start"),
     ]
 
 
@@ -203,6 +127,18 @@ def _floor_slope() -> Parts:
     ]
 
 
+def _carpet() -> Parts:
+    ribs = [line((25, y), (185, y), colour=GREY, width=1.0) for y in range(24, 138, 14)]
+    return [
+        *ribs,
+        robot(75, 94, size=0.7),
+        arrow((100, 94), (190, 94), colour=GREEN),
+        words(200, 98, "along it: more", colour=GREEN, anchor="start"),
+        arrow((75, 70), (75, 20)),
+        words(200, 34, "across it: less", colour=ORANGE, anchor="start"),
+    ]
+
+
 def _castor_kick() -> Parts:
     return [
         robot(180, 72, size=1.3),
@@ -219,40 +155,89 @@ def _castor_kick() -> Parts:
     ]
 
 
-def _backlash(side: str) -> Parts:
-    colour = BLUE if side == "left" else ORANGE
-
+def _lever_arm() -> Parts:
     return [
-        circle(90, 78, 34, colour=INK),
-        words(90, 83, "encoder"),
-        circle(215, 78, 44, colour=colour),
-        words(215, 83, f"{side} wheel", colour=colour),
-        line((124, 70), (148, 70), (148, 86), (124, 86)),
-        line((171, 58), (155, 58), (155, 66), (171, 66), colour=colour),
-        line((171, 92), (155, 92), (155, 100), (171, 100), colour=colour),
-        arrow((137, 112), (137, 90), colour=GREEN),
-        words(137, 127, "free play", colour=GREEN),
+        robot(140, 78),
+        circle(140, 78, 4, colour=INK, fill=INK),
+        circle(200, 48, 6, colour=GREEN, fill=GREEN),
+        arrow((140, 78), (195, 51)),
+        words(212, 46, "what is measured", colour=GREEN, anchor="start"),
+        words(104, 83, "axle's middle", anchor="end"),
     ]
 
 
-def _radius_drift() -> Parts:
+def _yaw_offset() -> Parts:
     return [
-        floor(115),
-        circle(75, 77, 38, colour=BLUE),
-        circle(180, 82, 33, colour=BLUE, dash=DASH),
-        circle(280, 88, 27, colour=ORANGE),
-        arrow((30, 130), (310, 130), colour=GREY),
-        words(170, 146, "time, distance", colour=GREY),
+        robot(120, 90, marker=True),
+        arrow((120, 90), (250, 90), colour=GREY),
+        words(256, 94, "robot", colour=GREY, anchor="start"),
+        arrow((120, 90), (240, 45)),
+        words(246, 44, "reference", colour=ORANGE, anchor="start"),
+        arc(120, 90, 85, 0, 20, colour=ORANGE),
+    ]
+
+
+def _mirrored() -> Parts:
+    return [
+        arrow((60, 110), (60, 40), colour=GREY),
+        arrow((60, 110), (130, 110), colour=GREY),
+        words(60, 32, "y", colour=GREY),
+        words(140, 114, "x", colour=GREY),
+        arc(60, 110, 35, 10, 80, colour=GREY, head=True),
+        line((170, 25), (170, 135), dash=DASH),
+        arrow((215, 40), (215, 110)),
+        arrow((215, 40), (285, 40)),
+        words(215, 126, "y", colour=ORANGE),
+        words(295, 44, "x", colour=ORANGE),
+        arc(215, 40, 35, -10, -80, colour=ORANGE, head=True),
+    ]
+
+
+def _scale() -> Parts:
+    return [
+        robot(60, 85),
+        arrow((60, 110), (230, 110), colour=GREY),
+        words(236, 114, "what was", colour=GREY, anchor="start"),
+        arrow((60, 55), (262, 55), colour=GREEN),
+        words(150, 42, "what is shown", colour=GREEN),
+    ]
+
+
+def _late(first: str, second: str) -> Parts:
+    def step(y: float, at: float, colour: str) -> str:
+        return line(
+            (20, y), (at, y), (at + 40, y - 38), (at + 130, y - 38), colour=colour, width=2.5
+        )
+
+    return [
+        step(68, 70, BLUE),
+        words(322, 34, first, colour=BLUE, anchor="end"),
+        step(128, 112, ORANGE),
+        words(322, 118, second, colour=ORANGE, anchor="end"),
+        line((70, 22), (70, 134), colour=GREY, dash="2 4"),
+        line((112, 22), (112, 134), colour=GREY, dash="2 4"),
+        arrow((70, 26), (112, 26), colour=GREEN),
+        words(120, 20, "late", colour=GREEN, anchor="start"),
+    ]
+
+
+def _wandering_bias() -> Parts:
+    times = [x / 20.0 for x in range(21)]
+    true = [(30 + 230 * at, 112 - 26 * at) for at in times]
+    shown = [(30 + 230 * at, 112 - 26 * at - 52 * at * at) for at in times]
+    return [
+        arrow((30, 125), (318, 125), colour=GREY),
+        words(318, 116, "time", colour=GREY, anchor="end"),
+        line(*true, colour=BLUE, width=2.5),
+        words(268, 90, "heading", colour=BLUE, anchor="start"),
+        line(*shown, colour=ORANGE, width=2.5),
+        words(268, 38, "the gyro's", colour=ORANGE, anchor="start"),
+        arrow((255, 80), (255, 42), colour=GREY, both=True),
     ]
 
 
 DRAWINGS: Mapping[str, Callable[..., Parts]] = {
     "track": _track_width,
-    "unequal": _unequal_radii,
-    "radius": _radius_scale,
-    "squash": _squash,
-    "load": _load,
-    "by_channel": _by_channel,
     "slip_above": _slip_above,
     "slip_ahead": _longitudinal_slip,
     "slip_outwards": _lateral_slip,
@@ -262,7 +247,11 @@ DRAWINGS: Mapping[str, Callable[..., Parts]] = {
     "slope": _floor_slope,
     "carpet": _carpet,
     "castor": _castor_kick,
-    "backlash": _backlash,
-    "shrinking": _radius_drift,
+    "lever_arm": _lever_arm,
+    "yaw_offset": _yaw_offset,
+    "mirrored": _mirrored,
+    "scale": _scale,
+    "late": _late,
+    "wandering_bias": _wandering_bias,
 }
 """By name; what they are called with are the labels of a `Sketch`."""

@@ -7,20 +7,35 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import replace
+from io import StringIO
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.report.document import Document, Shown
-from werrimbi_odom.report.fleet.rows import ERROR, Fleet, Row
-from werrimbi_odom.report.fleet.tables import robots_table
-from werrimbi_odom.report.fleet.words import missing_words, words_of
+from werrimbi_odom.report.document import Document, Shown, Table
+from werrimbi_odom.report.fleet import (
+    ERROR,
+    Fleet,
+    Row,
+    error_words,
+    missing_words,
+    next_words,
+    words_of,
+)
 from werrimbi_odom.report.page import table_html
 from werrimbi_odom.report.save import save_report
-from werrimbi_odom.report.style import BLUE, GREEN, GREY, INK, ORANGE, PAPER, escaped, plain
-
-if TYPE_CHECKING:
-    import plotly.graph_objects as go
+from werrimbi_odom.report.style import (
+    BLUE,
+    GREEN,
+    GREY,
+    INK,
+    ORANGE,
+    PAPER,
+    Figure,
+    blank,
+    escaped,
+    plain,
+)
+from werrimbi_odom.report.terminal import as_text
 
 _FREQUENT = ((BLUE, "circle"), (ORANGE, "square"), (GREEN, "diamond"))
 """Colour and mark of the effects that most robots miss."""
@@ -36,15 +51,13 @@ _CLOSE = 60
 """Robots from which on rows move closer together."""
 
 
-def fleet_figure(fleet: Fleet) -> go.Figure | None:
+def fleet_figure(fleet: Fleet) -> Figure | None:
     """Rows of robots over held-out error [mm]; None where no robot has such an error."""
-    import plotly.graph_objects as go
-
     shown = [row for row in fleet.rows if all(map(math.isfinite, row.errors))]
     if not shown:
         return None
     looks = _looks(fleet)
-    figure = go.Figure()
+    figure = blank()
     for group, (colour, mark) in looks.items():
         rows = [row for row in shown if _group(row, looks) == group]
         if not rows:
@@ -94,7 +107,7 @@ def fleet_figure(fleet: Fleet) -> go.Figure | None:
     return figure
 
 
-def _axes(figure: go.Figure, shown: list[Row]) -> None:
+def _axes(figure: Figure, shown: list[Row]) -> None:
     errors = [1e3 * value for row in shown for value in row.errors]
     low, high = min(errors), max(errors)
     title = (
@@ -184,3 +197,62 @@ def _figures(fleet: Fleet) -> list[Shown]:
 def _title(fleet: Fleet) -> str:
     count = len(fleet.rows)
     return f"What {count} robots are missing" if count != 1 else "What one robot is missing"
+
+
+HEADS = ("robot", "runs", "verdict", "what is missing", "held-out error [mm]", "next step")
+_ROBOT, _RUNS, _VERDICT, _MISSING, _ERROR, _NEXT = range(len(HEADS))
+_RIGHT = (_RUNS, _ERROR)
+_MOST = 20
+"""Columns for names on the terminal; longer ones go on in the next line."""
+
+
+def fleet_table(fleet: Fleet, width: int = 100) -> str:
+    """The table as text that fits into `width` columns; without rich in long lines."""
+    rows = [cells(row) for row in fleet.rows]
+    try:
+        from rich import box
+        from rich.console import Console
+        from rich.table import Table as Grid
+        from rich.text import Text
+    except ModuleNotFoundError:
+        plain = [[" ".join(cell.split()) for cell in row] for row in rows]
+        return as_text([Table("The robots", HEADS, plain)])
+    made = Grid(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0), expand=True)
+    for number, head in enumerate(HEADS):
+        made.add_column(
+            Text(head.replace(" error", "\nerror")),
+            justify="right" if number in _RIGHT else "left",
+            overflow="fold",
+            no_wrap=number == _VERDICT,
+            max_width=_MOST if number in (_ROBOT, _NEXT) else None,
+            ratio=1 if number == _MISSING else None,
+        )
+    for cut in rows:
+        made.add_row(*map(Text, cut))
+    written = StringIO()
+    Console(file=written, width=width, color_system=None, legacy_windows=False).print(made)
+    lines = written.getvalue().splitlines()
+    return "\n".join(line.rstrip() for line in lines if line.strip())
+
+
+def robots_table(fleet: Fleet) -> Table:
+    """The same for a page, whole."""
+    words = [at for at in range(1, len(HEADS)) if at not in _RIGHT]
+    return Table("", HEADS, [cells(row, whole=True) for row in fleet.rows], words)
+
+
+def cells(row: Row, *, whole: bool = False) -> list[str]:
+    """The cells of a robot; line breaks part its effects.
+
+    Parameters
+    ----------
+    whole
+        Errors in full, for a page; the terminal tells them above its table.
+    """
+    missing = "\n".join(missing_words(row))
+    error, then = error_words(row), next_words(row)
+    if whole:
+        error = error.replace(" ", "\N{NO-BREAK SPACE}")
+    if row.verdict == ERROR:
+        missing, then = (row.error, "") if whole else ("could not be diagnosed", "see above")
+    return [row.robot, str(row.runs), row.verdict, missing, error, then]

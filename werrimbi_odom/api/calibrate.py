@@ -5,13 +5,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.api.calibrate_umbmark import before_after
 from werrimbi_odom.api.drives import Drives, Options, recordings_of
 from werrimbi_odom.api.result import NewRobot, Result
+from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
 
@@ -21,8 +23,10 @@ if TYPE_CHECKING:
 
     from werrimbi_odom.files.run import Run
     from werrimbi_odom.inference.calibration.any_driving import Calibration
+    from werrimbi_odom.inference.calibration.out_and_back import NoiseFit
     from werrimbi_odom.inference.legs.cutting import MatchedRun
     from werrimbi_odom.inference.legs.gaps import LeftOut
+    from werrimbi_odom.model.pose import Floats
     from werrimbi_odom.report.document import Document
 
 
@@ -55,7 +59,7 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
     from werrimbi_odom.inference.legs.no_driving import looked_at
     from werrimbi_odom.report.calibration.document import calibration_document
-    from werrimbi_odom.report.calibration.fit_words import fit_in_words
+    from werrimbi_odom.report.calibration.fit_words import fit_in_words, fit_json
     from werrimbi_odom.report.document import paragraphs
     from werrimbi_odom.report.phrases import left_out_json, left_out_words
 
@@ -66,7 +70,7 @@ def calibrated(given: Recordings) -> Result[Calibration]:
     runs = match_finely(given.runs, source.robot, given.evaluation.leg, source.limits)
     found = calibrate(runs, source.robot, with_stated_noise(given.evaluation, runs))
     left_out = _left_out(given, runs, found)
-    figures = _json(found)
+    figures = fit_json(found)
     figures["left_out"] = left_out_json(left_out)
     figures["train"] = _judged(given.runs, given, found)
     said = left_out_words(left_out)
@@ -97,7 +101,7 @@ def calibrated(given: Recordings) -> Result[Calibration]:
 
 def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) -> go.Figure:
     from werrimbi_odom.inference.calibration.any_driving import errors_of_legs
-    from werrimbi_odom.report.calibration.figures import leg_figure
+    from werrimbi_odom.report.calibration.document import leg_figure
 
     model = result.fit.point.model
     headings = [model.start_yaw(index) for index in range(len(runs))]
@@ -156,30 +160,102 @@ def _told(figures: dict[str, Any]) -> str:
     return "held-out legs, before and after: rms {:.2f}° and {:.2f}° in heading".format(*yaw)
 
 
-def _json(result: Calibration) -> dict[str, Any]:
-    parameters: dict[str, Any] = {}
-    for name, item in result.multipliers.items():
-        parameters[name] = {"value": item.value, "std": item.std, "determined": item.determined}
-    for name, noise in result.noises.items():
-        parameters[name] = {
-            "value": noise.value,
-            "std": noise.std if noise.determined and result.trusted else None,
-            "interval_95": list(noise.interval) if noise.determined and result.trusted else None,
-            "determined": noise.determined,
-        }
-    return {
-        "parameters": parameters,
-        "correlation": {
-            "names": [number.name for number in result.fit.free],
-            "matrix": result.correlation.tolist(),
-        },
-        "numbers": result.fit.numbers,
-        "not_determined": list(result.fit.held),
-        "or_as_well": result.twin,
-        "trusted": result.trusted,
-        "something_else_is_missing": [
-            *result.strange,
-            *(f"{item.channel} error goes with {item.name}" for item in result.misfit),
-        ],
-        "outliers": sum(int(legs.sum()) for legs in result.excluded),
+COLUMNS = ("ex_m", "ey_m", "eyaw_rad")
+
+
+def calibrate_noise(
+    robot: RobotFile,
+    results: str | Path,
+    distance: float,
+    *,
+    turn_round: bool = False,
+    reference_sigma_xy: float = 0.0,
+    reference_sigma_yaw: float = 0.0,
+) -> Result[NoiseFit]:
+    """Noise of both wheels from drives out and back (the paper's section 5.2).
+
+    Parameters
+    ----------
+    results
+        A table `ex_m,ey_m,eyaw_rad`, a row for each drive.
+    distance
+        One way [m].
+    turn_round
+        The robot turns round at the far end, and again at the start; else it drives backwards.
+    reference_sigma_xy, reference_sigma_yaw
+        Standard deviation of what was measured [m, rad].
+
+    Raises
+    ------
+    InputError
+        When the table cannot be used; the message says where.
+    """
+    from werrimbi_odom.inference.calibration.noise_likelihood import design
+    from werrimbi_odom.inference.calibration.out_and_back import fit_noise, out_and_back
+    from werrimbi_odom.report.calibration.document import calibration_document, noise_figure
+    from werrimbi_odom.report.calibration.noise_words import noise_in_words, noise_json
+
+    track = robot.robot.track
+    options = {
+        "distance": distance,
+        "reference_sigma_xy": reference_sigma_xy,
+        "reference_sigma_yaw": reference_sigma_yaw,
     }
+    errors = _errors(Path(results), options)
+    pieces = out_and_back(distance, track, turn_round=turn_round)
+    model = design(pieces, track, sigma_xy=reference_sigma_xy, sigma_yaw=reference_sigma_yaw)
+    try:
+        fit = fit_noise(errors, model)
+    except InputError as error:
+        raise InputError(f"{results}: {error}") from None
+    words = noise_in_words(fit, distance, track, turn_round=turn_round)
+    changes = {
+        "left_wheel_noise": float(f"{fit.left.value:.6g}"),
+        "right_wheel_noise": float(f"{fit.right.value:.6g}"),
+    }
+
+    def document() -> Document:
+        return calibration_document(
+            "Noise of the wheels from drives out and back",
+            words,
+            f"Noise of the wheels: {fit.runs} runs of {distance:g} m out and back",
+            "Each mark is a drive out and back. The solid ellipse of the model should be as large "
+            "and lie as the dashed one of the drives themselves.",
+            lambda: noise_figure(errors, fit.data, fit.model),
+            before_after(robot, changes),
+        )
+
+    return Result(
+        found=fit,
+        document=document,
+        figures_of_json=lambda: noise_json(fit, distance, COLUMNS),
+        new_robot=NewRobot(robot, changes),
+    )
+
+
+def _errors(results: Path, options: Mapping[str, float]) -> Floats:
+    from werrimbi_odom.files.results_table import read_results
+
+    for option, least in (
+        ("distance", "above"),
+        ("reference_sigma_xy", "from"),
+        ("reference_sigma_yaw", "from"),
+    ):
+        value = options[option]
+        if not math.isfinite(value) or value < 0.0 or (value == 0.0 and least == "above"):
+            name = option.replace("_", "-")
+            raise InputError(f"--{name} must be a number {least} zero, not {value:g}")
+    errors = read_results(results, COLUMNS).numbers
+    for limit, columns, unit in (
+        (options["distance"], (0, 1), "more than --distance; are the errors in metres?"),
+        (math.pi, (2,), "more than half a turn; are the angles in radians?"),
+    ):
+        for column in columns:
+            large = abs(errors[:, column]) > limit
+            if large.any():
+                row = int(large.argmax())
+                raise InputError(
+                    f"{results}, run {row + 1}, column {COLUMNS[column]}: "
+                    f"{errors[row, column]:g} is {unit}"
+                )
+    return errors

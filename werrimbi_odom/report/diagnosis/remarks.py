@@ -1,0 +1,162 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Sentences beside what was found: what is left, stands against it, or cannot be shown."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.estimated_values import at_bounds, values_of, widest
+from werrimbi_odom.inference.diagnosis.outlying_drives import RecordedOtherwise
+from werrimbi_odom.inference.manoeuvres.advice import Told, beyond_chance
+from werrimbi_odom.report.diagnosis.dependence import dependence_words
+from werrimbi_odom.report.diagnosis.phrases import error_kind, judged
+from werrimbi_odom.report.numbers import chance_words, error_words, listed, quantity
+
+
+def law(told: Told) -> list[str]:
+    """What is left once everything found is put in, or of a law that the robot file holds."""
+    misfit = told.diagnosis.misfit
+    if misfit is None:
+        return []
+    cell = f"{dependence_words(misfit.cell)} ({chance_words(misfit.cell.p_value)})"
+    if misfit.only_in is not None:
+        return [
+            f"But: drive {misfit.only_in} alone shows something more: in it {cell}. The others "
+            "hold as much driving that would show it, and do not. So no law of the robot is seen "
+            "in it: "
+            "something happened on that drive, its reference erred, or it was recorded otherwise"
+            f"{_or_a_held_law(told)}."
+        ]
+    if misfit.effect is None:
+        return [f"But: something is left. With everything found put in, {cell}."]
+    share = "" if misfit.share is None else f", {100.0 * misfit.share:.2g} % of what it explains,"
+    return [
+        f"But: the law of {misfit.effect} does not fit fully. What it leaves{share} is in what it "
+        f"looks at: {cell}. That is a matter of the law's form, and no other effect."
+    ]
+
+
+def scatter(told: Told) -> list[str]:
+    """That values scatter from part to part of the drives, and their deviations with them."""
+    diagnosis = told.diagnosis
+    widened = widest(diagnosis)
+    if widened <= 1.0:
+        return []
+    left = next(iter(beyond_chance(diagnosis.remaining)), None)
+    most = f" What is left goes most with this: {dependence_words(left)}." if left else ""
+    return [
+        f"But: the parts of the drives do not agree on these values; each ± is as wide as they "
+        f"scatter, up to {widened:.2g} times what the noise would make. So they are no more than "
+        "the mean of something that is still missing: a law that the library lacks, a reference "
+        f"that wanders, or a robot that was changed.{most}"
+    ]
+
+
+def _or_a_held_law(told: Told) -> str:
+    """The laws that the model holds, which may be a bit other than nature's."""
+    applied = told.diagnosis.robot.effects
+    laws = [each.name for each in applied if not each.effect.is_mistake]
+    return f", or the law of {listed(laws, 'or')} does not quite fit there" if laws else ""
+
+
+def without_events(told: Told) -> list[str]:
+    """What the errors are without the legs in which something happened at once."""
+    every, quiet = told.diagnosis.holdout, told.diagnosis.quiet[1]
+    if (quiet.before, quiet.after) == (every.before, every.after) or not math.isfinite(quiet.after):
+        return []
+    before, after = (error_words(error, quiet.unit) for error in (quiet.before, quiet.after))
+    change = f"goes from {before} to {after}" if told.diagnosis.found else f"is {after}"
+    return [
+        "In the errors they count, as in those of `werrimbi compare`. Without their legs the "
+        f"{error_kind(quiet)} error on {judged(told)} {change}."
+    ]
+
+
+def at_bounds_words(diagnosis: Diagnosis) -> dict[str, str]:
+    """Effects that would help, but only at a value that physics does not allow, and that value."""
+    return {
+        name: f"{parameter} = {quantity(value, math.nan, unit)}"
+        for name, (parameter, value, unit) in at_bounds(diagnosis).items()
+    }
+
+
+def otherwise(diagnosis: Diagnosis) -> list[str]:
+    """Drives that were recorded otherwise than the fitted ones, by what differs."""
+    alike: dict[tuple[str, ...], list[RecordedOtherwise]] = {}
+    for each in diagnosis.otherwise:
+        alike.setdefault(each.effects, []).append(each)
+    lines = []
+    for drives in alike.values():
+        names = listed([each.run for each in drives])
+        what = "; ".join(finding.words for finding in drives[0].findings)
+        one = len(drives) == 1
+        lines.append(
+            f"But: {'drive' if one else 'drives'} {names} {'was' if one else 'were'} recorded "
+            f"otherwise than the drives that the diagnosis is of: {what}. "
+            f"{'It has' if one else 'They have'} no part in what is said here, but for the figures "
+            "of held-out drives where there are no others."
+        )
+    return lines
+
+
+def not_shown(told: Told) -> list[str]:
+    """Effects that would have stayed hidden, and what would show them."""
+    # What is named was seen, larger than usual.
+    found = told.diagnosis.found
+    hidden = [sight for sight in told.sights if sight.hidden and sight.effect not in found]
+    if not hidden:
+        return []
+    by_drive = [
+        f"{sight.effect} ({sight.shown_by} would show it)" for sight in hidden if sight.shown_by
+    ]
+    lines = []
+    if by_drive:
+        lines.append(
+            f"These drives cannot show whether there is, of usual size, {listed(by_drive, 'or')}."
+        )
+    needing = [sight.effect for sight in hidden if sight.needs_more]
+    if needing:
+        runs, better = told.diagnosis.runs, "positions and headings does (motion capture, scans)"
+        if runs.own_axes:
+            better = "finely, in axes of the floor, does (motion capture)"
+        elif np.isfinite(runs.start).all(axis=1).any():
+            better = "more finely, and more often, does (motion capture)"
+        lines.append(
+            f"No drive shows {listed(needing)} with such a reference; one that measures {better}."
+        )
+    return lines
+
+
+def by_headings_alone(diagnosis: Diagnosis) -> list[str]:
+    """The size of both wheels, where a base was found that is one with it."""
+    if not diagnosis.runs.headings_alone or "track_width" not in diagnosis.found:
+        return []
+    size = values_of(diagnosis, "wheel_radius_scale")["multiplier"].value
+    larger = f"{100.0 * abs(size - 1.0):.2g} % {'larger' if size > 1.0 else 'smaller'}"
+    return [
+        f"Headings know the wheels' size over the base alone: wheels that are both {larger} than "
+        "entered look the same to them as that base. A straight line of 10 m beside a tape tells."
+    ]
+
+
+def instead_of_held(diagnosis: Diagnosis) -> list[str]:
+    """What the drives cannot tell from an effect that the file holds, and what can."""
+    return [
+        f"But: that it is {name}, which the robot file holds, these drives do not show: "
+        f"{listed(others, 'or')} in its place would explain them as well. `werrimbi explain` says "
+        "how each is checked on the robot; a reference that measures more often tells them apart."
+        for name, others in diagnosis.rivals_of_held.items()
+    ]
+
+
+def at_bounds_told(diagnosis: Diagnosis) -> list[str]:
+    """The same as sentences."""
+    return [
+        f"But: {name} would lower the error too, only with {value}, the limit of what physics "
+        "allows: it is not that effect."
+        for name, value in at_bounds_words(diagnosis).items()
+    ]

@@ -1,0 +1,237 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""What a recording holds, in words: wheels, references, stamps, and how the robot was driven."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import Any
+
+from werrimbi_odom.files.bag_contents import SCAN
+from werrimbi_odom.files.reference_choice import other_scans
+from werrimbi_odom.files.stamps import Stamps
+from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
+from werrimbi_odom.inference.legs.spans import Driven
+from werrimbi_odom.inference.recording_info import Held, Info, can_tell, measures_of
+from werrimbi_odom.report.document import Paragraph, paragraphs
+from werrimbi_odom.report.numbers import TIME_OF_DAY, listed
+from werrimbi_odom.report.phrases import left_out_words
+
+_MEASURES = {"poses": "poses", "positions": "positions", "yaw": "headings alone"}
+_WANDERS = 0.1  # of stamps against receipt, from which on it is worth saying [s]
+
+
+def words_of(held: Held, found: Info) -> list[Paragraph]:
+    """Its path, and a point for each thing that is told of it."""
+    head = Paragraph(str(held.path), apart=True)
+    return [head, *paragraphs(f"- {each}" for each in _lines(held, found))]
+
+
+def _lines(held: Held, found: Info) -> Iterator[str]:
+    if held.contents is not None:
+        yield wheels_words(held)
+        yield from no_wheels_words(held.joints)
+        yield from _references(held)
+        yield from _stamps(held)
+    else:
+        yield "Wheels: ticks.csv, counters."
+        measures = measures_of(held)
+        if measures != "nothing":
+            yield f"Reference: reference.csv, {_MEASURES[measures]}."
+    if held.restamped:
+        yield (
+            "By their counts, a timer read the wheels' counters evenly, and the stamps say when a "
+            f"message came: they are put back to when it was read, by {_ms(held.restamped)} (rms)."
+        )
+    if held.scans_restamped:
+        yield (
+            "By its path, the lidar turned evenly, and its scans are not stamped so: they are put "
+            f"back by {_ms(held.scans_restamped)} (rms)."
+        )
+    if held.problem:
+        yield f"It cannot be used as it is: {held.problem}."
+    if held.driven is not None:
+        yield _driven(held, held.driven, found.sizes)
+    yield from left_out_words(held.left_out)
+    if held.run is None:
+        return
+    yield from (f"{each}." for each in held.run.damage)
+    can, cannot = can_tell(held, found.sizes)
+    if can:
+        yield f"It can show {listed(can)}."
+    yield from (f"It cannot show {each}." for each in cannot)
+    if held.driven is not None and not found.sizes and measures_of(held) != "nothing":
+        yield "Whether it can show base and radii is told once their sizes are known."
+
+
+def _references(held: Held) -> Iterator[str]:
+    assert held.contents is not None
+    for each in held.contents.references:
+        taken = " It is taken." if each == held.reference else ""
+        kind = f"{each.name}: {_MEASURES[each.measures]}{rate_words(held, each.name)}"
+        if each.independent:
+            yield f"Reference {kind} ({each.why}).{taken}"
+            if taken and held.run is not None:
+                yield from (
+                    f"R{note[1:]}."
+                    for note in held.run.notes
+                    if note.startswith("reference ")
+                    and (each.kind == SCAN or "accelerometer" in note)
+                )
+        else:
+            yield f"No reference: {each.name}, {each.why}."
+    yield from (
+        f"No reference as it is: {name}, {what}." for name, what in other_scans(held.contents)
+    )
+    if held.reference is None:
+        yield "Nothing in the bag measures the robot but its own wheels."
+
+
+def _stamps(held: Held) -> Iterator[str]:
+    for name, stamps in held.stamps.items():
+        chosen = [held.wheels and held.wheels.name, held.reference and held.reference.name]
+        if any(each and name in (*each.split(","), each.partition(":")[0]) for each in chosen):
+            yield _clock(name, stamps)
+    yield from _apart(held)
+
+
+def _clock(name: str, stamps: Stamps) -> str:
+    if stamps.jitter is None:
+        words = (
+            f"{name} has no stamps: the times of receipt are used, whose intervals vary by "
+            f"± {_ms(stamps.received_jitter)}"
+        )
+    else:
+        pair = f"± {_ms(stamps.jitter)} against ± {_ms(stamps.received_jitter)} of receipt"
+        if stamps.believed == "header":
+            words = f"Stamps of {name}: believe the headers, whose intervals vary by {pair}"
+        else:
+            words = (
+                f"Stamps of {name}: the headers are used, though their intervals vary by {pair}: "
+                "the times of receipt are the evener"
+            )
+        if abs(stamps.offset or 0.0) > TIME_OF_DAY:
+            apart = "they are of another clock than receipt (a simulation's, or one that began"
+            return f"{words}; {apart} when a computer was switched on)."
+        if (stamps.wander or 0.0) > _WANDERS:
+            words += (
+                f"; what lies between stamp and receipt wanders by {stamps.wander:.2g} s, and is "
+                f"{stamps.offset:.2g} s as a rule and {stamps.latest:.2g} s at most"
+            )
+            if (stamps.offset or 0.0) < 0.0:
+                words += " (negative: two clocks that differ)"
+    extras = []
+    if stamps.bursts > 0.01:
+        extras.append(f"{100 * stamps.bursts:.0f} % come together with the one before")
+    if stamps.late > 0.01:
+        extras.append(f"{100 * stamps.late:.0f} % are late by a tenth of a second and more")
+    if stamps.back:
+        extras.append(f"the stamps go back {stamps.back} times")
+    return f"{words}{'; ' if extras else ''}{', '.join(extras)}."
+
+
+def _apart(held: Held) -> Iterator[str]:
+    names = [each.name.split(",")[0].partition(":")[0] for each in _chosen(held)]
+    offsets = [held.stamps[name].offset for name in names if name in held.stamps]
+    if len(offsets) == 2 and offsets[0] is not None and offsets[1] is not None:
+        apart = offsets[0] - offsets[1]
+        if abs(apart) > _WANDERS:
+            yield (
+                f"Their clocks are apart: the reference's stamps are {abs(apart):.3g} s "
+                f"{'later' if apart > 0 else 'earlier'} than those of the wheels, by when both "
+                "were received."
+            )
+
+
+def _chosen(held: Held) -> list[Any]:
+    return [each for each in (held.wheels, held.reference) if each is not None]
+
+
+def _ms(seconds: float) -> str:
+    return f"{1e3 * seconds:.0f} ms"
+
+
+def _driven(held: Held, drive: Driven, sizes: bool) -> str:
+    times: dict[str, float] = {}
+    for span in drive.spans:
+        times[span.what] = times.get(span.what, 0.0) + span.end - span.begin
+    whole = drive.spans[-1].end - drive.spans[0].begin if drive.spans else 0.0
+    told = [
+        f"{verb} for {times[what]:.1f} s"
+        for what, verb in (
+            ("drove", "drove"),
+            ("stood", "stood"),
+            ("held", "was held"),
+            ("carried", "was carried or turned by hand"),
+        )
+        if what in times
+    ]
+    way = ""
+    if sizes and "drove" in times:
+        turned = math.degrees(drive.turned)
+        way = f" By its wheels it went {drive.way:.1f} m and turned {turned:.0f}°"
+        way += f", and changed its direction {drive.reversals} times." if drive.reversals else "."
+    return f"In {whole:.1f} s the robot {listed(told) if told else 'did nothing'}.{way}"
+
+
+_GIVES = {
+    "counts": "counters",
+    "positions": "angles of the wheels",
+    "velocities": "speeds of the wheels, which are integrated",
+    "odometry": "the robot's own odometry, turned back into travel of its wheels",
+}
+_OF_WHEELS = ("wheel", "encoder", "tick", "motor", "odom", "joint")
+WITHOUT_WHEELS = (
+    "Record how the wheels turned as well: /joint_states with their angles, the driver's counters "
+    "(docs/recordings.md lists the types that are read), or at least its /odom."
+)
+
+
+def wheels_words(held: Held) -> str:
+    """The topic, what it gives, and the wheels on each side."""
+    wheels = held.wheels
+    if wheels is None:
+        return f"Wheels: nothing that is read in the bag tells how they turned.{_unread(held)}"
+    joints, told = held.joints, ""
+    if joints.left:
+        told = f", on the left {listed(joints.left)}, on the right {listed(joints.right)}"
+    elif wheels.joints:
+        told = f"; no name says which joint is a wheel: {listed(wheels.joints)}"
+    return f"Wheels: {wheels.name}, {_GIVES[wheels.gives]}{rate_words(held, wheels.name)}{told}."
+
+
+def _unread(held: Held) -> str:
+    """Topics that by their names may tell it, and that are of no type that is read."""
+    assert held.contents is not None
+    known = {each.name for each in held.contents.references}
+    may = [
+        f"{each.name} ({each.kind})"
+        for each in held.contents.topics
+        if each.name not in known and any(word in each.name.lower() for word in _OF_WHEELS)
+    ]
+    verb = "is" if len(may) == 1 else "are"
+    return f" By name {listed(may)} may, but {verb} of no type that is read." if may else ""
+
+
+def no_wheels_words(joints: WheelJoints) -> Iterator[str]:
+    """Joints that are taken for no wheels, and why."""
+    named = [name for name in joints.others if is_no_wheel(name)]
+    rolled = [name for name in joints.rolled if name not in named]
+    stayed = [name for name in joints.others if name not in (*named, *rolled)]
+    if named:
+        yield f"No wheels by their names: {listed(named)}."
+    if stayed and (joints.left or rolled):
+        yield f"Not taken for wheels, as nothing says that they are: {listed(stayed)}."
+    if rolled:
+        yield (
+            f"Not taken for wheels, though they turned by more than a turn: {listed(rolled)}. If "
+            "they are, name them in a robot file (left_wheel_names, right_wheel_names), and give "
+            "it with --robot."
+        )
+
+
+def rate_words(held: Held, name: str) -> str:
+    """How often a topic's messages come, after its name."""
+    stamps = held.stamps.get(name.split(",")[0].partition(":")[0])
+    return "" if stamps is None or name.startswith("/tf") else f" at {stamps.rate:.3g} Hz"
