@@ -11,9 +11,11 @@ from werrimbi_odom.inference.linear import (
     DETERMINED,
     admitted,
     covariance_of,
+    inverse_root,
     nuisance,
     score_test,
     solved,
+    square_and_volume,
 )
 
 RANDOM = np.random.default_rng(4)
@@ -80,3 +82,18 @@ def test_a_silent_column_is_neither_tested_nor_moved() -> None:
     none = np.zeros((200, 1))
     assert score_test(none, none, DATA) is None
     np.testing.assert_array_equal(solved(np.concatenate([none, COLUMNS], axis=1), DATA)[:1], 0.0)
+
+
+def test_formulas_for_covariances_say_what_lapack_says() -> None:
+    random = np.random.default_rng(3)
+    part = random.normal(0.0, [1.0, 0.1, 0.02], (2, 50, 3, 3))
+    covariance = part.swapaxes(-1, -2) @ part + np.diag([1e-4, 1e-4, 1e-6])
+    covariance[:, :10, 2, 2] += 1e6  # what was not measured
+    value = random.normal(0.0, [1.0, 0.1, 0.02], (2, 50, 3))
+    root = np.linalg.inv(np.linalg.cholesky(covariance))
+    np.testing.assert_allclose(inverse_root(covariance), root, rtol=1e-7, atol=1e-9)
+    square, volume = square_and_volume(covariance, value)
+    np.testing.assert_allclose(square, np.sum((root @ value[..., None]) ** 2, (-1, -2)), rtol=1e-7)
+    np.testing.assert_allclose(volume, np.linalg.slogdet(covariance)[1], rtol=1e-9)
+    with pytest.raises(np.linalg.LinAlgError):
+        inverse_root(-covariance)

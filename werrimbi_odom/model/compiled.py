@@ -36,7 +36,9 @@ def compiled(function: Function) -> Function | None:
         import numba
     except ImportError:
         return None
-    own = copied_for_floats(function, numba.njit(error_model="numpy"))
+    # What is called is put in its place: to hand on tuples of many numbers takes its time.
+    inner = numba.njit(error_model="numpy", forceinline=True)
+    own = copied_for_floats(function, inner)
     own.__qualname__ += f"_{_digest()}"  # names the file that it is kept in
     try:
         return cast("Function", numba.njit(cache=True, error_model="numpy")(own))

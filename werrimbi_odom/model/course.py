@@ -32,7 +32,7 @@ from werrimbi_odom.model.pieces_online import NOTHING, PieceRule
 from werrimbi_odom.model.pieces_recorded import Cut, cut
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import Robot
-from werrimbi_odom.model.scalar_loop import March, Marching, march, sums_of
+from werrimbi_odom.model.scalar_loop import March, Marching, follow, march, sums_of
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece
 
 WORTH_COMPILING = 200_000
@@ -143,6 +143,23 @@ def integrated(start: Pose, motion: BodyMotion[Floats]) -> Floats:
         poses[:2, 1:][:, steps] = displacement(part, poses[2, steps])
     np.cumsum(poses[:2], axis=1, out=poses[:2])
     return poses
+
+
+def followed(motion: BodyMotion[Floats]) -> tuple[NDArray[np.complex128], Floats]:
+    """Position and yaw from zero on, shape (n + 1,) each: `integrated`, the fastest way there is.
+
+    For who follows one run again and again, and has machine code loaded anyway.
+    """
+    position = np.zeros(motion.turn.size + 1, dtype=np.complex128)
+    machine = compiled(follow)
+    if machine is None:
+        x, y, yaw = integrated(Pose(), motion)
+        position.real, position.imag = x, y
+    else:
+        yaw = np.zeros(position.size)
+        steps = BodyMotion(*map(np.ascontiguousarray, motion))
+        machine(steps, position.view(np.float64).reshape(-1, 2), yaw)
+    return position, yaw
 
 
 def _in_arrays(

@@ -138,9 +138,8 @@ def with_wheels_of_messages(drive: DriveOfRun, message: NDArray[np.intp]) -> Dri
     Parameters
     ----------
     message : ndarray, shape (n,)
-        Number of the message in which each step ends, counted from any.
+        Number of the message in which each step ends, counted from 0 on, and none left out.
     """
-    _, message = np.unique(message, return_inverse=True)
 
     @cache
     def lasted() -> Floats:

@@ -101,6 +101,23 @@ def march(
     return Marching(pose, covariance, start, covariance_start, earlier, stretch), pieces
 
 
+def follow(motion: BodyMotion[Floats], position: Floats, yaw: Floats) -> None:
+    """Follow the steps of a run; `course.followed` has what is taken and filled.
+
+    Parameters
+    ----------
+    position : ndarray, shape (n + 1, 2)
+        The first row is given; the others are filled, as those of `yaw`, shape (n + 1,).
+    """
+    along, sideways, turn = motion
+    for step in range(turn.size):
+        moved = BodyMotion(along[step], sideways[step], turn[step])
+        dx, dy = displacement(moved, yaw[step])
+        position[step + 1, 0] = position[step, 0] + dx
+        position[step + 1, 1] = position[step, 1] + dy
+        yaw[step + 1] = yaw[step] + turn[step]
+
+
 March = Callable[..., tuple[Marching, int]]
 """`march`, or machine code of it."""
 

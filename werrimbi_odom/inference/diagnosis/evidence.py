@@ -32,7 +32,8 @@ from werrimbi_odom.inference.fitting.candidates import unexplained
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Point, unexpected
 from werrimbi_odom.inference.fitting.free_parameters import FreeParameter
-from werrimbi_odom.inference.fitting.prediction import DrivenPath, path_of, predict_all
+from werrimbi_odom.inference.fitting.leg_noise import DrivenPath
+from werrimbi_odom.inference.fitting.prediction import path_of, predict_all
 from werrimbi_odom.inference.linear import ScoreTest, score_test_of_products
 from werrimbi_odom.inference.rules import FLOOR_CELL, NEIGHBOUR
 from werrimbi_odom.model.effect import view_of

@@ -207,7 +207,8 @@ class Concatenated:
         key = (*wiring, robot.left_tick, robot.right_tick, robot.track)
         known = self._features.get(key)
         if known is None:
-            known = _drives_joined([_drive_of(run, robot, wiring) for run in self.runs])
+            of_steps = zip(self.runs, self.known("messages", _messages), strict=True)
+            known = _drives_joined([_drive_of(run, its, robot, wiring) for run, its in of_steps])
             _remember(self._features, key, known, DRIVES)
         return known
 
@@ -248,13 +249,23 @@ def laid_out(runs: Sequence[MatchedRun] | Concatenated) -> Concatenated:
     return runs if isinstance(runs, Concatenated) else concatenated(runs)
 
 
-def _drive_of(run: MatchedRun, robot: Robot, wiring: Wiring) -> DriveOfRun:
+def _messages(runs: Concatenated) -> list[NDArray[np.intp]]:
+    """The message that each step is a part of, numbered from 0 on in each run."""
+    middles = [(run, 0.5 * (run.time[1:] + run.time[:-1])) for run in runs.runs]
+    return [
+        np.unique(run.counters.message_at(middle), return_inverse=True)[1]
+        for run, middle in middles
+    ]
+
+
+def _drive_of(
+    run: MatchedRun, message: NDArray[np.intp], robot: Robot, wiring: Wiring
+) -> DriveOfRun:
     left, right = wiring.wheels(run.left, run.right)
     first_counts = wiring.wheels(run.counters.first_left, run.counters.first_right)
     raw = WheelTravel(left * robot.left_tick, right * robot.right_tick)
     drive = features(robot, np.diff(run.time), raw, first_counts, run.channels)
-    middle = 0.5 * (run.time[1:] + run.time[:-1])
-    return with_wheels_of_messages(drive, run.counters.message_at(middle))
+    return with_wheels_of_messages(drive, message)
 
 
 def _drives_joined(parts: Sequence[DriveOfRun]) -> DriveOfRun:

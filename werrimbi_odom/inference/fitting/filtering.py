@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.inference.fitting.leg_loop import InOrder, both_of, go_along
+from werrimbi_odom.inference.fitting.leg_loop import Loop, both_of, go_along
 from werrimbi_odom.model.pose import Floats
 
 STRETCH = 100
@@ -184,7 +184,7 @@ def in_rounds(legs: Legs) -> tuple[NDArray[np.intp], NDArray[np.intp], list[slic
     length = np.diff(np.append(first, legs.relative.shape[0]))
     order = np.argsort(-length, kind="stable")
     first, length = first[order], length[order]
-    active = [int(np.searchsorted(-length, -step)) for step in range(int(length[0]))]
+    active = np.searchsorted(-length, -np.arange(length[0]))
     bounds = np.concatenate([[0], np.cumsum(active)]).tolist()
     leg = np.concatenate([first[:still] + step for step, still in enumerate(active)])
     return first, leg, [slice(begin, end) for begin, end in itertools.pairwise(bounds)]
@@ -204,35 +204,24 @@ def filtered(legs: Legs) -> Unexpected:
     state[:, 2] = np.where(free, np.nan_to_num(legs.heading[first]), state[:, 2])
     alike = legs.reading.shape[1] == 1
     spread = (legs.reading if alike else legs.reading[:, first]) * both_of(finite)
-    finish = legs.finish[leg]
-    known, jumped = np.isfinite(finish), legs.skip[leg]
-    noise = legs.noise[:, leg]
-    of = InOrder(
+    known = np.isfinite(legs.finish)
+    of = Loop(
+        leg,
         rounds,
         state,
         spread,
-        legs.relative[leg],
-        noise,
-        np.where(known, finish, 0.0),
+        legs.relative,
+        legs.noise,
+        np.where(known, legs.finish, 0.0),
         known,
-        jumped,
-        np.broadcast_to(legs.reading, noise.shape) if alike else legs.reading[:, leg],
-        values=np.zeros((sets, count, 3)),
+        legs.skip,
+        legs.reading,
+        values=np.empty((sets, count, 3)),
         covariances=np.empty((sets, count, 3, 3)),
-        turns=np.empty((sets, count, 3, 3)),
-        levers=np.empty((sets, count, 3, 3)),
-        kept=np.empty((count, 3, 3)),
+        turns=np.empty((count, 3, 3)),
+        carry=np.empty((count, 3, 3)),
     )
     go_along(of)
-    place = np.empty(count, dtype=np.intp)
-    place[leg] = np.arange(count)
-    back = of.turns.swapaxes(-1, -2)
-    seen_back = -back[0] * (known & ~jumped[:, None])[:, None]
-    passed = of.levers[0].copy()
-    for last, now in itertools.pairwise(rounds):
-        passed[now] = of.levers[0, now] @ of.kept[last.start : last.start + now.stop - now.start]
-    return Unexpected(
-        (back @ of.values[..., None])[..., 0][:, place],
-        (back @ of.covariances @ of.turns)[:, place],
-        Ways(leg, of.turns[0], passed, seen_back, free, rounds),
-    )
+    counted = (known & ~legs.skip[:, None])[leg]
+    leave = -of.turns.swapaxes(-1, -2) * counted[:, None]
+    return Unexpected(of.values, of.covariances, Ways(leg, of.turns, of.carry, leave, free, rounds))

@@ -21,33 +21,39 @@ UNMEASURED = 1e6
 """Variance [m², rad²] that stands for a coordinate that was not measured."""
 
 
-class InOrder(NamedTuple):
-    """What the loop is to be told of m legs in the order of its rounds, and what it fills."""
+class Loop(NamedTuple):
+    """What the loop is to be told of m legs, for g sets of variances, and what it fills."""
 
+    leg: NDArray[np.intp]
+    """The legs in the order of the rounds, (m,): the first of all stretches, the second ..."""
     rounds: list[slice]
     state: Floats
     """Pose at which each of j stretches begins, (j, 3)."""
     spread: Floats
     """Covariance of it, (g, j, 3, 3)."""
     relative: Floats
+    """Of the legs in their own order, as in `filtering.Legs`: (m, 3) ..."""
     noise: Floats
+    """... (g, m, 3, 3) ..."""
     finish: Floats
-    """Zero where nothing was measured."""
+    """... (m, 3), zero where nothing was measured ..."""
     known: NDArray[np.bool_]
+    """... and whether it was, (m, 3)."""
     jumped: NDArray[np.bool_]
     reading: Floats
+    """(g, m, 3, 3); (g, 1, 3, 3) if all are alike."""
     values: Floats
-    """Innovations, (g, m, 3), and `covariances` (g, m, 3, 3), in the axes of the state."""
+    """Filled: innovations, (g, m, 3), in the frame of the robot at each leg's start ..."""
     covariances: Floats
+    """... and `covariances`, (g, m, 3, 3)."""
     turns: Floats
-    """Into the state's axes from the robot's at the leg's start, (g, m, 3, 3)."""
-    levers: Floats
-    """What a change of the heading does on the way, (g, m, 3, 3)."""
-    kept: Floats
-    """What is left of a change once it was corrected, for the first set, (m, 3, 3)."""
+    """Filled for the first set, in the order of the rounds: into the state's axes from the robot's
+    at the leg's start, (m, 3, 3) ..."""
+    carry: Floats
+    """... and what becomes at the leg's end of a change at the end of the leg before, (m, 3, 3)."""
 
 
-def go_along(of: InOrder) -> None:
+def go_along(of: Loop) -> None:
     """Fill what the loop fills, the faster way."""
     machine = compiled(leg_by_leg)
     if machine is None:
@@ -56,30 +62,33 @@ def go_along(of: InOrder) -> None:
     starts = np.array([0, *(now.stop for now in of.rounds)])
     spread = np.broadcast_to(of.spread, (of.noise.shape[0], *of.spread.shape[1:]))
     given = of.state, spread, of.relative, of.noise, of.finish, of.known, of.jumped, of.reading
-    filled = of.values, of.covariances, of.turns, of.levers, of.kept
-    machine(starts, *map(np.ascontiguousarray, given), UNMEASURED, *filled)
+    filled = of.values, of.covariances, of.turns, of.carry
+    machine(of.leg, starts, *map(np.ascontiguousarray, given), UNMEASURED, *filled)
 
 
-def side_by_side(of: InOrder) -> None:
+def side_by_side(of: Loop) -> None:
     """The loop, all stretches and sets in step: `leg_by_leg` for arrays."""
     state = np.repeat(of.state[None], of.noise.shape[0], axis=0)
     spread = of.spread
-    doubted = of.reading + UNMEASURED * diagonal_of(~of.known)
+    reading = np.broadcast_to(of.reading, of.noise.shape)
     identity = np.eye(3)
-    of.levers[:] = identity
+    kept = np.broadcast_to(identity, (of.state.shape[0], 3, 3))
     for now in of.rounds:
-        still = now.stop - now.start
-        seen, leapt = of.known[now], of.jumped[now]
+        own, still = of.leg[now], now.stop - now.start
+        seen, leapt = of.known[own], of.jumped[own]
         state, spread = state[:, :still], spread[:, :still]
-        turn, lever = of.turns[:, now], of.levers[:, now]
+        turn, lever = np.empty((2, *state.shape, 3))
         turn_into(turn, state[..., 2])
-        move = (turn @ of.relative[now, :, None])[..., 0]
+        back = turn.swapaxes(-1, -2)
+        move = (turn @ of.relative[own, :, None])[..., 0]
+        lever[:] = identity
         lever[..., 0, 2], lever[..., 1, 2] = -move[..., 1], move[..., 0]
+        of.turns[now], of.carry[now] = turn[0], lever[0] @ kept[:still]
         state = state + move
         spread = lever @ spread @ lever.swapaxes(-1, -2)
-        spread += turn @ of.noise[:, now] @ turn.swapaxes(-1, -2)
-        total = np.add(spread, doubted[:, now], out=of.covariances[:, now])
-        new = np.subtract(of.finish[now], state, out=of.values[:, now])
+        spread += turn @ of.noise[:, own] @ back
+        total = spread + reading[:, own] + UNMEASURED * diagonal_of(~seen)
+        new = of.finish[own] - state
         new[:, ~seen] = 0.0
         new[..., 2] = wrap_all(new[..., 2])
         gain = spread @ np.linalg.inv(total)
@@ -87,20 +96,23 @@ def side_by_side(of: InOrder) -> None:
         state = state + (gain @ new[..., None])[..., 0]
         spread = spread - gain @ spread
         spread = 0.5 * (spread + spread.swapaxes(-1, -2))
-        of.kept[now] = identity - gain[0] * seen[:, None, :]
+        kept = identity - gain[0] * seen[:, None, :]
         if leapt.any():
             # What was measured at the end of a leg with a jump is all that is known of it; the rest
             # (the heading, where positions alone are measured) is as well known as the wheels
             # carried it there.
             both, apart = both_of(seen), both_of(~seen)
-            anew = np.where(apart, before[1], np.where(both, of.reading[:, now], 0.0))
-            of.values[:, now][:, leapt] = 0.0
-            state = np.where(leapt[:, None], np.where(seen, of.finish[now], before[0]), state)
+            anew = np.where(apart, before[1], np.where(both, reading[:, own], 0.0))
+            new[:, leapt] = 0.0
+            state = np.where(leapt[:, None], np.where(seen, of.finish[own], before[0]), state)
             spread = np.where(leapt[:, None, None], anew, spread)
-            of.kept[now][leapt] = diagonal_of(~seen[leapt])
+            kept[leapt] = diagonal_of(~seen[leapt])
+        of.values[:, own] = (back @ new[..., None])[..., 0]
+        of.covariances[:, own] = back @ total @ turn
 
 
 def leg_by_leg(
+    leg: NDArray[np.intp],
     starts: NDArray[np.intp],
     state: Floats,
     spread: Floats,
@@ -114,37 +126,32 @@ def leg_by_leg(
     values: Floats,
     covariances: Floats,
     turns: Floats,
-    levers: Floats,
-    kept: Floats,
+    carry: Floats,
 ) -> None:
     """Predict, compare, correct; each stretch for itself, for g sets of variances.
 
     Parameters
     ----------
     starts : ndarray, shape (r + 1,)
-        First rows of the rounds; leg k of stretch j is row ``starts[k] + j``.
-    state, spread : ndarray, shape (j, 3) and (g, j, 3, 3)
-        Where the stretches begin, and its covariance.
-    relative, noise, finish, known, jumped, reading
-        Of the m legs in the order of the rounds: (m, 3), (g, m, 3, 3), (m, 3), (m, 3), (m,) and
-        (g, m, 3, 3); see `filtering.Legs`.
+        First rows of the rounds; leg k of stretch j is ``leg[starts[k] + j]``.
     unmeasured : float
         Variance of what was not measured.
-    values, covariances, turns, levers, kept : ndarray
-        Filled: innovations (g, m, 3), their covariance, the rotation into the state's axes and what
-        a change of the heading does, (g, m, 3, 3) each; for the first set what is left of a change
-        once it was corrected, (m, 3, 3).
+
+    All else is as in `Loop`.
     """
+    alike = reading.shape[1] == 1
     for group in range(noise.shape[0]):
         for stretch in range(state.shape[0]):
             x, y, yaw = state[stretch, 0], state[stretch, 1], state[stretch, 2]
+            kept = np.eye(3)  # what is left of a change once it was corrected
             first = spread[group, stretch]
             xx, xy, xt = first[0, 0], first[0, 1], first[0, 2]
             yy, yt, tt = first[1, 1], first[1, 2], first[2, 2]
             for step in range(starts.size - 1):
-                row = starts[step] + stretch
-                if row >= starts[step + 1]:
+                place = starts[step] + stretch
+                if place >= starts[step + 1]:
                     break
+                row = leg[place]
                 cos, sin = math.cos(yaw), math.sin(yaw)
                 ahead, aside, turned = relative[row, 0], relative[row, 1], relative[row, 2]
                 dx, dy = cos * ahead - sin * aside, sin * ahead + cos * aside
@@ -164,13 +171,15 @@ def leg_by_leg(
                 tt += n[2, 2]
                 x, y, yaw = x + dx, y + dy, yaw + turned
 
-                turn, lever = turns[group, row], levers[group, row]
-                turn[0, 0], turn[0, 1], turn[0, 2] = cos, -sin, 0.0
-                turn[1, 0], turn[1, 1], turn[1, 2] = sin, cos, 0.0
-                turn[2, 0], turn[2, 1], turn[2, 2] = 0.0, 0.0, 1.0
-                lever[0, 0], lever[0, 1], lever[0, 2] = 1.0, 0.0, -dy
-                lever[1, 0], lever[1, 1], lever[1, 2] = 0.0, 1.0, dx
-                lever[2, 0], lever[2, 1], lever[2, 2] = 0.0, 0.0, 1.0
+                if group == 0:
+                    turn, passed = turns[place], carry[place]
+                    turn[0, 0], turn[0, 1], turn[0, 2] = cos, -sin, 0.0
+                    turn[1, 0], turn[1, 1], turn[1, 2] = sin, cos, 0.0
+                    turn[2, 0], turn[2, 1], turn[2, 2] = 0.0, 0.0, 1.0
+                    for column in range(3):
+                        passed[0, column] = kept[0, column] - dy * kept[2, column]
+                        passed[1, column] = kept[1, column] + dx * kept[2, column]
+                        passed[2, column] = kept[2, column]
 
                 # The innovation and its covariance, whose inverse is that of its cofactors.
                 seen_x, seen_y, seen_t = known[row, 0], known[row, 1], known[row, 2]
@@ -178,16 +187,19 @@ def leg_by_leg(
                 off_y = finish[row, 1] - y if seen_y else 0.0
                 off_t = finish[row, 2] - yaw if seen_t else 0.0
                 off_t -= 2.0 * math.pi * np.rint(off_t / (2.0 * math.pi))  # as `wrap_all` does
-                of = reading[group, row]
+                of = reading[group, 0 if alike else row]
                 a = xx + of[0, 0] + (0.0 if seen_x else unmeasured)
                 b, c = xy + of[0, 1], xt + of[0, 2]
                 d = yy + of[1, 1] + (0.0 if seen_y else unmeasured)
                 e = yt + of[1, 2]
                 f = tt + of[2, 2] + (0.0 if seen_t else unmeasured)
                 total = covariances[group, row]
-                total[0, 0], total[0, 1], total[0, 2] = a, b, c
-                total[1, 0], total[1, 1], total[1, 2] = b, d, e
-                total[2, 0], total[2, 1], total[2, 2] = c, e, f
+                total[0, 0] = cos * cos * a + 2.0 * cos * sin * b + sin * sin * d
+                total[1, 1] = sin * sin * a - 2.0 * cos * sin * b + cos * cos * d
+                total[0, 1] = cos * sin * (d - a) + (cos * cos - sin * sin) * b
+                total[0, 2], total[1, 2] = cos * c + sin * e, cos * e - sin * c
+                total[1, 0], total[2, 0], total[2, 1] = total[0, 1], total[0, 2], total[1, 2]
+                total[2, 2] = f
                 co_a, co_b, co_c = d * f - e * e, c * e - b * f, b * e - c * d
                 co_d, co_e, co_f = a * f - c * c, b * c - a * e, a * d - b * b
                 size = 1.0 / (a * co_a + b * co_b + c * co_c)
@@ -208,15 +220,14 @@ def leg_by_leg(
                         xt = of[0, 2] if seen_x and seen_t else 0.0
                     if seen_y or seen_t:
                         yt = of[1, 2] if seen_y and seen_t else 0.0
-                    if group == 0:
-                        kept[row, :, :] = 0.0
-                        kept[row, 0, 0] = 0.0 if seen_x else 1.0
-                        kept[row, 1, 1] = 0.0 if seen_y else 1.0
-                        kept[row, 2, 2] = 0.0 if seen_t else 1.0
+                    kept[:, :] = 0.0
+                    kept[0, 0] = 0.0 if seen_x else 1.0
+                    kept[1, 1] = 0.0 if seen_y else 1.0
+                    kept[2, 2] = 0.0 if seen_t else 1.0
                     continue
 
-                values[group, row, 0] = off_x
-                values[group, row, 1] = off_y
+                values[group, row, 0] = cos * off_x + sin * off_y
+                values[group, row, 1] = cos * off_y - sin * off_x
                 values[group, row, 2] = off_t
                 gxx = size * (xx * co_a + xy * co_b + xt * co_c)
                 gxy = size * (xx * co_b + xy * co_d + xt * co_e)
@@ -227,17 +238,15 @@ def leg_by_leg(
                 gtx = size * (xt * co_a + yt * co_b + tt * co_c)
                 gty = size * (xt * co_b + yt * co_d + tt * co_e)
                 gtt = size * (xt * co_c + yt * co_e + tt * co_f)
-                if group == 0:
-                    left = kept[row]
-                    left[0, 0] = 1.0 - gxx if seen_x else 1.0
-                    left[1, 0] = -gyx if seen_x else 0.0
-                    left[2, 0] = -gtx if seen_x else 0.0
-                    left[0, 1] = -gxy if seen_y else 0.0
-                    left[1, 1] = 1.0 - gyy if seen_y else 1.0
-                    left[2, 1] = -gty if seen_y else 0.0
-                    left[0, 2] = -gxt if seen_t else 0.0
-                    left[1, 2] = -gyt if seen_t else 0.0
-                    left[2, 2] = 1.0 - gtt if seen_t else 1.0
+                kept[0, 0] = 1.0 - gxx if seen_x else 1.0
+                kept[1, 0] = -gyx if seen_x else 0.0
+                kept[2, 0] = -gtx if seen_x else 0.0
+                kept[0, 1] = -gxy if seen_y else 0.0
+                kept[1, 1] = 1.0 - gyy if seen_y else 1.0
+                kept[2, 1] = -gty if seen_y else 0.0
+                kept[0, 2] = -gxt if seen_t else 0.0
+                kept[1, 2] = -gyt if seen_t else 0.0
+                kept[2, 2] = 1.0 - gtt if seen_t else 1.0
                 x += gxx * off_x + gxy * off_y + gxt * off_t
                 y += gyx * off_x + gyy * off_y + gyt * off_t
                 yaw += gtx * off_x + gty * off_y + gtt * off_t

@@ -29,6 +29,7 @@ from werrimbi_odom.inference.fitting.leg_loop import UNMEASURED
 from werrimbi_odom.inference.fitting.prediction import Prediction, right_handed
 from werrimbi_odom.inference.fitting.wandering import LaidHeading, Wander, filtered_wandering
 from werrimbi_odom.inference.legs.cutting import MatchedRun
+from werrimbi_odom.inference.linear import inverse_root, square_and_volume
 from werrimbi_odom.inference.rules import EVENT_STEP
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.effect import view_of
@@ -89,9 +90,7 @@ class Innovations:
 
     def cost_of_legs(self) -> Floats:
         """Minus two log-likelihood of each leg, constants left out; (g, m), zero where unseen."""
-        solved = np.linalg.solve(self.covariance, self.value[..., None])[..., 0]
-        misfit = np.sum(self.value * solved, axis=-1)
-        volume = np.linalg.slogdet(self.covariance)[1]
+        misfit, volume = square_and_volume(self.covariance, self.value)
         return np.where(self.known.any(axis=-1), misfit + volume, 0.0)
 
     def minus_two_log_likelihood(self) -> Floats:
@@ -137,8 +136,7 @@ class Innovations:
 
     def _root(self) -> Floats:
         if not self._roots:
-            root = np.linalg.inv(np.linalg.cholesky(self.covariance[0]))
-            self._roots.append(root * self.known[..., None])
+            self._roots.append(inverse_root(self.covariance[0]) * self.known[..., None])
         return self._roots[0]
 
 

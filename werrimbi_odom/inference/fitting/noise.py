@@ -21,6 +21,7 @@ from werrimbi_odom.inference.fitting.design import Costs
 from werrimbi_odom.inference.fitting.fisher_scoring import hessian, minimum
 from werrimbi_odom.inference.fitting.likelihood import Variances
 from werrimbi_odom.inference.fitting.prediction import Prediction
+from werrimbi_odom.inference.linear import inverse_root
 from werrimbi_odom.inference.rules import (
     GYRO_WALK_SPREAD,
     MATCH_SPREAD,
@@ -165,7 +166,7 @@ def _scored(
     cost = found.minus_two_log_likelihood() + prior_cost(costs, sets)
     counted = found.known.any(axis=-1)
     try:
-        root = np.linalg.inv(np.linalg.cholesky(found.covariance[0, counted]))
+        root = inverse_root(found.covariance[0, counted])
     except np.linalg.LinAlgError:  # beside a leg that may end anywhere all digits are lost
         return np.inf, np.zeros(logs.size), np.eye(logs.size)
     of_covariance = (found.covariance[1:, counted] - found.covariance[0, counted]) / step

@@ -13,19 +13,14 @@ from numpy.typing import NDArray
 
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated, concatenated
 from werrimbi_odom.inference.fitting.free_parameters import START_YAW, Model
+from werrimbi_odom.inference.fitting.leg_noise import DrivenPath, noise_of_legs
 from werrimbi_odom.inference.legs.cutting import MatchedRun
-from werrimbi_odom.model.course import integrated
-from werrimbi_odom.model.covariance import (
-    PoseCovariance,
-    carried,
-    noise_of_wheel_variances,
-    piece_covariance,
-)
+from werrimbi_odom.model.course import followed
 from werrimbi_odom.model.driving import acts
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.effects_over_run import AfterEffects, driven_from_measured
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, wheels_to_body
-from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.reference_view import View
 from werrimbi_odom.model.robot import Robot
 
@@ -49,16 +44,6 @@ class Prediction:
     """Signed travel in each leg, shape (m,), [m]."""
     turn: Floats
     """Change of heading in each leg, shape (m,), [rad]."""
-
-
-@dataclass(frozen=True, slots=True)
-class DrivenPath:
-    """Poses of the nodes of all runs, one after the other; only differences mean anything."""
-
-    motion: BodyMotion[Floats]
-    travel: WheelTravel[Floats]
-    position: NDArray[np.complex128]
-    yaw: Floats
 
 
 def predict(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Prediction:
@@ -99,7 +84,7 @@ def _predicted(model: Model, runs: Concatenated) -> Prediction:
     path = _path_of(model, runs)
     return Prediction(
         _shown(path, runs, view, model.drifts),
-        *_noise_of_legs(path, runs, model.robot.track, view),
+        *noise_of_legs(path, runs, model.robot.track, view),
         runs.per_leg(np.abs(path.motion.along)),
         runs.per_leg(path.motion.along),
         path.yaw[runs.end] - path.yaw[runs.begin],
@@ -216,10 +201,7 @@ def places_of(
 
 
 def _from_motion(travel: WheelTravel[Floats], motion: BodyMotion[Floats]) -> DrivenPath:
-    x, y, yaw = integrated(Pose(), motion)
-    position = np.empty(yaw.size, dtype=np.complex128)
-    position.real, position.imag = x, y
-    return DrivenPath(motion, travel, position, yaw)
+    return DrivenPath(motion, travel, *followed(motion))
 
 
 def _shown(path: DrivenPath, runs: Concatenated, view: View, drifts: Floats) -> Floats:
@@ -264,37 +246,3 @@ def _late(path: DrivenPath, runs: Concatenated, nodes: NDArray[np.intp], delay: 
         asked = run.time[here - runs.steps[index]] - delay
         behind[own] = np.interp(asked, run.time, path.yaw[steps]) - path.yaw[here]
     return behind
-
-
-def _noise_of_legs(
-    path: DrivenPath, runs: Concatenated, track: float, view: View
-) -> tuple[Floats, Floats]:
-    """Sums of the steps' closed forms, each carried to its leg's end, as the reference sees it.
-
-    For unit noise of the left wheel, and of the right one; (m, 3, 3) each.
-    """
-    count = runs.end - runs.begin
-    leg = np.repeat(np.arange(runs.count), count)
-    facing = path.yaw[runs.begin] + view.yaw
-    marker = path.position[runs.end] + complex(view.ahead, view.left) * np.exp(
-        1j * path.yaw[runs.end]
-    )
-    found, inside = np.zeros((6, 2, runs.count)), runs.inside
-    for begin in range(0, leg.size, _BLOCK):
-        block = slice(begin, begin + _BLOCK)
-        steps, own_leg = inside[block], leg[block]
-        motion = BodyMotion(*(part[steps] for part in path.motion))
-        left, right = (np.abs(side[steps]) for side in path.travel)
-        none = np.zeros_like(left)
-        noise = noise_of_wheel_variances(np.stack([left, none]), np.stack([none, right]), track)
-        own = piece_covariance(motion, noise, path.yaw[steps] - facing[own_leg])
-        lever = np.exp(-1j * facing[own_leg]) * (marker[own_leg] - path.position[steps + 1])
-        moved = np.stack(carried(own, lever.real, lever.imag))
-        first = np.concatenate([[0], np.flatnonzero(np.diff(own_leg)) + 1])
-        found[..., own_leg[first]] += np.add.reduceat(moved, first, axis=-1)
-    left_part, right_part = PoseCovariance(*found).matrix()
-    return left_part, right_part
-
-
-_BLOCK = 8192
-"""Steps at a time: what they take fits in the processor's cache."""
