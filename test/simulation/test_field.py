@@ -56,6 +56,15 @@ def test_while_it_is_held_its_wheels_turn_and_it_does_not() -> None:
     assert imu[:, 2].mean() == pytest.approx(bias, abs=1.5e-3)
 
 
+def test_its_wheels_touch_the_floor_after_a_hold_where_they_would_have_without() -> None:
+    """By whole turns, or what goes with a wheel's angle (an oval tyre) would change its phase."""
+    path, wheels = recorded().true_path, seen().wheels
+    for angle, told in ((path.left_angle_rad, wheels[:, 2]), (path.right_angle_rad, wheels[:, 3])):
+        turns = ((told[-1] - told[0]) - (angle[-1] - angle[0])) / (2.0 * np.pi)
+        assert turns == pytest.approx(round(turns), abs=0.01)
+        assert abs(round(turns)) >= 1
+
+
 def test_while_it_is_carried_it_moves_and_its_wheels_do_not() -> None:
     wheels, imu = within(seen().wheels, "carried"), within(seen().imu, "carried")
     assert np.ptp(wheels[:, 2:], axis=0).max() < 5e-3

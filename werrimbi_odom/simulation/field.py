@@ -29,6 +29,9 @@ Floats = NDArray[np.float64]
 HELD, CARRIED = 4.0, 5.0
 """How long the robot is held and carried [s]."""
 
+TURN = 2.0 * math.pi
+"""Of a wheel [rad]."""
+
 AT_PACE = 0.5
 """Until the hand that carries it moves as fast as it will [s]."""
 
@@ -232,18 +235,20 @@ def _inserted(path: TruePath, row: int, more: Floats) -> TruePath:
 
 
 def _held(path: TruePath, rng: np.random.Generator) -> tuple[TruePath, list[float]]:
-    """Somebody holds the robot as it drives: its wheels go on, it does not."""
+    """Somebody holds the robot as it drives: its wheels go on, it does not.
+
+    They go on by whole turns, about as fast as before: the rest of the drive was recorded with the
+    wheels upright as they were, and what is not round about them must stay where it is.
+    """
     speed = np.abs(np.gradient(path.left_angle_rad + path.right_angle_rad))
     row = _somewhere(speed > 0.5 * speed.max(), (0.2, 0.45), rng)
     steps = round(HELD / PERIOD)
-    turned = [
-        angle[row] + (angle[row] - angle[row - 1]) * np.arange(1, steps + 1)
-        for angle in (path.left_angle_rad, path.right_angle_rad)
-    ]
+    gone = [TURN * round((angle[row] - angle[row - 1]) * steps / TURN) for angle in _angles(path)]
+    share = np.arange(1, steps + 1) / steps
+    turned = [angle[row] + more * share for angle, more in zip(_angles(path), gone, strict=True)]
     still = np.tile([path.x_m[row], path.y_m[row], path.yaw_rad[row]], (steps, 1))
     longer = _inserted(path, row, np.column_stack([still, *turned]))
     on = row + 1 + steps  # the wheels have turned farther for the rest of the drive
-    gone = [each[-1] - angle[row] for each, angle in zip(turned, _angles(path), strict=True)]
     left, right = longer.left_angle_rad.copy(), longer.right_angle_rad.copy()
     left[on:] += gone[0]
     right[on:] += gone[1]
