@@ -49,8 +49,13 @@ BRAKES = 3.0
 """[m/s^2]"""
 OWN_TIMEOUT = 0.15
 """Without a command the base stops by itself after so long [s], as docs/driving.md asks for."""
-BUSY = ("stopped: the odometry is silent", "stopped: the odometry comes")
-"""What a machine that is busy with other things makes of us now and then."""
+BUSY = (
+    "stopped: the odometry is silent",
+    "stopped: the odometry comes",
+    "stopped: the odometry jumped by 0.0",
+)
+"""What a machine that is busy with other things makes of us now and then: steps that it makes up
+for come at once, and messages are lost. The jump that is tried is of 0.40 m."""
 
 
 class PlayedRobot:

@@ -71,6 +71,8 @@ def test_what_is_missing_is_told_and_written_beside_the_file_in_use(
     assert status.message.startswith("One thing is missing: track_width. ")
     assert (told["verdict"], told["effect"]) == ("named", "track_width")
     assert "How large: multiplier = 1.0" in words[-1].data, "the words of the terminal"
+    command = f"{file} --ticks-topic /joint_states --reference-topic /reference \\\n      RUN..."
+    assert f"werrimbi add track_width --robot {command}" in words[-1].data, "for a bag of one's own"
     answer = launched.call(Trigger, SERVICE, Trigger.Request())
     assert answer.success, answer.message
     better = wo.read_robot(tmp_path / "robot_better.yaml").robot

@@ -79,7 +79,7 @@ def _options(how: DriveOptions) -> Iterator[str]:
 
 def _paths(runs: Sequence[Run]) -> str:
     """Paths as given; all of one folder as FOLDER/*."""
-    paths = [run.path for run in runs]
+    paths = list(dict.fromkeys(run.path for run in runs))
     folders = {path.parent for path in paths}
     if len(paths) > 1 and len(folders) == 1 and paths[0].exists():
         (folder,) = folders

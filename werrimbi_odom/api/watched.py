@@ -33,6 +33,8 @@ from werrimbi_odom.files.text_files import replacing
 
 MESSAGES, ASKED, FOUND, BETTER = "messages", "asked.json", "found.json", "better.yaml"
 """Files of the folder."""
+RECORDED = Path("RUN...")
+"""In the commands that are told, for what is kept is nowhere to be found afterwards."""
 OF_NOW = "\n\nThe younger half of these drives alone:\n"
 """Between what all of them say and what that half does, where the robot became another one."""
 
@@ -44,7 +46,7 @@ def found_in(folder: Path) -> dict[str, Any]:
     effects are in the new robot file, and `refused` why it is not written.
     """
     asked = json.loads((folder / ASKED).read_text(encoding="utf-8"))
-    options: Options = asked["options"]
+    options: Options = asked["options"] | asked["topics"]
     try:
         robot = read_robot(asked["robot"])
         run = read_run(_bag(folder), robot, **asked["topics"])
@@ -103,7 +105,7 @@ def halves(run: Run) -> list[Run]:
         replace(
             run,
             name=name,
-            path=run.path.with_name(name),
+            path=RECORDED,
             ticks=Ticks(ticks.time[tick], ticks.left[tick], ticks.right[tick]),
             reference=reference.chosen(pose),
         )
