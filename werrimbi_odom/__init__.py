@@ -2,22 +2,43 @@
 # SPDX-License-Identifier: Apache-2.0
 """Wheel odometry that knows how wrong it is, and can tell its user why.
 
-Ticks become wheel travel, travel becomes motion pieces (line, arc, spin), and pieces become a pose
-with the closed-form covariance of Chong and Kleeman (ICRA 1997). Legs of a drive compare it with
-what was measured, and the difference tells which physical effect is missing.
+Ticks become wheel travel, travel passes through the physical effects that the robot's model holds
+and becomes motion pieces (line, arc, spin), and pieces become a pose with the closed-form
+covariance of Chong and Kleeman (ICRA 1997). Legs of a drive compare the prediction with a
+reference; what is left over tells which physical effect is missing.
+
+Words of this code
+------------------
+tick, counter
+    One count of a wheel encoder, and its cumulative reading.
+run, drive
+    One recording: ticks and, usually, a reference.
+reference
+    What was measured independently of the wheels: motion capture, laser, tape, localiser, gyro.
+leg
+    A stretch of a drive, 1 m by default, over which prediction and reference are compared.
+effect
+    A physical law with a few parameters that changes travel, motion or measurement. At its null
+    values it does nothing.
+verb
+    A command of `werrimbi`, and the function of the same name in `api`.
 
 Reading order
 -------------
 1. `model.motion`, `model.covariance`: the physics of one piece, in formulas.
-2. `model.odometer`: `Odometer.update` is the whole story, one tick message at a time.
+2. `model.odometer`: `Odometer.update` takes one tick message from counters to estimate.
 3. `model.trajectory`: the same for a recorded run, all rows at once.
-4. `effects`: one physical effect a file; travel passes through those that the robot holds.
-5. `inference.fitting`, `inference.comparison`: legs, predictions, fits; then `inference.diagnosis`:
-   `diagnosis.diagnose` is the search for what is missing, told in one function.
-6. `api`: the verbs, for `import werrimbi_odom as wo`; `cli`, `workbench` and `fleet` are shells
-   over them, of one robot or of many; `files`, `ros` and `report` read, write and show. `scans`
-   makes poses of a lidar's scans, which are a reference like any other.
-7. `simulation`: a robot in a physics engine; imports nothing of ours, so that tests are honest.
+4. `effects`: one physical effect a file.
+5. `files`: robot files and recordings. `scans`: poses of a lidar, which are one more reference.
+6. `inference`: `legs` and `fitting`, then `comparison`; `diagnosis.diagnosis` is the search for
+   what is missing, in one function.
+7. `report`: what a verb found, as one document for terminal, page and notebook.
+8. `api`: the verbs, for `import werrimbi_odom as wo`. `cli`, `workbench` and `fleet` are shells
+   around them.
+9. `ros`: the nodes. `driving`: a manoeuvre within limits, for `ros.drive_node`.
+10. `simulation`: a robot in a physics engine. It imports nothing of ours, so that tests are fair.
+
+Imports run one way: the core (`model`) needs numpy alone, and `make lint` checks the layers.
 """
 
 from __future__ import annotations

@@ -2,9 +2,9 @@
 # SPDX-License-Identifier: Apache-2.0
 """The library of physical effects.
 
-Each file holds one effect, or a pair like left and right: a law of a few lines with its parameters
-and a page in words. `library` lists them, `collection` finds them and those of other packages,
-`contract` holds every effect, a user's own too, to the laws that the rest relies on.
+Each file holds one effect, or a pair like left and right: a law of a few lines, its parameters, and
+a page in words. Begin with `lateral_slip`. `library` lists all effects, `collection` finds them and
+those of other packages, and `contract` has the laws that every effect must keep.
 """
 
 from werrimbi_odom.effects.collection import Collection, all_effects, find, load_file

@@ -1,3 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The numeric core: numpy alone; knows no ROS, no file and no plot. Units are SI (REP-103)."""
+"""The numeric core: numpy alone; no ROS, no files, no plots. Units are SI (REP-103).
+
+Reading order: `motion` (travel to displacement), `covariance` (one piece in closed form),
+`uncertainty` and `moments` (along a path), `encoder` (counters to travel), `pieces_online` (where a
+piece ends), `odometer` (all of it, message by message), `trajectory` (a whole run at once). `robot`
+is what the model knows of a robot; `effect` and `drive` are what an effect is and may look at.
+"""

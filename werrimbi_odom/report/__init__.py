@@ -1,3 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Pictures and pages for people; nothing here computes physics."""
+"""What a verb found, for people: words, tables, figures and pages. Nothing here computes physics.
+
+`document` defines what a verb tells; each verb has a folder that makes its document. `terminal`
+prints a document, `page` writes it as HTML, `save` as PDF or PNG. `style` has the colours.
+"""

@@ -10,10 +10,10 @@ nothing of the odometry's own physics went into it. The engine rolls real wheels
 >>> len(recording.t_s) == len(recording.left_ticks)
 True
 
-Reading order: `robot` (what is true), `manoeuvre` (what is commanded), `chassis` and `engine` (what
-happens), `wheel_noise`, `sensors` (what is seen of it), `recorder` (one drive), `run_folder`,
-`sessions` (a day of drives), `live` (driven as commands come), `hidden` (effects for others to
-find).
+Reading order: `robot` (the true robot), `manoeuvre` (what is commanded), `chassis` and `engine`
+(the physics), `wheel_noise`, `sensors` (what is measured), `recorder` and `recording` (one drive),
+`sessions` (a day of drives), `live` (driven by commands as they come), `field` (recorded without
+motion capture), `hidden` (effects for others to find).
 """
 
 from .engine import Pose, TruePath, UnstableError

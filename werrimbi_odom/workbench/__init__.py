@@ -4,6 +4,5 @@
 
 What is open (`opened`) is read once and shared; what a browser tab has done with it (`steps`) is
 a value of its own. Long work (`verbs`) runs in a process of its own (`job`, `work`), so that it
-can be stopped. The page (`page`, `views`) shows it all; `server` sees to it that only this machine
-can ask.
+can be stopped. `page` and `views` show it all; `server` lets only this machine in.
 """

@@ -1,3 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""An effect added to a robot and judged."""
+"""Effects added to a robot's model: fitted with all calibration, judged on held-out drives.
+
+Reading order: `adding` (the whole of it), `start_values`, `fits`, `worth` and `objection` (what
+speaks for and against an effect), `uncertainty`.
+"""

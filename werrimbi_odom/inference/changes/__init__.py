@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What changed from drive to drive: which number, when, by how much, and how sure that is.
+"""Changes between drives: which number changed, when, by how much, and how significant that is.
 
-Reading order: `numbers` (what may change), `drives` (what each drive tells of it), `shapes` (a
+Reading order: `numbers` (what may change), `drives` (what each drive tells about it), `shapes` (a
 step, one drive alone, a trend, and what each would explain), `search` (which of them are needed),
-`between_drives` (changes within one diagnosis), `history` (drives of months).
+`between_drives` (changes within one diagnosis), `history` (drives over months).
 """

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What happened at an instant and is no law's: a push, a kick, a slip, a reference that jumped.
+"""Sudden errors that no law explains: a push, a kick, a wheel slip, a jump of the reference.
 
 Reading order: `noise` (of most legs), `steps` (where the innovations jump, and how), `events`
-(which of it is sudden, large and rare), `common_cause` (what they have in common).
+(which steps are sudden, large and rare), `common_cause` (what they have in common).
 """

@@ -1,3 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Recorded drives cut into legs: one clock for ticks and reference, gaps, ends of legs."""
+"""Recorded drives cut into legs: one clock for ticks and reference, gaps, ends of legs.
+
+Reading order: `cutting` (the legs), `gaps`, `no_driving` (held and carried robots), `even_stamps`
+(stamps of arrival put right), `leaps` (counters that leap).
+"""

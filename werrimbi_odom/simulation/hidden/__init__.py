@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Effects that can be hidden in a robot, for others to find.
+"""Effects that can be hidden in a simulated robot, for others to find.
 
 `peculiarity` says where in a drive an effect can act, `catalogue` lists all effects with units and
 realistic strengths; each other file holds one family of them.

@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is seen: one file for each of the four steps, and the strip that is always in view."""
+"""What the page shows: a file for each of the four steps, and the strip that is always in view."""
