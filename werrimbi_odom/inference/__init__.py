@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""From measurements back to the robot; knows no ROS and no plot.
+"""Inference: from measurements back to the robot. Independent of ROS and of plotting.
 
-Each folder stands on those after it: `drafting` (an effect written from the evidence), `adding`
-(one put in and judged), `manoeuvres` (what to drive next), `calibration` (the paper's, and any
-driving), `changes` (from drive to drive), `diagnosis` (what is missing), `set_up` (mistakes that no
-derivative sees), `comparison` (errors of legs), `events` (at an instant), `fitting`, `legs` (where
-drives are cut), `rules` (every number that decides something).
+Each folder imports only from those after it: `drafting` (write an effect from the evidence),
+`adding` (put an effect in and judge it), `manoeuvres` (what to drive next), `calibration` (UMBmark,
+and from any driving), `changes` (from drive to drive), `diagnosis` (which effect is missing),
+`set_up` (mistakes in the robot file that no derivative shows), `comparison` (odometry errors over
+legs), `events` (sudden changes), `fitting`, `legs` (cutting drives into legs), `rules` (every
+number that decides something).
 """
