@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The filter's loop: predict a leg, compare, correct.
+"""Loop of the Kalman filter: predict a leg, compute the innovation, correct.
 
-Twice: all stretches in step by arrays, and leg by leg in single numbers, the lines that `compiled`
-makes machine code of (in plain Python they would take fifty times as long as the arrays).
+It exists twice: vectorised over all stretches, and leg by leg in scalars, which `compiled` turns
+into machine code (plain Python would take fifty times as long as the arrays).
 """
 
 from __future__ import annotations
@@ -18,17 +18,17 @@ from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 UNMEASURED = 1e6
-"""Variance [m², rad²] that stands for a coordinate that was not measured."""
+"""Measurement variance [m², rad²] for a coordinate that was not measured."""
 
 
 class InOrder(NamedTuple):
-    """What the loop is to be told of m legs in the order of its rounds, and what it fills."""
+    """Inputs and outputs of the loop, for m legs in loop order."""
 
     rounds: list[slice]
     state: Floats
-    """Pose at which each of j stretches begins, (j, 3)."""
+    """Start pose of each of j stretches, (j, 3)."""
     spread: Floats
-    """Covariance of it, (g, j, 3, 3)."""
+    """Covariance of the start poses, (g, j, 3, 3)."""
     relative: Floats
     noise: Floats
     finish: Floats
@@ -40,15 +40,16 @@ class InOrder(NamedTuple):
     """Innovations, (g, m, 3), and `covariances` (g, m, 3, 3), in the axes of the state."""
     covariances: Floats
     turns: Floats
-    """Into the state's axes from the robot's at the leg's start, (g, m, 3, 3)."""
+    """Rotation to the state's axes from the robot's at the leg's start, (g, m, 3, 3)."""
     levers: Floats
-    """What a change of the heading does on the way, (g, m, 3, 3)."""
+    """State transition Jacobian: effect of a heading change over the leg, (g, m, 3, 3)."""
     kept: Floats
-    """What is left of a change once it was corrected, for the first set, (m, 3, 3)."""
+    """I - K H: part of a perturbation that remains after the correction, for the first set, (m, 3,
+    3)."""
 
 
 def go_along(of: InOrder) -> None:
-    """Fill what the loop fills, the faster way."""
+    """Fill the outputs, by the compiled loop if there is a compiler."""
     machine = compiled(leg_by_leg)
     if machine is None:
         side_by_side(of)
@@ -61,7 +62,7 @@ def go_along(of: InOrder) -> None:
 
 
 def side_by_side(of: InOrder) -> None:
-    """The loop, all stretches and sets in step: `leg_by_leg` for arrays."""
+    """The loop vectorised over stretches and sets; the same as `leg_by_leg`."""
     state = np.repeat(of.state[None], of.noise.shape[0], axis=0)
     spread = of.spread
     doubted = of.reading + UNMEASURED * diagonal_of(~of.known)
@@ -89,9 +90,9 @@ def side_by_side(of: InOrder) -> None:
         spread = 0.5 * (spread + spread.swapaxes(-1, -2))
         of.kept[now] = identity - gain[0] * seen[:, None, :]
         if leapt.any():
-            # What was measured at the end of a leg with a jump is all that is known of it; the rest
-            # (the heading, where positions alone are measured) is as well known as the wheels
-            # carried it there.
+            # After a jump, the measured coordinates restart from the measurement alone. The others
+            # (the heading, where only positions are measured) keep their predicted value and
+            # variance.
             both, apart = both_of(seen), both_of(~seen)
             anew = np.where(apart, before[1], np.where(both, of.reading[:, now], 0.0))
             of.values[:, now][:, leapt] = 0.0
@@ -117,23 +118,22 @@ def leg_by_leg(
     levers: Floats,
     kept: Floats,
 ) -> None:
-    """Predict, compare, correct; each stretch for itself, for g sets of variances.
+    """The loop in scalars, one stretch after the other, for g sets of variances.
 
     Parameters
     ----------
     starts : ndarray, shape (r + 1,)
-        First rows of the rounds; leg k of stretch j is row ``starts[k] + j``.
+        First row of each iteration; leg k of stretch j is row ``starts[k] + j``.
     state, spread : ndarray, shape (j, 3) and (g, j, 3, 3)
-        Where the stretches begin, and its covariance.
+        Start poses of the stretches, and their covariances.
     relative, noise, finish, known, jumped, reading
-        Of the m legs in the order of the rounds: (m, 3), (g, m, 3, 3), (m, 3), (m, 3), (m,) and
-        (g, m, 3, 3); see `filtering.Legs`.
+        Inputs of the m legs in loop order: (m, 3), (g, m, 3, 3), (m, 3), (m, 3), (m,) and (g, m, 3,
+        3); see `filtering.Legs`.
     unmeasured : float
-        Variance of what was not measured.
+        Variance for a coordinate that was not measured.
     values, covariances, turns, levers, kept : ndarray
-        Filled: innovations (g, m, 3), their covariance, the rotation into the state's axes and what
-        a change of the heading does, (g, m, 3, 3) each; for the first set what is left of a change
-        once it was corrected, (m, 3, 3).
+        Outputs: innovations (g, m, 3); their covariance, the rotation into the state's axes and the
+        transition Jacobian, (g, m, 3, 3) each; I - K H for the first set, (m, 3, 3).
     """
     for group in range(noise.shape[0]):
         for stretch in range(state.shape[0]):
@@ -148,7 +148,7 @@ def leg_by_leg(
                 cos, sin = math.cos(yaw), math.sin(yaw)
                 ahead, aside, turned = relative[row, 0], relative[row, 1], relative[row, 2]
                 dx, dy = cos * ahead - sin * aside, sin * ahead + cos * aside
-                # The covariance is swung about by the heading's error, and the leg's own added.
+                # Propagate the covariance with the transition Jacobian and add the process noise.
                 n = noise[group, row]
                 xx, xy, yy = (
                     xx - 2.0 * dy * xt + dy * dy * tt,
@@ -172,7 +172,7 @@ def leg_by_leg(
                 lever[1, 0], lever[1, 1], lever[1, 2] = 0.0, 1.0, dx
                 lever[2, 0], lever[2, 1], lever[2, 2] = 0.0, 0.0, 1.0
 
-                # The innovation and its covariance, whose inverse is that of its cofactors.
+                # Innovation and its covariance, inverted by cofactors.
                 seen_x, seen_y, seen_t = known[row, 0], known[row, 1], known[row, 2]
                 off_x = finish[row, 0] - x if seen_x else 0.0
                 off_y = finish[row, 1] - y if seen_y else 0.0
@@ -193,8 +193,8 @@ def leg_by_leg(
                 size = 1.0 / (a * co_a + b * co_b + c * co_c)
 
                 if jumped[row]:
-                    # What was measured at the end of a leg with a jump is all that is known of it;
-                    # the rest is as well known as the wheels carried it there.
+                    # After a jump, the measured coordinates restart from the measurement alone; the
+                    # others keep their predicted value and variance.
                     values[group, row, 0] = values[group, row, 1] = values[group, row, 2] = 0.0
                     if seen_x:
                         x, xx = finish[row, 0], of[0, 0]
@@ -252,7 +252,7 @@ def leg_by_leg(
 
 
 def turn_into(turn: Floats, yaw: Floats) -> None:
-    """Write rotations of (x, y, yaw) by angles of shape (g, s)."""
+    """Write rotation matrices of (x, y, yaw) for angles of shape (g, s)."""
     cos, sin = np.cos(yaw), np.sin(yaw)
     turn[:] = 0.0
     turn[..., 0, 0] = turn[..., 1, 1] = cos
@@ -261,10 +261,10 @@ def turn_into(turn: Floats, yaw: Floats) -> None:
 
 
 def diagonal_of(rows: NDArray[np.bool_]) -> Floats:
-    """Matrices (m, 3, 3) that are one where rows (m, 3) are true."""
+    """Diagonal matrices (m, 3, 3) with ones where rows (m, 3) are true."""
     return np.asarray(rows[..., None] * np.eye(3))
 
 
 def both_of(known: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Which entries of a covariance are of two known coordinates."""
+    """Mask of the covariance entries whose two coordinates are known."""
     return known[..., :, None] & known[..., None, :]
