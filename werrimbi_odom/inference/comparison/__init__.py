@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Model against measurement, leg by leg: how wrong, at what, and whether that was promised."""
+"""Model against measurement, leg by leg: errors, dependences, consistency of the covariance."""
