@@ -1,3 +1,3 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The paper's calibrations (squares, out and back), and maximum likelihood from any driving."""
+"""Calibration: the paper's (squares, out and back), and maximum likelihood from any driving."""
