@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Three multipliers, three effects: base and both radii of a robot under two names.
+"""Wheel base and both wheel radii, as multipliers and as effects.
 
-A robot file has them as multipliers, UMBmark's C_B, C_L and C_R; the library as effects,
-`track_width`, `unequal_wheel_radii` (E_d) and `wheel_radius_scale`, which a file may hold as well.
-The base goes by a third name where it is an effect's own parameter (`Parameter.as_base`): that of
-`skid_steer`.
+A robot file holds them as UMBmark's multipliers C_B, C_L and C_R. The library holds them as the
+effects `track_width`, `unequal_wheel_radii` (E_d) and `wheel_radius_scale`, which a file may hold
+as well. The base has a third name where an effect has it as a parameter of its own
+(`Parameter.as_base`), as `skid_steer` does.
 """
 
 from __future__ import annotations
@@ -27,23 +27,24 @@ LOGARITHMS = {
     "unequal_wheel_radii": (0.0, -1.0, 1.0),
     "wheel_radius_scale": (0.0, 0.5, 0.5),
 }
-"""How the logarithm of each calibration effect is made of those of the three multipliers."""
+"""The logarithm of each calibration effect as a linear combination of those of the three
+multipliers."""
 
 
 class Sizes(NamedTuple):
-    """True over nominal base, left and right radius."""
+    """Ratio of true to nominal base, left radius and right radius."""
 
     base: float
     left: float
     right: float
 
     def over(self, others: Sizes) -> Sizes:
-        """These over others."""
+        """Return the ratio of these sizes to others."""
         return Sizes(*(one / other for one, other in zip(self, others, strict=True)))
 
     @property
     def as_effects(self) -> dict[str, float]:
-        """The number of each calibration effect that does the same."""
+        """The equivalent value of each calibration effect."""
         return {
             "track_width": self.base,
             "unequal_wheel_radii": self.right / self.left,
@@ -52,7 +53,7 @@ class Sizes(NamedTuple):
 
 
 def sizes_of(robot: Robot) -> Sizes:
-    """A robot's multipliers, with the calibration effects that it holds."""
+    """Multipliers of a robot, including the calibration effects that it holds."""
     base, left, right = (float(getattr(robot, name)) for name in MULTIPLIERS)
     for applied in robot.effects:
         key = base_name(applied.effect)
@@ -69,7 +70,7 @@ def sizes_of(robot: Robot) -> Sizes:
 
 
 def with_sizes_in_multipliers(robot: Robot, given: Robot) -> Robot:
-    """The robot with the calibration effects that the given file does not hold as multipliers."""
+    """Move calibration effects that the given file does not hold into the robot's multipliers."""
     held = {item.name for item in given.effects}
     moved = [item for item in robot.effects if item.name in LOGARITHMS and item.name not in held]
     if not moved:
@@ -80,12 +81,14 @@ def with_sizes_in_multipliers(robot: Robot, given: Robot) -> Robot:
 
 
 def to_cut_by(robot: Robot, given: Robot) -> Robot:
-    """By whose travel a fit cuts its legs: the given file's, unless its sizes are far off.
+    """Choose the robot whose travel cuts the legs: the given file's, unless its sizes are far off.
 
     Parameters
     ----------
-    robot
-        With what the search for set-up mistakes found.
+    robot : Robot
+        The robot after the search for set-up mistakes.
+    given : Robot
+        The robot as its file has it.
     """
     found = with_sizes_in_multipliers(robot, given)
     off = max(abs(math.log(one)) for one in sizes_of(found).over(sizes_of(given)))
@@ -93,30 +96,32 @@ def to_cut_by(robot: Robot, given: Robot) -> Robot:
 
 
 def base_name(effect: Effect) -> str | None:
-    """The parameter of an effect that is the base by another name; None where there is none."""
+    """Name of an effect's parameter that stands for the wheel base; None if it has none."""
     return next((name for name, item in effect.parameters.items() if item.as_base), None)
 
 
 def name_of_base(robot: Robot) -> str:
-    """The effect by whose name a robot's base is told."""
+    """Name of the effect that stands for a robot's wheel base."""
     named = (item.name for item in robot.effects if base_name(item.effect) is not None)
     return next(named, "track_width")
 
 
 def skidding(robot: Robot) -> bool:
-    """Whether a robot is known to skid as it turns: wheels on a side, or an effect in its file."""
+    """Whether a robot skids in turns: several wheels a side, or such an effect in its file."""
     return robot.wheels_a_side > 1 or name_of_base(robot) != "track_width"
 
 
 def base_told(applied: AppliedEffect, robot: Robot, given: Robot) -> float:
-    """What an effect's own name of the base comes to: all that the base differs by, it says.
+    """Value of an effect's own base parameter that accounts for the whole deviation of the base.
 
     Parameters
     ----------
+    applied : AppliedEffect
+        An effect with a parameter that stands for the base.
     robot : Robot
-        It holds `applied`.
+        The robot that holds `applied`.
     given : Robot
-        The file, whose multiplier stays as it stands there.
+        The robot as its file has it; its multiplier stays as it is.
     """
     name = base_name(applied.effect)
     assert name is not None
@@ -128,18 +133,18 @@ def base_told(applied: AppliedEffect, robot: Robot, given: Robot) -> float:
 
 
 def calibration_deviation(robot: Robot, given: Robot) -> Floats:
-    """How far base, radii's ratio and radii's mean are from the given ones, in logarithms."""
+    """Log ratios (3,) of base, radius ratio and mean radius to the given ones."""
     relative = sizes_of(robot).over(sizes_of(given))
     return np.asarray(np.array(list(LOGARITHMS.values())) @ np.log(relative))
 
 
 def std_as_effect(name: str, robot: Robot, covariance: Floats) -> float:
-    """Standard deviation of a calibration effect's logarithm, from the multipliers' covariance.
+    """Standard deviation of a calibration effect's logarithm, by the multipliers' covariance.
 
     Parameters
     ----------
     covariance : ndarray, shape (3, 3)
-        Of the multipliers of the `robot`, in the order of `MULTIPLIERS`.
+        Covariance of the multipliers of `robot`, in the order of `MULTIPLIERS`.
     """
     row = np.array(LOGARITHMS[name]) / [getattr(robot, multiplier) for multiplier in MULTIPLIERS]
     return float(np.sqrt(max(row @ covariance @ row, 0.0)))

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Chances that nothing but noise goes as far, in one test or in any of many.
+"""Tail probabilities and quantiles of the test statistics, and Bonferroni's correction.
 
-By scipy.special: scipy.stats has the same functions of it, and takes half a second to import, which
-is a tenth of the time in which an hour of driving is to be seen.
+These use scipy.special. scipy.stats wraps the same functions but takes half a second to import, a
+tenth of the time budget for an hour of driving.
 """
 
 from __future__ import annotations
@@ -15,62 +15,62 @@ import numpy as np
 from werrimbi_odom.model.pose import Floats
 
 MEDIAN_TO_SIGMA = 1.4826
-"""Standard deviation of a normal scatter over the median of its sizes."""
+"""Standard deviation of a normal variable over its median absolute deviation."""
 
 NORMAL_95 = 1.959963984540054
-"""Standard deviations to either side that hold 95 % of a normal scatter."""
+"""Half width of the 95 % interval of a standard normal variable."""
 
 
 def in_any_of(tests: int, chance: float) -> float:
-    """Chance that noise alone goes as far in any of several tests (Bonferroni's bound)."""
+    """Bonferroni bound: probability that noise alone is as extreme in any of several tests."""
     return min(1.0, tests * chance)
 
 
 def upper_part(value: float, share: float) -> float:
-    """Standard deviation to state of a scale whose logarithm is normal, with deviation `share`.
+    """Standard deviation to report for a log-normal scale parameter with log-deviation `share`.
 
-    The upper part of its 95 % interval, over 1.96: what comes out small by chance would else be
-    stated with a small deviation too.
+    This is the upper half of the 95 % interval, over 1.96. An estimate that is small by chance
+    would otherwise be reported with a small deviation as well.
     """
     return value * math.expm1(NORMAL_95 * share) / NORMAL_95
 
 
 def chi2_above(value: float, degrees: float) -> float:
-    """Chance that a chi-squared variable is above a value."""
+    """Survival function of the chi-squared distribution."""
     from scipy.special import chdtrc
 
     return float(chdtrc(degrees, max(value, 0.0)))
 
 
 def chi2_median(degrees: Floats) -> Floats:
-    """Medians of chi-squared variables."""
+    """Medians of chi-squared distributions."""
     from scipy.special import chdtri
 
     return np.asarray(chdtri(degrees, 0.5))
 
 
 def binomial_above(count: int, of: int, share: float) -> float:
-    """Chance that of some tries, each with the chance `share`, at least `count` succeed."""
+    """Probability of at least `count` successes in `of` trials of success probability `share`."""
     from scipy.special import bdtrc
 
     return 1.0 if count <= 0 else float(bdtrc(count - 1, of, min(share, 1.0)))
 
 
 def student_above(value: float, degrees: float) -> float:
-    """Chance that a variable of Student's t is above a value."""
+    """Survival function of Student's t distribution."""
     from scipy.special import stdtr
 
     return float(stdtr(degrees, -value))
 
 
 def fisher_above(value: float, above: float, below: float) -> float:
-    """Chance that a variable of Fisher's F is above a value.
+    """Survival function of the F distribution.
 
     Parameters
     ----------
-    above, below
-        Degrees of freedom of its numerator and denominator; of one that is known they are
-        infinite, and the variable is chi-squared.
+    above, below : float
+        Degrees of freedom of the numerator and the denominator. They are infinite for a known
+        variance; with an infinite denominator the statistic is chi-squared.
     """
     from scipy.special import fdtrc
 
@@ -80,12 +80,16 @@ def fisher_above(value: float, above: float, below: float) -> float:
 
 
 def noncentrality(degrees: float, significance: float, power: float) -> float:
-    """Of the chi-squared variable that exceeds a test's threshold in a share `power` of cases.
+    """Noncentrality at which a chi-squared test of given significance has the given power.
 
     Parameters
     ----------
-    significance
-        Share of cases in which the central variable exceeds that threshold.
+    degrees : float
+        Degrees of freedom.
+    significance : float
+        Probability that the central variable exceeds the threshold.
+    power : float
+        Probability that the noncentral variable exceeds the threshold.
     """
     from scipy.special import chdtri, chndtrinc
 
@@ -93,7 +97,7 @@ def noncentrality(degrees: float, significance: float, power: float) -> float:
 
 
 def student_quantile(share: float, degrees: float) -> float:
-    """Value below which a share of a variable of Student's t lies."""
+    """Quantile of Student's t distribution."""
     from scipy.special import stdtrit
 
     return float(stdtrit(degrees, share))

@@ -1,14 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What data tell of some columns beside others: projection, rank, score test.
+"""Linear algebra of the estimation: projection of nuisance parameters, numerical rank, score test.
 
-Every question of the estimation is one of these. Columns are derivatives of whitened innovations in
-parameters. What nuisance parameters can explain is taken off (Frisch, Waugh and Lovell); what is
-left of the columns decides how many numbers the data hold, and by how much they would lower the
+Columns are those of the Jacobian of the whitened innovations in the parameters. The span of the
+nuisance parameters is projected out (theorem of Frisch, Waugh and Lovell). What remains of the
+columns decides how many parameters are identifiable, and by how much they would lower the sum of
 squared innovations.
 
-The rank rule, the only one: columns are brought to unit length *before* the nuisances are taken
-off. A direction of them is determined if at least `DETERMINED` of it is left.
+There is one rank rule: columns are scaled to unit length *before* the nuisances are projected out.
+A direction is determined if at least `DETERMINED` of it remains.
 """
 
 from __future__ import annotations
@@ -21,63 +21,63 @@ import numpy as np
 from werrimbi_odom.model.pose import Floats
 
 DETERMINED = 1e-3
-"""Share of a direction that other parameters must leave for it to count as determined.
+"""Share of a direction that must remain after projection for it to count as determined.
 
-Derivatives are central differences over steps at which laws bend by parts in 10^4 or less, so a
-smaller remainder is theirs. One that is real would have to be known a thousand times better than
-the same parameter by itself to mean anything."""
+Derivatives are central differences, over steps at which the models are nonlinear by parts in 10^4
+or less, so a smaller remainder is an artefact of these. A real one would mean something only if the
+parameter were known a thousand times better than by itself."""
 
 ROUNDING = 1e-6
-"""The same for the nuisances themselves, whose directions are taken off down to rounding: one too
-many costs a degree of freedom, one too few would be called evidence."""
+"""The same threshold for the nuisances themselves, whose directions are projected out down to
+rounding: one too many costs a degree of freedom, one too few would be taken for evidence."""
 
 SILENT = 1e-9
-"""Length of a whitened column below which its parameter changes nothing that was measured."""
+"""Norm of a whitened column below which its parameter has no effect on what was measured."""
 
 
 class Nuisance(NamedTuple):
-    """What some columns span, to be taken off others."""
+    """Column space of the nuisance parameters, to be projected out of others."""
 
     basis: Floats
-    """Orthonormal, shape (n, k)."""
+    """Orthonormal basis, shape (n, k)."""
 
     def residual(self, columns: Floats) -> Floats:
-        """Vectors or columns (n, ...) less what the nuisances explain of them."""
+        """Project the nuisances out of vectors or columns (n, ...)."""
         return np.asarray(columns - self.basis @ (self.basis.T @ columns))
 
 
 class ScoreTest(NamedTuple):
-    """What some columns would explain."""
+    """Result of a score test (Lagrange multiplier test)."""
 
     gain: float
-    """Fall of the squared innovations."""
+    """Test statistic: predicted fall of the sum of squared innovations."""
     degrees: int
-    """How many directions of the columns are determined."""
+    """Degrees of freedom: determined directions of the columns."""
     coefficients: Floats
-    """By how much to move along each column, the determined directions alone; shape (k,)."""
+    """Step of each parameter, along the determined directions only; shape (k,)."""
 
 
 def nuisance(columns: Floats) -> Nuisance:
-    """The span of some columns (n, k)."""
+    """Orthonormal basis of the span of some columns (n, k)."""
     unit, _ = _unit(columns)
     values, axes = np.linalg.eigh(unit.T @ unit)
     kept = values > ROUNDING**2 * values.max(initial=0.0)
-    # Twice, since squaring the columns costs half of the digits.
+    # Orthogonalised twice, since forming the Gram matrix costs half of the digits.
     basis, _ = np.linalg.qr(unit @ (axes[:, kept] / np.sqrt(values[kept])))
     return Nuisance(np.asarray(basis))
 
 
 def score_test(columns: Floats, free: Floats, residual: Floats) -> ScoreTest | None:
-    """Test whether columns explain a residual; None where nothing of them is determined.
+    """Score test of whether columns explain a residual; None if no direction is determined.
 
     Parameters
     ----------
     columns : ndarray, shape (n, k)
-        Derivatives of the innovations.
+        Jacobian of the innovations in the tested parameters.
     free : ndarray, shape (n, k)
-        The same less the nuisances.
+        The same with the nuisances projected out.
     residual : ndarray, shape (n,)
-        Innovations less the nuisances.
+        Innovations with the nuisances projected out.
     """
     _, size = _unit(columns)
     cross = free.T @ residual
@@ -85,12 +85,16 @@ def score_test(columns: Floats, free: Floats, residual: Floats) -> ScoreTest | N
 
 
 def score_test_of_products(square: Floats, cross: Floats, size: Floats) -> ScoreTest | None:
-    """The same from the products of the free columns with each other and with the residual.
+    """Score test from the normal equations: `free.T @ free` and `free.T @ residual`.
 
     Parameters
     ----------
+    square : ndarray, shape (k, k)
+        Gram matrix of the free columns.
+    cross : ndarray, shape (k,)
+        Products of the free columns with the residual.
     size : ndarray, shape (k,)
-        Lengths of the columns before the nuisances were taken off.
+        Norms of the columns before the nuisances were projected out.
     """
     heard = size > SILENT
     if not heard.any():
@@ -108,7 +112,7 @@ def score_test_of_products(square: Floats, cross: Floats, size: Floats) -> Score
 
 
 def solved(columns: Floats, target: Floats) -> Floats:
-    """Least squares (k,) of a target (n,); directions that are not determined are not moved."""
+    """Least-squares solution (k,) for a target (n,), zero along undetermined directions."""
     unit, size = _unit(columns)
     found = np.linalg.lstsq(unit, target, rcond=ROUNDING)[0]
     result = np.zeros(columns.shape[-1])
@@ -121,10 +125,11 @@ def admitted(
     beside: Nuisance,
     known: Callable[[list[int]], bool] = lambda tried: True,
 ) -> list[int]:
-    """Columns that are determined, taken one after the other; what comes first has precedence.
+    """Select identifiable columns greedily; earlier columns have precedence.
 
-    Of observationally equivalent parameters the first is kept. One that would not be `known` well
-    enough beside those that are kept is passed over, and is in the way of none after it.
+    Of observationally equivalent parameters the first is kept. A column for which `known` is false,
+    as its parameter would be too uncertain beside those kept, is skipped and does not block later
+    ones.
     """
     _, size = _unit(columns)
     free = beside.residual(columns)
@@ -139,7 +144,7 @@ def admitted(
 
 
 def covariance_of(columns: Floats) -> Floats:
-    """Covariance (k, k) of the least squares of whitened columns (n, k), all of them determined."""
+    """Covariance (k, k) of the least-squares estimate for whitened columns (n, k) of full rank."""
     unit, size = _unit(columns)
     assert size.min(initial=1.0) > 0.0, "a column that is zero has no covariance"
     inverse = np.linalg.pinv(unit.T @ unit, rcond=ROUNDING**2, hermitian=True)
@@ -147,7 +152,7 @@ def covariance_of(columns: Floats) -> Floats:
 
 
 def _unit(columns: Floats) -> tuple[Floats, Floats]:
-    """Columns of unit length, those of length zero left out, and the lengths of all."""
+    """Scale columns to unit length, without those of length zero; also return all lengths."""
     size = np.sqrt(np.sum(columns**2, axis=0))
     return columns[:, size > 0.0] / size[size > 0.0], size
 

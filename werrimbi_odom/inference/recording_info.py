@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What recordings hold, and what can be told with them."""
+"""What recordings contain, and which parameters they can tell."""
 
 from __future__ import annotations
 
@@ -31,58 +31,58 @@ from werrimbi_odom.inference.rules import (
 
 @dataclass(frozen=True)
 class Held:
-    """What one recording holds."""
+    """Contents of one recording."""
 
     path: Path
     contents: Contents | None
-    """Of a bag; None of a folder."""
+    """Topics of a bag; None for a folder."""
     wheels: Wheels | None
     reference: Measured | None
-    """What is proposed as the reference of a bag."""
+    """Topic proposed as the reference of a bag."""
     stamps: dict[str, Stamps]
     run: Run | None
-    """Read by these; None where it cannot be."""
+    """The run as read with these topics; None if it cannot be read."""
     problem: str
-    """Why not."""
+    """Why it cannot be read."""
     joints: WheelJoints = field(default_factory=WheelJoints)
-    """Of the wheels' topic: which of them are wheels."""
+    """Joints of the wheels' topic: which of them are wheels."""
     driven: Driven | None = None
     left_out: tuple[LeftOut, ...] = ()
     restamped: float = 0.0
-    """By how much the ticks' stamps are put right (`legs.even_stamps`), rms [s]."""
+    """Correction of the tick stamps (`legs.even_stamps`), rms [s]."""
     scans_restamped: float = 0.0
-    """The same of scans."""
+    """Correction of the scan stamps, rms [s]."""
 
 
 @dataclass(frozen=True)
 class Info:
-    """What recordings hold, and what to do with them."""
+    """Contents of all recordings, and what can be done with them."""
 
     held: tuple[Held, ...]
     first: FirstRobot
     """What is known of the robot's wheels."""
     given: Path | None
-    """The robot file that was given, if it is one."""
+    """The robot file passed by the user, if any."""
     written: Path | None = None
-    """The robot file that was written."""
+    """The robot file that was written, if any."""
     title: str = ""
     sizes: bool = False
-    """Whether metres are known."""
+    """Whether the metric scale is known."""
 
     @property
     def robot_text(self) -> str:
-        """The first robot file."""
+        """Text of the first robot file."""
         return self.first.text(self.title)
 
     @property
     def legs(self) -> float:
-        """How many legs of a metre or a quarter turn were driven."""
+        """Total driving, in legs of one metre or a quarter turn."""
         drives = [each.driven for each in self.held if each.driven is not None]
         return sum(each.way + each.turned / QUARTER_TURN for each in drives)
 
     @property
     def leg(self) -> float:
-        """Length of a leg that the drives are long enough for, and the reference good [m]."""
+        """Leg length that suits the amount of driving and the noise of the reference [m]."""
         longer = max((_needed(each) for each in self.held), default=0.0)
         if longer > 1.0:
             return longer
@@ -90,14 +90,14 @@ class Info:
 
 
 def leg_of_positions(noise: float) -> float:
-    """Length of a leg whose chord is a heading, by positions of some noise [m], to one digit."""
+    """Leg length whose chord gives a heading, for position noise `noise` [m]; to one digit."""
     least = LEG_OF_POSITIONS * noise
     digit = 10.0 ** math.floor(math.log10(least))
     return float(f"{math.ceil(round(least / digit, 6)) * digit:g}")
 
 
 def _needed(held: Held) -> float:
-    """Length of a leg that positions alone need, by the noise that they state [m]."""
+    """Leg length that a reference of positions alone needs, by its stated noise [m]."""
     reference = held.run.reference if held.run is not None else None
     if reference is None or reference.sigma_xy is None or measures_of(held) != "positions":
         return 0.0
@@ -106,7 +106,7 @@ def _needed(held: Held) -> float:
 
 
 def measures_of(held: Held) -> Literal["poses", "positions", "yaw", "nothing"]:
-    """What the reference of a recording measures."""
+    """Kind of measurement that the reference of a recording has."""
     reference = held.run.reference if held.run is not None else None
     if reference is None:
         return "nothing"
@@ -117,7 +117,7 @@ def measures_of(held: Held) -> Literal["poses", "positions", "yaw", "nothing"]:
 
 
 def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
-    """What a recording can show, and what not: ends of sentences."""
+    """What a recording can and cannot show, as ends of sentences."""
     measures = measures_of(held)
     if measures == "nothing" or held.driven is None:
         return [], ["anything: nothing measured the robot beside its wheels"]
@@ -132,7 +132,7 @@ def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
             cannot.append(f"{what}: {lacking}")
 
     far = measures in ("poses", "positions")
-    if sizes:  # else nobody knows how far it went, nor whether both wheels count forwards
+    if sizes:  # without it neither distance nor a wheel counting backwards is known
         told(drive.turned >= TURN_SHOWS, "the base", "too little turning")
         long = drive.turned >= TURN_SHOWS or drive.way >= WAY_SHOWS
         told(long, "the ratio of the radii", "too little driving")

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Calibration from any driving, told whole: what was found, what was not, what it cannot be."""
+"""Calibration from any driving: what is determined, what is not, and whether the model fits."""
 
 from __future__ import annotations
 
@@ -33,38 +33,38 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True, slots=True)
 class Multiplier:
-    """A calibration factor before and after."""
+    """A calibration multiplier before and after."""
 
     before: float
     value: float
     std: float | None
-    """None where no honest figure can be given: not determined, or the model does not fit."""
+    """Standard deviation; None if not identifiable, or if the model does not fit."""
     determined: bool
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Calibration:
-    """What a fit of calibration and noise says."""
+    """Result of a fit of calibration and noise."""
 
     robot: Robot
-    """With everything that was determined put in; a noise that is no wheel's is not."""
+    """Robot with all determined values, except a noise too large for a wheel."""
     multipliers: dict[str, Multiplier]
     noises: dict[str, NoiseEstimate]
     changes: dict[str, float]
-    """Parameters of the robot file to be written."""
+    """Parameters to write to the robot file."""
     correlation: Floats
-    """Of the determined multipliers, in the order of `fit.free`."""
+    """Correlation of the determined multipliers, in the order of `fit.free`."""
     misfit: tuple[Dependence, ...]
-    """What the remaining errors still depend on; empty where the model explains them."""
+    """What the residuals still depend on; empty if the model explains them."""
     strange: tuple[str, ...]
-    """In words, what no calibration can be."""
+    """Sentences about implausible results."""
     excluded: tuple[NDArray[np.bool_], ...]
-    """Legs of each run on which the reference jumped."""
+    """Mask of the legs of each run on which the reference jumped."""
     fit: ModelFit
 
     @property
     def twin(self) -> dict[str, float]:
-        """The same model by other numbers, where the data hold two: the given base, other radii."""
+        """Equivalent multipliers where only two are identifiable: given base, other radii."""
         if self.fit.held != ("wheel_radius_scale",) or len(self.multipliers) != len(MULTIPLIERS):
             return {}
         base, left, right = (self.multipliers[name] for name in MULTIPLIERS)
@@ -75,14 +75,24 @@ class Calibration:
 
     @property
     def trusted(self) -> bool:
-        """Whether the model explains the data, so that the figures mean what they say."""
+        """Whether the model explains the data, so that standard deviations are valid."""
         return not self.misfit and not self.strange
 
 
 def calibrate(
     runs: Sequence[MatchedRun], robot: Robot, options: EvaluationOptions = EvaluationOptions()
 ) -> Calibration:
-    """Fit base, radii and noise to all runs at once, and question the result."""
+    """Fit base, radii and noise to all runs at once, and test the result.
+
+    Parameters
+    ----------
+    runs : sequence of MatchedRun
+        Runs cut into legs.
+    robot : Robot
+        The robot to calibrate.
+    options : EvaluationOptions
+        What is known of the reference.
+    """
     begin = start_point(runs, robot, options)
     numbers = (*CALIBRATION, *begin.model.nuisance_parameters)
     fit = fit_model(runs, begin, numbers)
@@ -142,7 +152,7 @@ def _strange(fit: ModelFit, noises: dict[str, NoiseEstimate]) -> tuple[str, ...]
 def errors_of_legs(
     robot: Robot, runs: Sequence[MatchedRun], headings: Sequence[float | None]
 ) -> Floats:
-    """Measured minus predicted (along, sideways, heading) of all legs, joined, shape (m, 3).
+    """Measured minus predicted (along, sideways, heading) of all legs of all runs, shape (m, 3).
 
     NaN where the reference gives no relative pose.
     """

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Likelihood of the wheels' noise, given the scatter of one drive driven many times."""
+"""Likelihood of the wheel noise, given the dispersion of one drive repeated many times."""
 
 from __future__ import annotations
 
@@ -25,25 +25,25 @@ from werrimbi_odom.model.pose import Floats
 CHI2_95 = 3.841458820694124
 """95 % quantile of chi-squared with one degree of freedom."""
 
-_LEAST, _MOST = 1e-8, 1e4  # k² in units of the scatter's own: as good as zero, beyond any doubt
+_LEAST, _MOST = 1e-8, 1e4  # bounds of k², relative to that of the dispersion
 
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """Covariance of a drive's end errors (x, y, yaw): k_L² left + k_R² right + given."""
+    """Covariance model of a drive's end errors (x, y, yaw): k_L² left + k_R² right + given."""
 
     left: Floats
     """Shape (3, 3), for k_L² = 1 m."""
     right: Floats
     given: Floats
-    """Of the reference."""
+    """Covariance of the reference."""
 
     def covariance(self, left: float, right: float) -> Floats:
-        """For variances k_L² and k_R² [m]."""
+        """Covariance for variances k_L² and k_R² [m]."""
         return left * self.left + right * self.right + self.given
 
     def information(self, left: float, right: float) -> Floats:
-        """Fisher information of (k_L², k_R²) for each degree of freedom, shape (2, 2)."""
+        """Fisher information of (k_L², k_R²) per degree of freedom, shape (2, 2)."""
         inverse = np.linalg.inv(self.covariance(left, right))
         parts = [inverse @ self.left, inverse @ self.right]
         return 0.5 * np.array([[np.trace(one @ two) for two in parts] for one in parts])
@@ -56,17 +56,17 @@ def design(
     sigma_xy: float = 0.0,
     sigma_yaw: float = 0.0,
 ) -> Design:
-    """The closed form of every piece (equation 17), chained over a drive (equation 16).
+    """Covariance model of a drive: closed form of each piece (equation 17), chained (equation 16).
 
     Parameters
     ----------
     pieces : sequence of WheelTravel
-        Travel of the wheels in each piece [m]; begun along the x axis.
+        Wheel travel of each piece [m]; the drive starts along the x axis.
     track : float
         B [m].
     sigma_xy, sigma_yaw : float
         Standard deviation of one measured pose [m, rad]. The error of a run is the difference of
-        two measured poses, so its variance has each of them twice.
+        two measured poses, so their variances count twice.
     """
     return Design(
         _chained(pieces, track, 1.0, 0.0),
@@ -90,15 +90,15 @@ def _chained(
 
 @dataclass(frozen=True, slots=True)
 class Likelihood:
-    """Of k_L² and k_R² [m], for scatter about an unknown mean (so one degree of freedom less)."""
+    """Likelihood of k_L² and k_R² [m] from a sample covariance (the mean costs one degree)."""
 
     design: Design
     data: Floats
-    """Sample covariance of (x, y, yaw), divided by `freedom`."""
+    """Sample covariance of (x, y, yaw), with divisor `freedom`."""
     freedom: int
 
     def cost(self, left: float, right: float) -> float:
-        """Minus the logarithm of the likelihood, constants left out."""
+        """Negative log-likelihood without constants."""
         covariance = self.design.covariance(left, right)
         sign, volume = np.linalg.slogdet(covariance)
         if sign <= 0.0:
@@ -107,17 +107,17 @@ class Likelihood:
         return 0.5 * self.freedom * (float(volume) + misfit)
 
     def scale(self) -> float:
-        """k² that would make the heading scatter as it does without any noise of the reference."""
+        """k² that explains the heading dispersion without any reference noise."""
         heading = self.design.left[2, 2] + self.design.right[2, 2]
         return float(self.data[2, 2] / heading)
 
     def same(self) -> float:
-        """Likeliest k² if both wheels have the same.
+        """Maximum-likelihood k² if both wheels are equal.
 
         Raises
         ------
         InputError
-            When the reference's noise alone explains the scatter.
+            If the reference's noise alone explains the dispersion.
         """
         value = self._likeliest(lambda square: self.cost(square, square))
         if value < 10.0 * _LEAST * self.scale():
@@ -128,7 +128,7 @@ class Likelihood:
         return value
 
     def best(self, same: float) -> tuple[float, float]:
-        """Likeliest k_L² and k_R²."""
+        """Maximum-likelihood k_L² and k_R²."""
         found = optimize.minimize(
             lambda logs: self.cost(*(same * np.exp(logs))),
             np.zeros(2),
@@ -140,9 +140,9 @@ class Likelihood:
         return float(left), float(right)
 
     def covariance(self, left: float, right: float) -> Floats:
-        """Of the estimates of (k_L², k_R²): the inverse of the Fisher information.
+        """Covariance of the estimates of (k_L², k_R²): the inverse Fisher information.
 
-        Infinite where the drive tells nothing but a sum.
+        Infinite where only the sum is identifiable.
         """
         information = self.freedom * self.design.information(left, right)
         if np.linalg.cond(information) > 1e12:
@@ -150,7 +150,7 @@ class Likelihood:
         return np.asarray(np.linalg.inv(information))
 
     def interval(self, wheel: int, best: tuple[float, float]) -> tuple[float, float]:
-        """95 % interval of k_L² (wheel 0) or k_R² (1): the other one as likely as it can be."""
+        """95 % profile-likelihood interval of k_L² (wheel 0) or k_R² (wheel 1)."""
 
         def profile(square: float) -> float:
             if wheel == 0:
@@ -160,13 +160,13 @@ class Likelihood:
         return self._interval(profile, best[wheel], self.cost(*best))
 
     def interval_of_same(self, same: float) -> tuple[float, float]:
-        """95 % interval of k² if both wheels have the same."""
+        """95 % likelihood interval of k² if both wheels are equal."""
         return self._interval(lambda square: self.cost(square, square), same, self.cost(same, same))
 
     def _interval(
         self, cost: Callable[[float], float], best: float, least: float
     ) -> tuple[float, float]:
-        """Where a cost rises by half of chi-squared's 95 % quantile above its least."""
+        """Interval where a cost is within half of chi-squared's 95 % quantile of its least."""
         unit = self.scale()
 
         def above(log: float) -> float:
@@ -180,9 +180,9 @@ class Likelihood:
         return unit * bottom, unit * top
 
     def misfit_p(self, left: float, right: float, fitted: int) -> float:
-        """Probability of so bad a match with `fitted` free numbers, against any covariance.
+        """p-value of the model with `fitted` free parameters against an unrestricted covariance.
 
-        Likelihood ratio with Bartlett's factor for few runs.
+        Likelihood ratio test with Bartlett's correction for few runs.
         """
         volume = float(np.linalg.slogdet(self.data)[1])
         ratio = 2.0 * self.cost(left, right) - self.freedom * (volume + 3.0)

@@ -1,20 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Noise of the two wheels from drives out and back (paper, section 5.2), by maximum likelihood.
+"""Noise of both wheels from drives out and back (paper, section 5.2), by maximum likelihood.
 
 On a straight drive out and back by D each wheel rolls 2 D, and the errors at the end are
 
     e_yaw = (ε_R - ε_L) / B,   e_x = (ε_R + ε_L) / 2,   e_y = -∫ min(u, 2D - u) d(ε_R - ε_L) / B
 
 with ε_L, ε_R the errors of the wheels' travel, of variance 2 D k_L² and 2 D k_R². So e_yaw and e_y
-know the sum k_L² + k_R² alone. The difference shows in the covariance of e_x with the other two:
-D (k_R² - k_L²) / B with e_yaw. Reversing does not cancel it, for the noise of a wheel does not care
-for its sense of rolling; turning round at the far end does, for then e_x takes what the way back
-adds with the opposite sign. And e_x is small, B / 2 times e_yaw or so: the reference's noise in x
-drowns the difference long before the sum.
+only determine the sum k_L² + k_R². The difference shows in the covariance of e_x with the other
+two: D (k_R² - k_L²) / B with e_yaw. Reversing does not cancel it, as wheel noise does not depend on
+the direction of rolling. Turning round at the far end does, since e_x then takes the errors of the
+way back with the opposite sign. And e_x is small, about B / 2 times e_yaw: the reference's noise in
+x hides the difference long before the sum.
 
-The covariance of the whole path is linear in k_L² and k_R². The mean of the runs, what is
-systematic in them, is estimated too, so the runs' scatter counts with one degree of freedom less.
+The covariance of the whole path is linear in k_L² and k_R². The mean of the runs, their systematic
+error, is estimated too, so the sample covariance has one degree of freedom less.
 """
 
 from __future__ import annotations
@@ -36,12 +36,14 @@ from werrimbi_odom.model.pose import Floats
 def out_and_back(
     distance: float, track: float, *, turn_round: bool = False
 ) -> list[WheelTravel[float]]:
-    """Pieces forwards by `distance` and back to the mark [m].
+    """Pieces of a drive forwards by `distance` and back to the mark [m].
 
     Parameters
     ----------
+    distance, track : float
+        Length of the way out, and wheel base [m].
     turn_round : bool
-        False: backwards. True: half a turn at the far end, forwards, and the half turn undone.
+        False: return backwards. True: half a turn at the far end, return forwards, and turn back.
     """
     out = WheelTravel(distance, distance)
     if not turn_round:
@@ -51,7 +53,7 @@ def out_and_back(
 
 
 def pivot_scatter(noise: float, track: float, turns: float) -> float:
-    """Heading scatter after `turns` about one standing wheel, by the other one alone [rad]."""
+    """Heading dispersion after `turns` about one standing wheel, from the other one [rad]."""
     return noise * math.sqrt(2.0 * math.pi * turns / track)
 
 
@@ -67,7 +69,7 @@ class NoiseEstimate:
 
 @dataclass(frozen=True, slots=True)
 class NoiseFit:
-    """What the scatter of the runs says about the wheels."""
+    """Wheel noise estimated from the dispersion of the runs."""
 
     runs: int
     left: NoiseEstimate
@@ -75,40 +77,40 @@ class NoiseFit:
     split_known: bool
     """Whether drive and reference can tell the wheels apart; if not, both have the same k."""
     difference_std: float
-    """Standard deviation of k_R - k_L [m^0.5]; infinite where the drive knows the sum alone."""
+    """Standard deviation of k_R - k_L [m^0.5]; infinite where only the sum is identifiable."""
     correlation: float
-    """Of the errors of k_L and k_R."""
+    """Correlation of the estimates of k_L and k_R."""
     by_moments: tuple[float, float]
-    """k_L, k_R that match the data's ellipses as the paper does [m^0.5]."""
+    """k_L, k_R by the method of moments, as in the paper [m^0.5]."""
     mean: Floats
-    """Systematic part (x, y, yaw) [m, m, rad]."""
+    """Systematic error (x, y, yaw) [m, m, rad]."""
     mean_std: Floats
     mean_p: float
-    """Probability of so large a mean without anything systematic (Hotelling's test)."""
+    """p-value of the mean against zero (Hotelling's test)."""
     data: Floats
-    """Covariance of the runs about their mean, shape (3, 3)."""
+    """Sample covariance of the runs, shape (3, 3)."""
     model: Floats
-    """Covariance that the model has with k_L and k_R, the reference's noise included."""
+    """Model covariance with k_L and k_R, including the reference's noise."""
     misfit_p: float
-    """Probability of so bad a match under the model (likelihood ratio against any covariance)."""
+    """p-value of the model (likelihood ratio test against an unrestricted covariance)."""
     missing_reference: tuple[float, float] | None
-    """Where the model does not match: noise of the reference (xy [m], yaw [rad]) that would."""
+    """If the model does not fit: reference noise (xy [m], yaw [rad]) with which it would."""
 
 
 def fit_noise(errors: Floats, design: Design) -> NoiseFit:
-    """k_L and k_R of greatest likelihood.
+    """Maximum-likelihood estimate of k_L and k_R.
 
     Parameters
     ----------
     errors : ndarray, shape (n, 3)
         Measured minus odometry at the end of each run: x, y [m], yaw [rad]; x along the way out.
     design : Design
-        Of the drive.
+        Covariance model of the drive.
 
     Raises
     ------
     InputError
-        When there are too few runs, or they do not scatter more than the reference is said to.
+        If there are too few runs, or their dispersion is no more than the reference's noise.
     """
     runs = len(errors)
     if runs < LEAST_RUNS:
@@ -150,7 +152,7 @@ def fit_noise(errors: Floats, design: Design) -> NoiseFit:
 
 
 def _missing_reference(likelihood: Likelihood, same: float) -> tuple[float, float] | None:
-    """Noise of the reference with which the runs do fit; None where no such noise explains them."""
+    """Reference noise with which the model fits; None if there is none."""
     unit = np.sqrt(np.diag(likelihood.data) / 2.0)
 
     def with_noise(logs: Floats) -> tuple[Likelihood, float, float]:
@@ -176,7 +178,7 @@ def _missing_reference(likelihood: Likelihood, same: float) -> tuple[float, floa
 
 
 def _split_std(covariance: Floats, same: float) -> float:
-    """Standard deviation of the split, for wheels that are alike."""
+    """Standard deviation of the relative difference, for equal wheels."""
     slope = np.array([-0.5, 0.5]) / same
     return (
         math.sqrt(float(slope @ covariance @ slope)) if np.isfinite(covariance).all() else math.inf
@@ -184,17 +186,18 @@ def _split_std(covariance: Floats, same: float) -> float:
 
 
 def _of_roots(covariance: Floats, left: NoiseEstimate, right: NoiseEstimate) -> Floats:
-    """Covariance of (k_L, k_R) from that of their squares."""
+    """Covariance of (k_L, k_R) from that of their squares (delta method)."""
     slope = 0.5 / np.array([left.value, right.value])
     return np.asarray(slope[:, None] * covariance * slope[None, :])
 
 
 def _each(likelihood: Likelihood, best: tuple[float, float]) -> tuple[NoiseEstimate, NoiseEstimate]:
-    """Both wheels, with the interval by the profile likelihood.
+    """Estimates of both wheels, with profile-likelihood intervals.
 
-    A few runs that scatter little by chance make k small, and Fisher's standard deviation with it:
-    of ten runs, 1.96 of it held k_L in 87 % of 400 calibrations. So what is stated is the upper
-    part of the interval; where the wheel may have no noise at all, no less than the value itself.
+    If a few runs have a small dispersion by chance, k and its Fisher standard deviation are both
+    too small: with ten runs, 1.96 of it covered k_L in 87 % of 400 calibrations. So the reported
+    deviation is from the upper half of the interval; if the wheel may have no noise at all, it is
+    from the value itself at least.
     """
     estimates = []
     for wheel in (0, 1):
@@ -206,7 +209,7 @@ def _each(likelihood: Likelihood, best: tuple[float, float]) -> tuple[NoiseEstim
 
 
 def _alike(likelihood: Likelihood, same: float) -> tuple[NoiseEstimate, NoiseEstimate]:
-    """The sum shared out evenly: either wheel may have all of it, or nothing."""
+    """Estimates with the sum shared equally: either wheel may have all of it, or none."""
     value = math.sqrt(same)
     high = math.sqrt(2.0 * likelihood.interval_of_same(same)[1])
     estimate = NoiseEstimate(value, max(value, high - value) / NORMAL_95, 0.0, high)
@@ -214,10 +217,10 @@ def _alike(likelihood: Likelihood, same: float) -> tuple[NoiseEstimate, NoiseEst
 
 
 def by_moments(data: Floats, design: Design) -> tuple[float, float]:
-    """k_L, k_R whose ellipses lie nearest the data's, each axis in units of the data's spread.
+    """k_L, k_R by the method of moments: least squares on the normalised covariance entries.
 
-    This is what the paper does by laying ellipses over scatter plots: least squares on the entries
-    of the covariance. It takes all entries for equally well known, which they are not.
+    This is what the paper does by fitting ellipses to scatter plots. It treats all entries as
+    equally well known, which they are not.
     """
     scale = 1.0 / np.sqrt(np.outer(np.diag(data), np.diag(data)))
     columns = np.stack([(design.left * scale).ravel(), (design.right * scale).ravel()], axis=-1)

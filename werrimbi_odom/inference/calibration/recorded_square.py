@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The offset of one recorded square: what UMBmark's tape measure would have said."""
+"""Return position error of one recorded square, as UMBmark measures it with a tape."""
 
 from __future__ import annotations
 
@@ -28,9 +28,9 @@ class Record:
     Parameters
     ----------
     name : str
-        Of the run; stands in error messages.
+        Name of the run, for error messages.
     time, left, right : ndarray, shape (n,)
-        [s] and cumulative counts.
+        Stamps [s] and cumulative counts.
     reference_time, reference_x, reference_y, reference_yaw : ndarray, shape (m,)
         [s, m, m, rad]; NaN where not measured.
     """
@@ -47,7 +47,7 @@ class Record:
 
 @dataclass(frozen=True, slots=True)
 class RecordedSquare:
-    """One square: sense +1 anticlockwise, -1 clockwise; the offset [m] as in `Squares`."""
+    """One square: sense +1 anticlockwise, -1 clockwise; offset [m] as in `Squares`."""
 
     name: str
     sense: int
@@ -67,12 +67,12 @@ class _Path:
 
 
 def squares_of(recorded: Sequence[RecordedSquare], side: float) -> Squares:
-    """Recorded squares of both senses together.
+    """Combine recorded squares of both senses.
 
     Raises
     ------
     InputError
-        When a sense is missing or has too few runs.
+        If a sense is missing or has too few runs.
     """
     cw = [run for run in recorded if run.sense < 0]
     ccw = [run for run in recorded if run.sense > 0]
@@ -88,15 +88,15 @@ def squares_of(recorded: Sequence[RecordedSquare], side: float) -> Squares:
 def recorded_square(
     record: Record, robot: Robot, side: float, limits: EncoderLimits | None = None
 ) -> RecordedSquare:
-    """Where a recorded square ended, measured minus odometry.
+    """End position of a recorded square, measured minus odometry.
 
-    Both paths begin at the first measured position with the first measured heading. A heading that
-    is a little off turns both ends about the start alike, so it hardly changes their difference.
+    Both paths start at the first measured position with the first measured heading. A small heading
+    error rotates both ends about the start alike, so it hardly changes their difference.
 
     Raises
     ------
     InputError
-        When the drive is not one closed square of that side, or the robot holds effects.
+        If the drive is not one closed square of that side, or the robot has effects.
     """
     if robot.effects:
         raise InputError(
@@ -167,14 +167,14 @@ def _sense(name: str, path: _Path) -> int:
 
 
 def _corners(path: _Path, sense: int) -> NDArray[np.intp]:
-    """Rows half way through each of the four corners."""
+    """Rows halfway through each of the four corners."""
     turned = sense * path.yaw
     half_way = (np.arange(4) + 0.5) * 0.5 * math.pi
     return np.array([int(np.argmax(turned >= angle)) for angle in half_way])
 
 
 def _check_legs(name: str, path: _Path, corners: NDArray[np.intp], side: float) -> None:
-    """Four legs, straight and as long as the side, and nothing else driven."""
+    """Check for four straight legs of the given side, and no other motion."""
     ends = np.concatenate([[0], corners, [path.x.size - 1]])
     straight = np.hypot(np.diff(path.x[ends]), np.diff(path.y[ends]))[:4]
     steps = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(path.x), np.diff(path.y)))])

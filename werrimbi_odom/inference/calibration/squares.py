@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Squares driven in both senses and how far they failed to close (paper, section 3)."""
+"""Squares driven in both senses, and their return position errors (paper, section 3)."""
 
 from __future__ import annotations
 
@@ -21,19 +21,19 @@ OTHER_VEHICLES = (
     ("Andros with trailer", 0.074),
     ("Werrimbi", 0.030),
 )
-"""E_max,syst of others on squares of 4 m [m] (paper, Table 2)."""
+"""E_max,syst of other robots on squares of 4 m [m] (paper, Table 2)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Driven:
-    """What the odometry counted in one square.
+    """Odometry of one square.
 
     Parameters
     ----------
     travel : WheelTravel
-        Step by step [m], in the odometry's own belief of the radii.
+        Steps of wheel travel [m], with the radii that the odometry used.
     yaw : float
-        Heading at the start, against the first leg [rad].
+        Heading at the start, relative to the first leg [rad].
     """
 
     travel: WheelTravel[Floats]
@@ -58,12 +58,12 @@ class Squares:
     cw, ccw : ndarray, shape (n, 2) and (m, 2)
         End positions, measured minus odometry [m]; x along the first leg, y to its left.
     driven_cw, driven_ccw : tuple of Driven
-        How each was driven. Empty: all were the perfect square by odometry.
+        Odometry of each. Empty: all were perfect squares by odometry.
 
     Raises
     ------
     InputError
-        When squares are missing or their offsets cannot be those of squares of that side.
+        If squares are missing, or offsets are too large for squares of that side.
     """
 
     side: float
@@ -97,7 +97,7 @@ class Squares:
                 )
 
     def driven(self, sense: int, track: float) -> tuple[Driven, ...]:
-        """How the squares of a sense (+1 anticlockwise, -1 clockwise) were driven."""
+        """Odometry of the squares of a sense (+1 anticlockwise, -1 clockwise)."""
         recorded = self.driven_ccw if sense > 0 else self.driven_cw
         return recorded or (perfect_square(self.side, track, sense),)
 
@@ -109,17 +109,17 @@ def perfect_square(side: float, track: float, sense: int) -> Driven:
 
 
 def e_max_syst(squares: Squares) -> float:
-    """E_max,syst [m]: the distance of the further centre of gravity (equation 12)."""
+    """E_max,syst [m]: the larger distance of the two centres of gravity (equation 12)."""
     return float(max(np.hypot(*part.mean(axis=0)) for part in (squares.cw, squares.ccw)))
 
 
 def e_max_of_scatter(squares: Squares) -> float:
-    """E_max,syst that the runs' scatter alone would give a perfect calibration, about [m]."""
+    """Approximate E_max,syst of a perfect calibration, from the dispersion alone [m]."""
     return math.sqrt(
         max(float(np.trace(covariance_of_mean(part))) for part in (squares.cw, squares.ccw))
     )
 
 
 def covariance_of_mean(offsets: Floats) -> Floats:
-    """Covariance of a centre of gravity, from its runs' scatter [m²], shape (2, 2)."""
+    """Covariance of a centre of gravity, from the dispersion of its runs [m²], shape (2, 2)."""
     return np.asarray(np.cov(offsets.T) / len(offsets))

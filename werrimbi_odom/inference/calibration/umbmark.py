@@ -1,20 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Base and wheel radii from squares driven in both senses (UMBmark; paper, section 3).
+"""Wheel base and radii from squares driven in both senses (UMBmark; paper, section 3).
 
-An offset says where a square ended, measured minus odometry, in the frame whose x axis is the
-first leg. Two mistakes of the robot file make it:
+An offset is where a square ended, measured minus odometry, in the frame whose x axis is the first
+leg. Two errors of the robot file cause it:
 
-- a base that is off: every corner of 90 degrees by odometry falls short by α;
-- wheels that differ: every leg that is straight by odometry bends to the left by β.
+- a wrong base: every corner of 90 degrees by odometry falls short by α;
+- unequal wheels: every leg that is straight by odometry bends to the left by β.
 
 To first order a clockwise square of side D ends at -2 D (α + β) in x and the same in y, an
 anticlockwise one at -2 D (α - β) in x and minus that in y. So one sense cannot tell α from β; both
 can (equations 6 and 7), and each of them twice: from x and from y.
 
-The paper's equations are of first order. `umbmark` starts from them and goes on to the factors
-with which the very travel that the wheels counted ends where it was measured. A factor common to
-base and both radii changes no closed square, so that is left: the radii keep their mean.
+The paper's equations are of first order. `umbmark` starts from them and refines the factors by
+least squares, until the recorded wheel travel ends where it was measured. A common factor on base
+and both radii changes no closed square, so it is not identifiable; the mean radius stays.
 """
 
 from __future__ import annotations
@@ -46,21 +46,21 @@ from werrimbi_odom.model.robot import Robot
 class Estimate:
     """A value with its standard deviation.
 
-    The standard deviation is widened by Student's t for the few runs that it rests on, so that
-    value ± 1.96 std holds the truth in 95 % of calibrations (by 18 % for five runs a sense).
+    The standard deviation is widened by Student's t for the few runs, so that value ± 1.96 std
+    covers the truth in 95 % of calibrations (by 18 % for five runs a sense).
     """
 
     value: float
     std: float
 
     def times(self, factor: float) -> Estimate:
-        """The same, scaled."""
+        """Scale the estimate."""
         return Estimate(self.value * factor, self.std * abs(factor))
 
 
 @dataclass(frozen=True, slots=True)
 class Umbmark:
-    """What the squares say; angles in rad, lengths in m."""
+    """Result of UMBmark; angles in rad, lengths in m."""
 
     centre_cw: tuple[float, float]
     """Centre of gravity of the clockwise offsets (equation 5)."""
@@ -69,18 +69,18 @@ class Umbmark:
     """E_max,syst (equation 12)."""
     angles: Angles
     paper: Factors
-    """By the paper's equations 6 to 11, of first order."""
+    """First-order factors by the paper's equations 6 to 11."""
     alpha: Estimate
     beta: Estimate
     ratio: Estimate
     base: Estimate
     left: Estimate
     right: Estimate
-    """α, β, E_d, C_B, C_L, C_R without the approximations: the ones to use."""
+    """α, β, E_d, C_B, C_L, C_R without approximations: the ones to use."""
     disagreement: tuple[float, float]
-    """By how much x and y still disagree about α and β with the best factors [rad]."""
+    """Remaining difference between α and β from x and from y, with the best factors [rad]."""
     disagreement_p: float
-    """Probability of so much disagreement by scatter alone; NaN where the runs do not scatter."""
+    """p-value of this difference; NaN where the runs have no dispersion."""
 
     @property
     def factors(self) -> Factors:
@@ -88,7 +88,7 @@ class Umbmark:
         return Factors(self.base.value, self.ratio.value)
 
     def multipliers(self, old: Robot) -> dict[str, Estimate]:
-        """The new multipliers of a robot file whose old robot is `old`."""
+        """New multipliers for a robot file whose robot is `old`."""
         return {
             "wheel_separation_multiplier": self.base.times(old.wheel_separation_multiplier),
             "left_wheel_radius_multiplier": self.left.times(old.left_wheel_radius_multiplier),
@@ -97,18 +97,19 @@ class Umbmark:
 
 
 def umbmark(squares: Squares, robot: Robot) -> Umbmark:
-    """Corrections of base and radii from squares of both senses, with error bars.
+    """Corrections of base and radii from squares of both senses, with standard deviations.
 
     Parameters
     ----------
     squares : Squares
+        Offsets of the squares.
     robot : Robot
-        The robot as the odometry of these squares believed it to be.
+        The robot that the odometry of these squares assumed.
 
     Raises
     ------
     InputError
-        When what the squares say cannot come from base and radii.
+        If base and radii cannot cause these offsets.
     """
     angles = first_order_angles(squares)
     paper = paper_factors(angles, squares.side, robot.track)
@@ -148,7 +149,7 @@ def umbmark(squares: Squares, robot: Robot) -> Umbmark:
 
 
 def corrected(robot: Robot, factors: Factors) -> Robot:
-    """The robot with corrections put onto the multipliers that it has."""
+    """Multiply a robot's multipliers by corrections."""
     return replace(
         robot,
         wheel_separation_multiplier=robot.wheel_separation_multiplier * factors.base,
@@ -158,12 +159,16 @@ def corrected(robot: Robot, factors: Factors) -> Robot:
 
 
 def recomputed(squares: Squares, robot: Robot, factors: Factors) -> Squares:
-    """The offsets that the same drives have once the odometry is corrected.
+    """Offsets of the same drives with corrected odometry.
 
     Parameters
     ----------
+    squares : Squares
+        Offsets of the squares.
     robot : Robot
-        As the odometry of `squares` believed it to be.
+        The robot that the odometry of `squares` assumed.
+    factors : Factors
+        Corrections.
     """
     moved = []
     for sense, offsets in ((-1, squares.cw), (1, squares.ccw)):
@@ -176,7 +181,7 @@ def recomputed(squares: Squares, robot: Robot, factors: Factors) -> Squares:
 
 
 def _offsets(squares: Squares, track: float, off: float, imbalance: float) -> Floats:
-    """Mean offsets (x, y clockwise, x, y anticlockwise) [m] that wrong factors make."""
+    """Mean offsets (x, y clockwise, x, y anticlockwise) [m] predicted for wrong factors."""
     means = []
     for sense in (-1, 1):
         driven = squares.driven(sense, track)
@@ -189,7 +194,7 @@ def _offsets(squares: Squares, track: float, off: float, imbalance: float) -> Fl
 
 
 def _estimate(value: float, slope: Floats, squares: Squares) -> Estimate:
-    """A value that follows the four mean offsets with `slope`; Welch's degrees of freedom."""
+    """Estimate linear in the four mean offsets; Welch-Satterthwaite degrees of freedom."""
     parts = [
         (float(slope[rows] @ covariance_of_mean(offsets) @ slope[rows]), len(offsets) - 1)
         for rows, offsets in ((slice(0, 2), squares.cw), (slice(2, 4), squares.ccw))
@@ -204,16 +209,16 @@ def _estimate(value: float, slope: Floats, squares: Squares) -> Estimate:
 
 @dataclass(frozen=True, slots=True)
 class _Across:
-    """What no base and no radii explain: two of the four numbers, zero to first order."""
+    """Residual of the fit: two of the four offsets, zero to first order."""
 
     squares: Squares
     slope: Floats
     left_over: Floats
-    """Measured minus explained (x, y clockwise, x, y anticlockwise) [m]."""
+    """Measured minus fitted (x, y clockwise, x, y anticlockwise) [m]."""
 
     @property
     def probability(self) -> float:
-        """Of as much left over by scatter alone (Hotelling's test); NaN without scatter."""
+        """p-value of the residual (Hotelling's test); NaN without dispersion."""
         rest = np.linalg.svd(self.slope)[0][:, 2:]
         covariance = np.zeros((4, 4))
         covariance[:2, :2] = covariance_of_mean(self.squares.cw)
@@ -227,12 +232,12 @@ class _Across:
         return float(stats.f.sf(squared * (freedom - 1) / (2 * freedom), 2, freedom - 1))
 
     def angles(self) -> tuple[float, float]:
-        """The same as a disagreement of x and y about α and β [rad]."""
+        """Residual as a difference between α and β from x and from y [rad]."""
         said = angles_of(self.left_over, self.squares.side)
         return said.alpha_by_x - said.alpha_by_y, said.beta_by_x - said.beta_by_y
 
     def check(self, measured: Floats) -> None:
-        """Refuse offsets that lie across the diagonals rather than along them."""
+        """Reject offsets that lie across the diagonals rather than along them."""
         most = np.linalg.norm(self.left_over) > np.linalg.norm(measured - self.left_over)
         if most and not self.probability > SURE:
             raise InputError(

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The UMBmark equations as the paper has them (5 to 11), of first order; errata: docs/model.md."""
+"""The UMBmark equations of the paper (5 to 11), to first order; errata: docs/model.md."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ QUARTER = 0.5 * math.pi
 
 @dataclass(frozen=True, slots=True)
 class Angles:
-    """α and β to first order [rad], each as x and as y have it (equations 6 and 7)."""
+    """α and β to first order [rad], each from x and from y (equations 6 and 7)."""
 
     alpha_by_x: float
     alpha_by_y: float
@@ -28,23 +28,23 @@ class Angles:
 
     @property
     def alpha(self) -> float:
-        """By how much a corner falls short of 90 degrees [rad]."""
+        """Angle by which a corner falls short of 90 degrees [rad]."""
         return 0.5 * (self.alpha_by_x + self.alpha_by_y)
 
     @property
     def beta(self) -> float:
-        """By how much a leg bends to the left [rad]."""
+        """Angle by which a leg bends to the left [rad]."""
         return 0.5 * (self.beta_by_x + self.beta_by_y)
 
 
 @dataclass(frozen=True, slots=True)
 class Factors:
-    """Corrections to what the robot file holds already: new multiplier = old one times this."""
+    """Corrections of the robot file: new multiplier = old one times this."""
 
     base: float
-    """C_B: true base over the one believed (equation 9)."""
+    """C_B: ratio of true to assumed base (equation 9)."""
     ratio: float
-    """E_d: right radius over left, against what was believed (equation 8)."""
+    """E_d: ratio of right to left radius, relative to that assumed (equation 8)."""
 
     @property
     def left(self) -> float:
@@ -65,20 +65,22 @@ def first_order_angles(squares: Squares) -> Angles:
 
 
 def angles_of(centres: Floats, side: float) -> Angles:
-    """Equations 6 and 7 of centres of gravity (x, y clockwise, x, y anticlockwise) [m]."""
+    """Equations 6 and 7 for centres of gravity (x, y clockwise, x, y anticlockwise) [m]."""
     x_cw, y_cw, x_ccw, y_ccw = (float(value) / (-4.0 * side) for value in centres)
     return Angles(x_cw + x_ccw, y_cw - y_ccw, x_cw - x_ccw, y_cw + y_ccw)
 
 
 def paper_factors(angles: Angles, side: float, track: float) -> Factors:
-    """Equations 8 and 9 of the paper, the latter as its errata have it.
+    """Equations 8 and 9 of the paper, the latter as corrected by the errata.
 
     Parameters
     ----------
+    angles : Angles
+        α and β.
     side : float
         D [m].
     track : float
-        B as the odometry believed it to be [m].
+        B as assumed by the odometry [m].
     """
     bend = track * math.sin(0.5 * angles.beta)
     base = QUARTER / (QUARTER - min(angles.alpha, 0.5 * QUARTER))
@@ -88,7 +90,7 @@ def paper_factors(angles: Angles, side: float, track: float) -> Factors:
 
 
 def check_size(base: float, ratio: float) -> None:
-    """Refuse corrections that are no matter of calibration."""
+    """Reject corrections too large for a calibration."""
     if abs(base - 1.0) > LARGEST_MISTAKE or abs(ratio - 1.0) > LARGEST_MISTAKE:
         raise InputError(
             f"the offsets ask for a base {100 * (base - 1.0):+.0f} % and a ratio of the radii "

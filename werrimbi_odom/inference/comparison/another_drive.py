@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether wheels and reference tell of the same drive at all."""
+"""Test whether wheels and reference recorded the same drive at all."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from werrimbi_odom.inference.rules import (
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 Driven = Callable[[Legs], tuple[slice, Floats, Floats]]
-"""Of legs: which columns of the errors, and what wheels and reference say was driven, (m,) each."""
+"""For some legs: columns of the errors, and the motion by wheels and by reference, (m,) each."""
 
 
 def of_another_drive(prepared: Prepared, model: Model) -> bool:
-    """Whether a model, calibrated and all, tells hardly anything of what the reference measured.
+    """Whether a calibrated model explains next to nothing of the reference.
 
-    At no length of leg are its errors less than what was driven, by position or by heading (of
-    drives that turn), and they are no noise: so the reference is of another robot, another drive or
-    another hour, or its topic is no pose. A poor reference passes by its long legs, a poor model by
-    its short ones.
+    At every leg length its errors are as large as the motion, by position or by heading (for drives
+    that turn), and larger than noise. Then the reference is of another robot, drive or hour, or its
+    topic is no pose. A poor reference still passes by its long legs, a poor model by its short
+    ones.
     """
 
     @cache
@@ -53,7 +53,7 @@ def _by_heading(legs: Legs) -> tuple[slice, Floats, Floats]:
 
 
 def _untold(every: Iterable[Legs], driven: Driven, least: float) -> bool:
-    """Whether errors are as large as what was driven, at every length at which `least` was."""
+    """Whether errors are as large as the motion, at every length with motion above `least`."""
     looked_at = False
     for legs in every:
         places, rolled, measured = driven(legs)

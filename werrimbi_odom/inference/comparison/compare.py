@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Model against measurement, leg by leg: how wrong, at what, and whether that was promised."""
+"""Model against measurement, leg by leg: errors, dependences, consistency of the covariance."""
 
 from __future__ import annotations
 
@@ -41,22 +41,22 @@ KINDS = ("line", "arc", "spin")
 
 @dataclass(frozen=True, slots=True)
 class LegFigures:
-    """Figures over some legs; NaN where there are none."""
+    """Statistics over some legs; NaN where there are none."""
 
     figures: LegStatistics
-    """Without outliers, but for the median."""
+    """Statistics without outliers, except for the median."""
     outliers: int
     rmse_all_position_m: float
-    """With the outliers."""
+    """Position RMSE including outliers."""
     scatter_nees: float
-    """NEES of what is left when the systematic part is taken off."""
+    """NEES after removing the systematic part."""
     noise: NoiseFactor
-    """On the variance of the wheels' noise, that this scatter asks for."""
+    """Likeliest factor on the variance of the wheel noise, by this dispersion."""
 
 
 @dataclass(frozen=True, slots=True)
 class OfLength:
-    """Figures over all legs of one length."""
+    """Statistics over all legs of one length."""
 
     leg: float
     all: LegFigures
@@ -65,58 +65,58 @@ class OfLength:
 
     @property
     def consistency(self) -> AtLength:
-        """What all these legs say of the covariance."""
+        """NEES of all legs of this length."""
         figures = self.all.figures
         return AtLength(self.leg, figures.count, figures.nees, figures.freedom)
 
     @property
     def of_scatter(self) -> AtLength:
-        """The same without what is systematic in their errors."""
+        """NEES after removing the systematic part of the errors."""
         return replace(self.consistency, nees=self.all.scatter_nees)
 
 
 @dataclass(frozen=True, slots=True)
 class RunFigures:
-    """One run."""
+    """Statistics of one run."""
 
     run: Run
     distance_m: float
-    """Travel of the axle's midpoint, both directions counted."""
+    """Absolute travel of the axle's midpoint."""
     duration_s: float
     end_error_m: float
-    """At the last reference pose, dead reckoning having begun at the first; NaN where the path of
-    a reference with axes of its own is in pieces."""
+    """Error at the last reference pose, dead reckoning from the first; NaN where the path of a
+    reference with axes of its own is in pieces."""
     end_error_rad: float
-    """Measured minus predicted."""
+    """Heading error there, measured minus predicted."""
     rmse_path_m: float
-    """Over all reference poses."""
+    """RMSE over all reference poses."""
     legs: LegFigures
 
 
 @dataclass(frozen=True, slots=True, eq=False, kw_only=True)
 class Comparison:
-    """Everything that was found, and the legs themselves for whoever draws them."""
+    """Result of a comparison, with the legs themselves for plots."""
 
     prepared: Prepared
     model: Model
     runs: tuple[RunFigures, ...]
     lengths: tuple[OfLength, ...]
-    """The shortest first."""
+    """One for each leg length, ascending."""
     variables: tuple[ByVariable, ...]
     cells: tuple[Cell, ...]
     legs: Legs
-    """Of the length asked for."""
+    """Legs of the requested length."""
     left: Floats
-    """Their errors less what is systematic, shape (m, 3)."""
+    """Their errors without the systematic part, shape (m, 3)."""
     paths: tuple[Residual, ...]
     left_out: tuple[LeftOut, ...]
-    """Stretches of the runs that none of it is about."""
+    """Stretches of the runs that are excluded."""
     remarks: tuple[ReferenceRemark, ...]
-    """What is suspect about the reference."""
+    """Anomalies of the reference."""
 
     @property
     def main(self) -> OfLength:
-        """Figures of the length asked for."""
+        """Statistics for the requested length."""
         return next(item for item in self.lengths if item.leg == self.prepared.options.leg)
 
 
@@ -131,14 +131,18 @@ def compare(
 
     Parameters
     ----------
+    runs : sequence of Run
+        Recorded runs.
     robot : Robot or Model
-        A `Model` brings values that each run has of its own (phases, start headings); those that a
-        robot file does not say are learnt in each run.
+        A `Model` has its own per-run values (phases, start headings). Those missing from a robot
+        file are estimated in each run.
+    options : EvaluationOptions
+        Leg length and what is known of the reference.
 
     Raises
     ------
     InputError
-        When a run has no usable reference or no ticks.
+        If a run has no usable reference or no ticks.
     """
     own = robot.robot if isinstance(robot, Model) else robot
     prepared = prepare(runs, own, options, show=lambda share, words: show(0.5 * share, words))
@@ -151,7 +155,7 @@ def judged(
     *,
     show: Show = silent,
 ) -> Comparison:
-    """Compare a model over runs that were prepared: before and after over the same legs."""
+    """Compare a model over prepared runs, so that two models are compared over the same legs."""
     model = robot if isinstance(robot, Model) else in_runs(prepared, robot)
     lengths, main = [], None
     for number, leg in enumerate(sorted(prepared.cuts)):
@@ -201,7 +205,7 @@ def judged(
 
 
 def _figures(legs: Legs, left: Floats, groups: NDArray[np.bool_]) -> list[LegFigures]:
-    """Figures of groups of legs, each a row of a mask (g, m)."""
+    """Statistics of groups of legs, each a row of a mask (g, m)."""
     errors = legs.errors
     factors = noise_factors(left, errors.covariance, errors.wheels, groups & ~legs.outlier)
     return [

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where a comparison's legs lie, and how sure dead reckoning is along the way to them."""
+"""Positions of a comparison's legs, and the covariance of dead reckoning along the path."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from werrimbi_odom.model.trajectory import trajectory
 
 
 def middles(comparison: Comparison) -> NDArray[np.complex128]:
-    """Middle of each leg (x + iy), measured; where headings alone are measured, by the model."""
+    """Measured midpoint of each leg (x + iy); by the model where only headings are measured."""
     legs = comparison.legs
     found = 0.5 * (legs.x + legs.end_x) + 0.5j * (legs.y + legs.end_y)
     found = found.astype(np.complex128)
@@ -35,8 +35,8 @@ def middles(comparison: Comparison) -> NDArray[np.complex128]:
 def covariance_along(comparison: Comparison, index: int) -> Floats:
     """Covariance of the dead-reckoned position at every reference pose of a run, (n, 2, 2) [m²].
 
-    It begins with the noise of the measured pose that dead reckoning starts from. Of the axle's
-    midpoint; the point that the reference measures is near it.
+    It starts from the noise of the measured start pose. It is that of the axle's midpoint, which is
+    near the point that the reference measures.
     """
     run, path = comparison.prepared.runs[index], comparison.paths[index]
     robot = comparison.model.of_run(index)

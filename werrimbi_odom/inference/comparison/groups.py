@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where errors are larger than elsewhere: by speed, heading, time ..., by place on the floor."""
+"""Dependence of the errors on speed, heading, time and so on, and on the place on the floor."""
 
 from __future__ import annotations
 
@@ -33,36 +33,37 @@ class Bin:
     high: float
     figures: LegStatistics
     mean: tuple[float, float, float]
-    """Mean error along, sideways, in heading [m, m, rad]."""
+    """Mean error along, sideways and in heading [m, m, rad]."""
 
 
 @dataclass(frozen=True, slots=True)
 class ByVariable:
-    """Errors over the range of one variable."""
+    """Errors binned over one variable."""
 
     name: str
-    """With its unit."""
+    """Name with unit."""
     bins: tuple[Bin, ...]
     p_values: Mapping[str, float]
-    """That the mean errors along, sideways, heading, and the `size` of errors, go with it by chance
-    (corrected for all variables and channels); what is systematic in travel and turn taken off."""
+    """p-value of a dependence of the mean errors along, sideways, in heading, and of the `size` of
+    errors (Bonferroni over all variables and channels), after removing what is systematic in travel
+    and turn."""
 
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A square of the floor."""
+    """A square cell of the floor."""
 
     x: float
-    """Of its middle [m]."""
+    """Centre [m]."""
     y: float
     side: float
     figures: LegStatistics
     p_value: float
-    """That errors are so much larger here than elsewhere by chance (corrected)."""
+    """p-value of larger errors here than elsewhere (Bonferroni)."""
 
     @property
     def stands_out(self) -> bool:
-        """Whether they are."""
+        """Whether errors are significantly larger here."""
         return self.p_value < SURE_OF_LEGS
 
 
@@ -73,9 +74,11 @@ def by_variables(
 
     Parameters
     ----------
+    legs : LegErrors
+        Errors of m legs.
     left : ndarray, shape (m, 3)
-        Errors less what is systematic.
-    variables
+        Errors without the systematic part.
+    variables : mapping
         Value of each leg by name with unit; angles (`heading`) are binned in sectors.
     """
     members = {name: _bins(name, values) for name, values in variables.items()}
@@ -96,7 +99,7 @@ def by_variables(
 
 
 def _signals(legs: LegErrors, left: Floats) -> dict[str, Floats]:
-    """Errors in units of what is promised, and the logarithm of their size; shape (m,) each."""
+    """Errors normalised by their standard deviation, and the log of their size; shape (m,) each."""
     promised = np.sqrt(np.maximum(np.diagonal(legs.covariance, axis1=1, axis2=2), 1e-300))
     white = left / promised
     signals = {channel: white[:, index] for index, channel in enumerate(CHANNELS)}
@@ -126,7 +129,7 @@ def _bins(name: str, values: Floats) -> list[tuple[float, float, NDArray[np.bool
 
 
 def _differ(groups: list[Floats]) -> float:
-    """Chance that groups of equal mean differ so much: Welch's analysis of variance."""
+    """p-value of a difference in group means: Welch's analysis of variance."""
     groups = [
         known for group in groups if (known := group[np.isfinite(group)]).size >= LEGS_IN_A_BIN
     ]
@@ -153,14 +156,18 @@ def _means(errors: Floats) -> tuple[float, float, float]:
 
 
 def cells_of(legs: LegErrors, left: Floats, x: Floats, y: Floats, leg: float) -> tuple[Cell, ...]:
-    """Squares of the floor with the legs driven there, those that stand out first.
+    """Cells of the floor with the legs driven there, lowest p-value first.
 
     Parameters
     ----------
+    legs : LegErrors
+        Errors of m legs.
+    left : ndarray, shape (m, 3)
+        Errors without the systematic part.
     x, y : ndarray, shape (m,)
-        Middle of each leg [m]; NaN where not measured.
+        Midpoint of each leg [m]; NaN where not measured.
     leg : float
-        Length of a leg, which no square is smaller than [m].
+        Length of a leg, the least size of a cell [m].
     """
     known = np.isfinite(x) & np.isfinite(y)
     if known.sum() < 2 * LEGS_IN_A_BIN:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of a model on the legs of prepared runs: one answer to one question, for every verb."""
+"""Errors of a model on the legs of prepared runs, computed in one way for all commands."""
 
 from __future__ import annotations
 
@@ -43,29 +43,29 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Legs:
-    """All legs of one length, run by run, those on which the reference jumped among them."""
+    """All legs of one length, run by run, including those on which the reference jumped."""
 
     leg: float
     """[m]"""
     errors: LegErrors
     outlier: NDArray[np.bool_]
     event: NDArray[np.bool_]
-    """In which something happened at once (`Run.happened`)."""
+    """Legs with an abrupt event (`Run.happened`)."""
     run: NDArray[np.intp]
     """Index of the run, shape (m,)."""
     start_time: Floats
     """[s]"""
     end_time: Floats
     x: Floats
-    """Measured position at the start, as the reference gives it, shape (m,) [m]."""
+    """Measured position at the start, in the reference's frame, shape (m,) [m]."""
     y: Floats
     end_x: Floats
     end_y: Floats
     variables: Mapping[str, Floats]
-    """What errors may go with, by name with unit, shape (m,) each."""
+    """Variables on which errors may depend, by name with unit, shape (m,) each."""
 
     def chosen(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> Legs:
-        """Some of the legs, by mask or by index."""
+        """Select legs by mask or index."""
         columns = {
             item.name: getattr(self, item.name)[which]
             for item in fields(self)
@@ -76,15 +76,15 @@ class Legs:
 
     @property
     def quiet(self) -> Legs:
-        """Those in which nothing happened at once."""
+        """Legs without an abrupt event."""
         return self.chosen(~self.event) if self.event.any() else self
 
 
 def in_runs(prepared: Prepared, robot: Robot | Model) -> Model:
-    """A robot as it is judged on these runs, by every verb.
+    """Model of a robot for these runs, the same for all commands.
 
-    What each run has of its own and the robot does not say is learnt in that run; values that a
-    `Model` brings are kept. What belongs to the references alone is found anew.
+    Per-run values that the robot lacks are estimated in each run; those of a `Model` are kept.
+    Nuisance parameters of the references are always estimated anew.
     """
     if isinstance(robot, Model):
         plain = robot.without_nuisances()
@@ -98,7 +98,7 @@ def in_runs(prepared: Prepared, robot: Robot | Model) -> Model:
 
 
 def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
-    """Errors of all legs of one length, in the order of the runs; gaps are no legs."""
+    """Errors of all legs of one length, in the order of the runs, without gaps."""
     parts = []
     asked = prepared.cuts[prepared.options.leg]
     for group, usual, runs in zip(prepared.groups, asked, prepared.cuts[leg], strict=True):
@@ -124,22 +124,22 @@ def judged_legs(prepared: Prepared, model: Model, leg: float) -> Legs:
 
 
 def figures_of(prepared: Prepared, robot: Robot | Model) -> LegStatistics:
-    """Figures of a robot or model over the legs of the length asked for: one answer for all verbs.
+    """Statistics of a robot or model over the legs of the requested length, for all commands.
 
-    Over the legs on which the reference did not jump; the median is over all.
+    Legs on which the reference jumped only count for the median.
     """
     legs = judged_legs(prepared, in_runs(prepared, robot), prepared.options.leg)
     return statistics_of(legs)
 
 
 def statistics_of(legs: Legs) -> LegStatistics:
-    """The same of legs that were judged."""
+    """Statistics of judged legs; those on which the reference jumped only count for the median."""
     kept = statistics(legs.errors.chosen(~legs.outlier))
     return replace(kept, median_position_m=statistics(legs.errors).median_position_m)
 
 
 def paths(prepared: Prepared, model: Model) -> tuple[Residual, ...]:
-    """Measured and dead-reckoned path of every run, in their order."""
+    """Measured and dead-reckoned path of every run, in order."""
     found: dict[int, Residual] = {}
     for group in prepared.groups:
         residuals, own = group.plain, _of_group(group, model)
@@ -150,16 +150,16 @@ def paths(prepared: Prepared, model: Model) -> tuple[Residual, ...]:
 
 
 def _of_group(group: Group, model: Model) -> Model:
-    """The model with what the group's runs have of their own."""
+    """Model restricted to the runs of a group."""
     return Model(model.robot, tuple(model.own[index] for index in group.index))
 
 
 def _with_drifts(model: Model, runs: Concatenated) -> Model:
-    """The model with the drift of each run's gyro, which is no error of the robot.
+    """Model with the drift of each run's gyro, which is no error of the robot.
 
-    That is the slope of the heading errors over time that most legs have (least absolute values: a
-    median of slopes, weighed by the legs' durations), as fits have a drift of every run free. A run
-    of fewer than `DRIFT_LEGS` has none: it would take the whole error of one leg for it.
+    Fits leave this drift free too. It is the slope of heading errors over time by least absolute
+    deviations: a median of slopes weighted by the legs' durations. A run of fewer than `DRIFT_LEGS`
+    has none, as the drift would absorb the whole error of one leg.
     """
     seen = legs_shown(model, runs)[:, 2]
     error = wrap_all(runs.finish[:, 2] - runs.start[:, 2] - seen)
@@ -251,11 +251,11 @@ def _in_order(parts: list[Legs]) -> Legs:
 
 
 def far_above_noise(prepared: Prepared, model: Model) -> bool:
-    """Whether a model's errors are beyond anything that its noise, and the reference's, explain.
+    """Whether a model's errors are larger than any noise of wheels and reference explains.
 
-    A likelihood that was free to choose the noise calls any model right; this asks with the noise
-    of the softest wheels there are, and of the reference by its own small differences. By what a
-    usual leg is promised: a first one, whose heading nobody measured, is promised anything.
+    A likelihood with free noise accepts any model. This test uses the largest plausible wheel
+    noise, and the reference noise from its own small differences. The limit is the median variance,
+    as that of a first leg with an unknown heading is arbitrary.
     """
     legs = judged_legs(prepared, model, prepared.options.leg).quiet
     kept = legs.errors.chosen(~legs.outlier)

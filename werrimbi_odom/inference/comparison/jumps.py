@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where a reference jumped: a tracker that lost its markers, a scan match that failed."""
+"""Jumps of a reference: a tracker that lost its markers, a scan match that failed."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ from werrimbi_odom.model.pose import Floats
 
 
 def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
-    """What the reference jumped by in each interval, (x, y, yaw); zero where it did not; (n-1, 3).
+    """Jump of the reference in each interval, (x, y, yaw); zero where there is none; (n - 1, 3).
 
-    A jump is an error of one interval beyond all others, beyond its neighbours', and beyond what
-    was driven about it: no model, however wrong, errs like this. What goes by in a `gap` (n - 1,)
-    is none: nobody was looking.
+    A jump is an error of one interval that exceeds the dispersion of all errors, the errors of its
+    neighbours, and a share of the motion around it. No wrong model causes such errors. Intervals in
+    a `gap` (n - 1,) are not tested.
     """
     errors = np.where(np.isfinite(item.intervals) & ~gap[:, None], item.intervals, 0.0)
     if errors.shape[0] < JUMP_FEWEST:
@@ -42,8 +42,8 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
     driven[:, :2] = driven[:, :2].max(axis=1, keepdims=True)
     share = np.full(3, JUMP_SHARE)
     if not np.isfinite(item.measured).any():
-        # A gyro does not lose its place. What is late by more than an interval errs by all that the
-        # robot turns in it, and a start looks like a leap until base and clock are right.
+        # A gyro does not jump. A delay of more than one interval causes an error of all that the
+        # robot turns in it, so a start looks like a jump until base and delay are right.
         share[2] = JUMP_SHARE_OF_A_GYRO
     limit = np.maximum(JUMP_SCATTER * scatter, share * (driven + np.abs(usual)))
     if not np.isfinite(item.measured).any():
@@ -54,7 +54,7 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
 
 
 def _running_median(values: Floats, reach: int) -> Floats:
-    """Median of each row's neighbours, itself among them."""
+    """Median of each row and its neighbours."""
     padded = np.pad(values, ((reach, reach), (0, 0)), mode="edge")
     windows = np.lib.stride_tricks.sliding_window_view(padded, 2 * reach + 1, axis=0)
     return np.asarray(np.median(windows, axis=-1))
@@ -71,14 +71,18 @@ def _running_max(values: Floats, reach: int) -> Floats:
 
 
 def jumped_legs(jumps: Floats, chosen: NDArray[np.intp], kind: ReferenceKind) -> NDArray[np.bool_]:
-    """Which legs a jump spoils, shape (m,).
+    """Legs that a jump invalidates, shape (m,).
 
-    A spike within a leg that has gone at its end spoils nothing where poses are absolute.
+    Where poses are absolute, a spike that is over at the leg's end does no harm.
 
     Parameters
     ----------
-    chosen
-        Index of the reference pose at which each leg begins and ends, shape (m + 1,).
+    jumps : ndarray, shape (n - 1, 3)
+        Jumps of the reference.
+    chosen : ndarray, shape (m + 1,)
+        Reference pose at which each leg begins and ends.
+    kind : ReferenceKind
+        Error model of the reference.
     """
     happened = np.any(jumps != 0.0, axis=1).astype(np.float64)
     sums = np.concatenate([np.zeros((1, 3)), np.cumsum(jumps, axis=0)])

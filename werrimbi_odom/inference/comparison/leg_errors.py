@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Errors of the legs, and whether the covariance promised them: RMSE, NEES, coverage."""
+"""Errors of the legs, and their statistics: RMSE, NEES, coverage."""
 
 from __future__ import annotations
 
@@ -32,12 +32,12 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 CHI2_95 = np.array([np.inf, 3.841458820694124, 5.991464547107979, 7.814727903251179])
-"""95 % quantiles of chi-squared by its degrees of freedom."""
+"""95 % quantiles of chi-squared, by degrees of freedom."""
 
 
 @dataclass(frozen=True, slots=True)
 class LegErrors:
-    """Measured minus predicted relative pose of legs, and the covariance promised for it."""
+    """Measured minus predicted relative pose of legs, and its predicted covariance."""
 
     error: Floats
     """(x, y, yaw) in the frame of the robot at the leg's start, shape (m, 3) [m, m, rad].
@@ -45,19 +45,19 @@ class LegErrors:
     NaN where not measured.
     """
     covariance: Floats
-    """Of the error: wheels, counts and reference, shape (m, 3, 3)."""
+    """Covariance of the error: wheels, encoder quantisation and reference, shape (m, 3, 3)."""
     kind: NDArray[np.str_]
     """line, arc or spin, shape (m,)."""
     length: Floats
-    """Path driven, shape (m,) [m]."""
+    """Path length, shape (m,) [m]."""
     wheels: Floats
-    """The part of the covariance that the wheels' noise makes, shape (m, 3, 3)."""
+    """Part of the covariance from the wheel noise, shape (m, 3, 3)."""
     along: Floats
     """Signed travel, shape (m,) [m]."""
     turn: Floats
-    """Change of heading, shape (m,) [rad]."""
+    """Heading change, shape (m,) [rad]."""
     heading: Floats
-    """At the leg's start in the reference's frame, shape (m,); NaN where unknown [rad]."""
+    """Heading at the leg's start in the reference's frame, shape (m,); NaN where unknown [rad]."""
 
     @property
     def distance(self) -> Floats:
@@ -66,16 +66,16 @@ class LegErrors:
 
     @property
     def freedom(self) -> NDArray[np.intp]:
-        """How many of x, y, yaw were measured, shape (m,)."""
+        """Degrees of freedom: how many of x, y, yaw were measured, shape (m,)."""
         return np.asarray(np.isfinite(self.error).sum(axis=1))
 
     @property
     def deviation(self) -> Floats:
-        """Squared Mahalanobis distance error' Σ⁻¹ error, shape (m,): chi-squared if honest."""
+        """Squared Mahalanobis distance error' Σ⁻¹ error, shape (m,): chi-squared if consistent."""
         return squared_deviation(self.error, self.covariance)
 
     def chosen(self, which: NDArray[np.bool_] | NDArray[np.intp]) -> LegErrors:
-        """Some of the legs, by mask or by index."""
+        """Select legs by mask or index."""
         return LegErrors(
             self.error[which],
             self.covariance[which],
@@ -90,18 +90,18 @@ class LegErrors:
 
 @dataclass(frozen=True, slots=True)
 class LegStatistics:
-    """Figures over legs; NaN where there are none, or nothing of it was measured."""
+    """Statistics over legs; NaN where there are none, or where it was not measured."""
 
     count: int
     rmse_position_m: float
     median_position_m: float
     rmse_yaw_rad: float
     nees: float
-    """Mean of error' Σ⁻¹ error over its degrees of freedom: 1 where the covariance is honest."""
+    """Mean of error' Σ⁻¹ error over its degrees of freedom: 1 if the covariance is consistent."""
     coverage_95: float
     """Share of legs inside the 95 % ellipsoid."""
     freedom: int = 0
-    """Measured coordinates of all errors."""
+    """Degrees of freedom: measured coordinates of all errors."""
 
 
 def leg_errors(
@@ -131,14 +131,22 @@ def errors_of(
 
     Parameters
     ----------
+    model : Model
+        The model.
+    runs : Concatenated
+        Runs with m legs.
     sigma_xy, sigma_yaw : float, or ndarray of shape (m,)
         Noise of the reference: of each pose (absolute) or each interval (incremental) [m, rad].
+    kind : ReferenceKind
+        Error model of the reference.
     by_position : bool
-        The reference gives positions alone; headings then come from those before the leg.
+        The reference gives positions only; headings are then estimated from those before the leg.
     sigma_stamp : float
-        Of the stamps of a gyro, or of scans [s].
-    wandering, jumped
-        Noise of a reference on a local map, in place of sigmas, and the legs on which it jumped.
+        Noise of the stamps of a gyro, or of scans [s].
+    wandering : Variances, optional
+        Noise of a reference on a local map, in place of the sigmas.
+    jumped : ndarray of bool, shape (m,), optional
+        Legs on which the latter jumped.
     """
     robot = model.robot
     prediction = predict_joined(model, runs)
@@ -183,14 +191,14 @@ def errors_of(
 
 
 def _headings(model: Model, runs: Concatenated, start: Floats) -> Floats:
-    """Heading at the first pose of each run: measured, or else the model's, shape (runs,)."""
+    """Heading at the first pose of each run, measured or else the model's, shape (runs,)."""
     measured = start[runs.legs[:-1], 2]
     given = [0.0 if yaw is None else yaw for yaw in model.start_yaws]
     return np.where(np.isfinite(measured), measured, given)
 
 
 def kinds_of(along: Floats, turn: Floats, track: float) -> NDArray[np.str_]:
-    """line, arc or spin of each leg."""
+    """Motion type of each leg: line, arc or spin."""
     motion = zip(along.tolist(), turn.tolist(), strict=True)
     kinds: list[PieceKind] = [kind_of(BodyMotion(go, 0.0, by), track) for go, by in motion]
     return np.array(kinds, dtype=np.str_)
@@ -203,14 +211,14 @@ def _reference_part(
     sigmas: tuple[float | Floats, float | Floats, float],
     kind: ReferenceKind,
 ) -> Floats:
-    """What the reference itself, and reading the counters, adds to the error of a leg.
+    """Covariance of a leg's error from the reference and from encoder quantisation.
 
-    Of its positions, headings and stamps.
+    The reference's part is that of its positions, headings and stamps.
     """
     reading = reading_noise(robot)
     xy, yaw = (np.zeros(runs.count) + np.square(sigma) for sigma in sigmas[:2])
     begun = ended = np.zeros((runs.count, 3))
-    if sigmas[2] > 0.0:  # the speeds of an hour's steps are much to work out for nothing
+    if sigmas[2] > 0.0:  # speeds for an hour of steps are costly
         begun, ended = (sigmas[2] ** 2 * pace for pace in _paces(robot, runs))
     if kind == "incremental":
         none = np.zeros(runs.count)
@@ -226,7 +234,7 @@ def _reference_part(
 
 
 def _paces(robot: Robot, runs: Concatenated) -> tuple[Floats, Floats]:
-    """What a stamp's error is multiplied with where legs begin and end (`paces`), (m, 3) each."""
+    """Factors of a stamp's error at both ends of the legs (`paces`), (m, 3) each."""
     drive = runs.drive(robot)
     return (
         paces(drive.speed.start[runs.begin], drive.yaw_rate.start[runs.begin]),
@@ -235,7 +243,7 @@ def _paces(robot: Robot, runs: Concatenated) -> tuple[Floats, Floats]:
 
 
 def squared_deviation(error: Floats, covariance: Floats) -> Floats:
-    """Compute error' Σ⁻¹ error of rows (m, 3), over what was measured of each; shape (m,)."""
+    """Squared Mahalanobis distance of rows (m, 3), over the measured coordinates; shape (m,)."""
     known = np.isfinite(error)
     both = known[:, :, None] & known[:, None, :]
     shape = np.where(both, covariance, 0.0) + np.where(known, 0.0, 1.0)[:, :, None] * np.eye(3)
@@ -245,7 +253,7 @@ def squared_deviation(error: Floats, covariance: Floats) -> Floats:
 
 
 def statistics(legs: LegErrors) -> LegStatistics:
-    """Figures over all of the legs given."""
+    """Statistics over the given legs."""
     count = legs.error.shape[0]
     freedom = legs.freedom
     if not freedom.any():
@@ -265,7 +273,7 @@ def statistics(legs: LegErrors) -> LegStatistics:
 
 
 def root_mean_square(values: Floats) -> float:
-    """Over what is finite; NaN where nothing is."""
+    """Root mean square of the finite values; NaN if there are none."""
     known = _finite(values)
     return float(np.sqrt(np.mean(known**2))) if known.size else float("nan")
 
@@ -275,7 +283,7 @@ def _finite(values: Floats) -> Floats:
 
 
 def joined(parts: list[LegErrors]) -> LegErrors:
-    """Legs of several runs as one set."""
+    """Concatenate legs of several runs."""
     return LegErrors(
         np.concatenate([part.error for part in parts]),
         np.concatenate([part.covariance for part in parts]),

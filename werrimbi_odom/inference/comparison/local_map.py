@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Legs of a reference that tells its place on a map: how it wanders, and what is left beside that.
+"""Errors of legs for a reference that localises on a map, whose own error varies slowly.
 
-A localiser that has lost itself by 5 degrees shows every leg 90 mm a metre to the side until it has
-found back. So a leg is not judged by its two poses alone: the error of the reference at its start
-is what all poses before it tell, as in a fit, and the error of a leg is what nobody expected of the
+A localiser that is off by 5 degrees shifts every leg by 90 mm per metre to the side until it
+recovers. So a leg is not judged by its two poses alone. As in a fit, the reference's error at the
+leg's start is filtered from all poses before it, and the error of a leg is the innovation of the
 pose at its end.
 """
 
@@ -38,15 +38,15 @@ class Wandering:
     """Noise of a reference on a local map."""
 
     variances: Variances
-    """With those of the wheels as the fit has them, which nobody is to judge by."""
+    """Noise variances. Those of the wheels are by-products of the fit and not for judging."""
     estimated: bool
-    """Else there were too few poses, and it is what such references usually have."""
+    """False if there were too few poses, so that typical values are used."""
 
 
 def wandering_of(records: Sequence[Record], robot: Robot, options: EvaluationOptions) -> Wandering:
-    """How a reference errs: likeliest beside a robot whose calibration is free.
+    """Maximum-likelihood noise of a reference, beside a robot with free calibration.
 
-    So a wrong base or radius does not pass for a walk of the reference.
+    So a wrong base or radius is not taken for a random walk of the reference.
     """
     laid = concatenated([cut_finely(record, robot, options.leg) for record in records])
     point = start_point(laid, robot, options)
@@ -67,10 +67,10 @@ def errors_on_map(
 ) -> tuple[Floats, Floats]:
     """Errors of legs, (m, 3), NaN where not measured, and their covariances, (m, 3, 3).
 
-    A model that is wrong would lay its own errors upon the reference, and show them in all legs
-    after; so errors are those of a filter that doubts the wheels as much as they warrant, and their
-    covariance is that of the noise as stated. Legs on which the reference jumped have what they
-    have by their two poses.
+    A wrong model would attribute its own errors to the reference and carry them into all later
+    legs. So errors are the innovations of a filter whose wheel noise is inflated until they are
+    consistent; the covariance is that of the stated noise. Legs on which the reference jumped are
+    judged by their two poses.
     """
     robot = model.robot
     wheels = np.square([robot.left_wheel_noise, robot.right_wheel_noise])

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A reference that is made from the wheels: it follows them too closely to be a measurement.
+"""Test for circularity: a reference that follows the wheels too closely to be a measurement.
 
-Odometry that is judged by odometry is always right. Names and frames tell most of such references
-(`Run.circle`); how far they are from the wheels is asked here, of all references, from the way that
-both say was gone between two instants. Headings are not looked at: those of a robot's own odometry
-often come from a gyro.
+Odometry that is judged by odometry is always right. Most such references are recognised by name and
+frame (`Run.circle`). Here all references are tested by their distance to the wheels' path length
+between two instants. Headings are not used, as those of a robot's own odometry often come from a
+gyro.
 """
 
 from __future__ import annotations
@@ -36,30 +36,30 @@ from werrimbi_odom.model.robot import Robot
 
 
 class Closeness(NamedTuple):
-    """How closely the ways of a reference follow those of the wheels."""
+    """Agreement of path lengths between reference and wheels."""
 
     apart: float
-    """Usual difference of a way, once both wheels' sizes and the delay are fitted [m]."""
+    """Typical difference of path length after fitting both wheel sizes and the delay [m]."""
     way: float
-    """The usual way [m]."""
+    """Typical path length [m]."""
     rounding: float
-    """What counters that are whole numbers round off such a way, standard deviation [m]; 0 where
-    they are none."""
+    """Standard deviation of such a path length from the quantisation of the counters [m]; 0 if they
+    are not quantised."""
 
 
 def refuse_circle(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> str:
-    """Whether a run's reference measures the robot, and what there is to say of it.
+    """Check that a run's reference is an independent measurement.
 
     Returns
     -------
     str
-        Where its name says that it is made from the wheels and its numbers that it is not: that it
-        is taken. Else nothing.
+        A note if its name says that it is odometry while its numbers say that it is independent;
+        else empty.
 
     Raises
     ------
     InputError
-        When it is made from the wheels.
+        If it is computed from the wheels.
     """
     found = None if run.reference is None else closeness(run, robot, limits)
     if found is not None and found.apart < CIRCLE_EXACT * found.rounding:
@@ -96,9 +96,9 @@ def refuse_circle(run: Run, robot: Robot, limits: EncoderLimits | None = None) -
 
 
 def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Closeness | None:
-    """How closely a reference follows the wheels; None where there is too little to tell."""
+    """Agreement of a reference with the wheels; None if there is too little motion to tell."""
     assert run.reference is not None
-    # What is made from the wheels has their stamps, right or wrong.
+    # A reference made from the wheels has their stamps, right or wrong.
     reference = replace(run.reference, stamped_together=True)
     try:
         counters = counters_of(replace(run, reference=reference), robot, limits)
@@ -112,7 +112,7 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
     for delay in CIRCLE_DELAYS:
         wheels = np.diff(counters.at(reference.time[rows] - delay), axis=0)
         wheels = wheels * [robot.left_tick, robot.right_tick]
-        if not known:  # which way the robot went, the wheels say
+        if not known:  # the sign of the motion is taken from the wheels
             ways = np.abs(ways) * np.where(wheels.sum(axis=1) < 0.0, -1.0, 1.0)
         best = min(best, _typical(ways, wheels))
     quantum = _rounding(run, robot)
@@ -120,7 +120,7 @@ def closeness(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Cl
 
 
 def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.intp]:
-    """Positions at the ends of ways of `CIRCLE_WAY`, in the ticks' time."""
+    """Reference rows at intervals of `CIRCLE_WAY`, within the ticks' time span."""
     inside = (reference.time >= counters.time[0]) & (reference.time <= counters.time[-1])
     rows: NDArray[np.intp] = np.flatnonzero(reference.has_position & inside)
     if rows.size == 0:
@@ -136,7 +136,7 @@ def _rows(reference: Reference, counters: Counters, robot: Robot) -> NDArray[np.
 
 
 def _ways(reference: Reference, rows: NDArray[np.intp]) -> tuple[Floats, bool]:
-    """Way from each row to the next along all poses in between, and whether its sign is known."""
+    """Path length from each row to the next through all poses between, and whether it is signed."""
     every = np.flatnonzero(reference.has_position)
     x, y, yaw = (part[every] for part in (reference.x, reference.y, reference.yaw))
     steps = np.diff(x) + 1j * np.diff(y)
@@ -151,7 +151,7 @@ def _ways(reference: Reference, rows: NDArray[np.intp]) -> tuple[Floats, bool]:
 
 
 def _typical(ways: Floats, wheels: Floats) -> float:
-    """Usual deviation from the best wheels' sizes: least absolute deviations, by reweighting."""
+    """Typical residual of the best wheel sizes: least absolute deviations, by reweighting."""
     weight = np.ones(ways.size)
     for _ in range(8):
         root = np.sqrt(weight)
@@ -162,7 +162,7 @@ def _typical(ways: Floats, wheels: Floats) -> float:
 
 
 def _rounding(run: Run, robot: Robot) -> float:
-    """Standard deviation of a way by counters that were rounded twice; 0 where they were not."""
+    """Standard deviation of a path length from two counter readings; 0 if not quantised."""
     squares = []
     for counts, tick in (
         (run.ticks.left, robot.left_tick),
@@ -175,14 +175,14 @@ def _rounding(run: Run, robot: Robot) -> float:
 
 
 def _quantum(steps: Counts) -> float:
-    """What all steps of a counter are whole times of; 0 where there is no such."""
+    """Common divisor of all steps of a counter; 0 if there is none."""
     if steps.size == 0:
         return 0.0
     if steps.dtype.kind == "i":
         return float(np.gcd.reduce(steps))
     sizes = np.unique(steps)
     apart = np.diff(sizes)
-    apart = apart[apart > CIRCLE_WHOLE * sizes[0]]  # less is the rounding of angles of 32 bits
+    apart = apart[apart > CIRCLE_WHOLE * sizes[0]]  # less is the rounding of 32-bit angles
     quantum = float(min(sizes[0], apart.min(initial=np.inf)))
     few = sizes[sizes <= CIRCLE_STEPS * quantum] / quantum
     whole = np.abs(few - np.rint(few)) < CIRCLE_WHOLE * CIRCLE_STEPS

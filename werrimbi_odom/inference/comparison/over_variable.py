@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Errors over one variable: means of equal parts, and of one wheel's travel over its own turn.
+"""Binned errors over a variable, and errors of one wheel over its own angle.
 
-A leg of a metre holds several turns of a wheel, so legs say nothing of them: the wheel's errors are
-taken from the reference's shortest intervals.
+A leg of a metre spans several turns of a wheel and shows nothing within a turn, so wheel errors are
+taken from the shortest reference intervals.
 """
 
 from __future__ import annotations
@@ -19,18 +19,20 @@ from werrimbi_odom.model.pose import Floats
 _BINS = 12
 
 
-_FEWEST = 5  # legs in a bin whose mean is drawn
+_FEWEST = 5  # least number of legs in a bin
 
 
 def binned(
     values: Floats, error: Floats, *, periodic: bool = False
 ) -> tuple[Floats, Floats, Floats, NDArray[np.intp]]:
-    """Centre, mean, its standard error and number of rows of parts that hold as many rows each.
+    """Centre, mean, standard error and number of rows of bins with equal numbers of rows.
 
     Parameters
     ----------
+    values, error : ndarray
+        Variable, and error of each row.
     periodic : bool
-        Parts of equal width instead, of a whole turn in degrees.
+        Use bins of equal width over a whole turn in degrees instead.
     """
     parts = max(2, min(_BINS, values.size // (2 * _FEWEST)))
     edges = (
@@ -60,17 +62,21 @@ def binned(
 
 
 _PARTS = 16
-_FEW = 8  # intervals in a part of a turn, whose mean is told
+_FEW = 8  # least number of intervals in a part of a turn
 
 
 FINE = np.linspace(0.0, 360.0, 91)
 
 
 def wheel_errors(comparison: Comparison, index: int, side: int) -> tuple[Floats, Floats, Floats]:
-    """Wheel's angle [rad], its error [m] and its travel [m] in each reference interval of a run.
+    """Wheel angle [rad], error [m] and travel [m] in each reference interval of a run.
 
     Parameters
     ----------
+    comparison : Comparison
+        The comparison.
+    index : int
+        Index of the run.
     side : int
         -1 for the left wheel, +1 for the right one.
     """
@@ -109,9 +115,9 @@ def over_a_turn(angle: Floats, error: Floats, travel: Floats) -> tuple[Floats, F
 
 
 def once_a_turn(centre: Floats, mean: Floats, spread: Floats) -> tuple[float, float, Floats]:
-    """Amplitude and standard error of the wave that suits the parts best, and the wave itself.
+    """Amplitude, its standard error, and values of the least-squares wave of one cycle per turn.
 
-    A mean is taken off with it: that is calibration.
+    A constant is fitted with it and removed, as it is calibration.
     """
     known = np.isfinite(mean) & (spread > 0.0)
     terms = _terms(centre[known]) / spread[known, None]

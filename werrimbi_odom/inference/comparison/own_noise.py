@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What references err by themselves: as it is given, else as records state it, else estimated."""
+"""Noise of the references: as given, else as stated in the records, else estimated."""
 
 from __future__ import annotations
 
@@ -26,42 +26,42 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True, slots=True)
 class ReferenceNoise:
-    """Standard deviations of the reference itself, and how they are known."""
+    """Standard deviations of the reference, and how they are known."""
 
     sigma_xy: float
     """[m]"""
     sigma_yaw: float
     """[rad]"""
     xy_told: str
-    """given (an option), stated (in the record), estimated, or assumed (too few poses)."""
+    """Origin: given (an option), stated (in the record), estimated, or assumed (too few poses)."""
     yaw_told: str
     sigma_stamp: float = 0.0
-    """Of the stamps of a gyro, or of scans [s]."""
+    """Noise of the stamps of a gyro, or of scans [s]."""
     walk_xy: float = 0.0
-    """On a local map: what its error gains in a second [m/s^0.5]."""
+    """Random walk of the error on a local map [m/s^0.5]."""
     walk_yaw: float = 0.0
-    """The same in heading [rad/s^0.5]."""
+    """Random walk of its heading error [rad/s^0.5]."""
     reversion: float = 0.0
-    """Rate at which that error is drawn back to nothing [1/s]."""
+    """Rate at which that error reverts to zero [1/s]."""
 
     @property
     def wander(self) -> tuple[float, float]:
-        """Of that error however long one waits [m, rad]."""
+        """Stationary standard deviation of that error [m, rad]."""
         share = np.sqrt(2.0 * self.reversion) if self.reversion > 0.0 else 1.0
         return self.walk_xy / share, self.walk_yaw / share
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class OwnNoise:
-    """The same for telling, and for counting."""
+    """Noise of the references, in summary and for each run."""
 
     noise: ReferenceNoise
     sigma_xy: Floats
-    """Of each run [m]."""
+    """For each run [m]."""
     sigma_yaw: Floats
-    """Of each run [rad]."""
+    """For each run [rad]."""
     wandering: Variances | None
-    """Of a reference on a local map."""
+    """Noise of a reference on a local map."""
 
 
 def noise_of(
@@ -71,12 +71,20 @@ def noise_of(
     measure: Measure,
     options: EvaluationOptions,
 ) -> OwnNoise:
-    """Noise of references that measure alike.
+    """Noise of references that measure the same quantities.
 
     Parameters
     ----------
-    every, residuals
-        The runs with a leg from each reference pose to the next, and what the robot makes of them.
+    robot : Robot
+        The robot.
+    every : Concatenated
+        Runs with a leg from each reference pose to the next.
+    residuals : sequence of Residual
+        Measured and predicted paths of these.
+    measure : Measure
+        What the references measure.
+    options : EvaluationOptions
+        What is known of the reference.
     """
     estimated: tuple[float | None, float | None]
     stated = [[getattr(run, name) for run in every.runs] for name in ("sigma_xy", "sigma_yaw")]
@@ -88,7 +96,7 @@ def noise_of(
         sigma = {name: float(np.sqrt(part[0])) for name, part in asdict(wandering).items()}
         estimated = (sigma["xy"], sigma["yaw"]) if found.estimated else (None, None)
         walk = sigma["walk_xy"], sigma["walk_yaw"], sigma["reversion"]
-        # What a localiser states is how far it may be off in all: most of that is its walk.
+        # A localiser states its absolute error, most of which is the random walk.
         stated = [[None] * len(every.runs)] * 2
     else:
         estimated = reference_noise(robot, residuals, options.reference_kind)
@@ -102,7 +110,7 @@ def noise_of(
 def _known(
     given: float | None, stated: list[float | None], estimated: float | None, usual: float
 ) -> tuple[float, Floats, str]:
-    """One sigma for telling, those of the runs for counting, and where they are from."""
+    """Summary sigma, sigma of each run, and their origin."""
     count = len(stated)
     if given is not None:
         return given, np.full(count, given), "given"

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Legs of a reference that gives positions alone: the heading is what earlier positions tell.
+"""Errors of legs for a reference of positions only, with headings estimated from earlier positions.
 
-A Kalman filter carries position and heading from leg to leg; the error of a leg is what it did not
-expect of the position at the leg's end. A model that is wrong would trust its own heading too much
-and show one bad spin in all legs after it; so the gain is that of a model doubted as much as its
-errors warrant, while the covariance is the honest one of such a gain under the noise as stated.
+A Kalman filter carries position and heading from leg to leg; the error of a leg is the innovation
+of the position at its end. A wrong model would trust its own heading too much and carry one bad
+spin into all later legs. So the gain is computed with process noise inflated until innovations are
+consistent, while the covariance is the true one of that gain under the stated noise.
 """
 
 from __future__ import annotations
@@ -24,16 +24,16 @@ _ROUNDS = 4
 
 
 class PositionErrors(NamedTuple):
-    """Of all legs, in the frame of the robot at each leg's start."""
+    """Errors of all legs, in the frame of the robot at each leg's start."""
 
     error: Floats
     """(x, y, NaN), shape (m, 3) [m]."""
     wheels: Floats
-    """Covariance of it from the wheels' noise, shape (m, 3, 3)."""
+    """Their covariance from the wheel noise, shape (m, 3, 3)."""
     reference: Floats
-    """Covariance of it from the reference's noise, shape (m, 3, 3)."""
+    """Their covariance from the reference noise, shape (m, 3, 3)."""
     heading: Floats
-    """At the leg's start, as the positions before it tell, shape (m,) [rad]."""
+    """Heading at the leg's start, estimated from earlier positions, shape (m,) [rad]."""
 
 
 def position_errors(
@@ -52,20 +52,20 @@ def position_errors(
     Parameters
     ----------
     relative, wheels : ndarray, shapes (m, 3) and (m, 3, 3)
-        Predicted relative pose of each leg, and its covariance from the wheels' noise.
+        Predicted relative pose of each leg, and its covariance from the wheel noise.
     alike : ndarray, shape (m, 3, 3)
-        The same if both wheels were as noisy as one another. So is a model that is doubted: it does
-        not err as one wheel does, and an error along the way is none of the heading.
+        The same covariance for equal noise of both wheels. Inflated noise has this shape: model
+        errors are not those of a single wheel, and an error along the path is none of the heading.
     start, finish : ndarray, shape (m, 2)
         Measured positions [m].
     variance : float, or ndarray of shape (m,)
-        Of each measured coordinate [m²].
+        Variance of each measured coordinate [m²].
     first : ndarray, shape (runs + 1,)
         First leg of each run, and the number of legs.
     headings : ndarray, shape (runs,)
-        At the first pose of each run, known roughly [rad].
+        Approximate heading at the first pose of each run [rad].
     gap : ndarray of bool, shape (m,)
-        Legs that nobody saw: the heading is carried through, the position begins anew.
+        Gaps: the heading is propagated, the position restarts.
     """
     variances = np.zeros(relative.shape[0]) + variance
     doubt = 1.0
@@ -103,7 +103,7 @@ def _filtered(
     begins = {int(leg): index for index, leg in enumerate(first[:-1])}
     identity = np.eye(3)
     state = np.zeros(3)
-    # Three covariances of one state: as doubted (for the gain), and the honest one in two parts.
+    # Three covariances of one state: the inflated one for the gain, and the true one in two parts.
     parts = np.zeros((3, 3, 3))
     for leg in range(count):
         if leg in begins:

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs prepared for a comparison: legs cut, the reference's noise and its jumps found, once.
+"""Runs prepared for comparisons: legs, reference noise and reference jumps, computed once.
 
-What is compared later over the same runs (another robot file, one more effect) is compared over the
-same legs, with the same legs left out and the same noise of the reference.
+Later comparisons over the same runs (another robot file, one more effect) use the same legs, the
+same exclusions and the same reference noise.
 """
 
 from __future__ import annotations
@@ -54,31 +54,31 @@ from werrimbi_odom.progress import Show, silent
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Group:
-    """Runs whose references measure alike."""
+    """Runs whose references measure the same quantities."""
 
     index: tuple[int, ...]
     measure: Measure
     every: Concatenated
     whole: tuple[bool, ...]
-    """Whether all rows of a run's reference are in `every`."""
+    """Whether `every` has all rows of a run's reference."""
     jumps: tuple[Floats, ...]
     own: OwnNoise
-    """What the references err by themselves."""
+    """Noise of the references."""
     plain: tuple[Residual, ...]
-    """Paths by the robot by whose travel the legs are cut."""
+    """Paths by the robot whose travel cuts the legs."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Prepared:
-    """Runs ready to be judged."""
+    """Runs ready for comparison."""
 
     robot: Robot
-    """By whose travel the legs are cut."""
+    """Robot whose travel cuts the legs."""
     options: EvaluationOptions
     runs: tuple[Run, ...]
     groups: tuple[Group, ...]
     cuts: Mapping[float, tuple[Concatenated, ...]]
-    """By length, for each group."""
+    """Legs by length, for each group."""
 
     @property
     def measures(self) -> tuple[Measure, ...]:
@@ -90,15 +90,15 @@ class Prepared:
 
     @property
     def noises(self) -> tuple[tuple[Measure, ReferenceNoise], ...]:
-        """The reference's noise, for each of the ways in which it measures."""
+        """Reference noise, for each kind of measurement."""
         return tuple((group.measure, group.own.noise) for group in self.groups)
 
     @property
     def left_out(self) -> tuple[LeftOut, ...]:
-        """Stretches that no model is judged on, run by run: gaps, and legs of a reference's jump.
+        """Excluded stretches, run by run: gaps, and legs on which the reference jumped.
 
-        Whoever finds another reason to leave a stretch out adds it to the record of the run
-        (`legs.cutting.Record.left_out`), and it is cut out and told like these.
+        To exclude a stretch for another reason, add it to the record of the run
+        (`legs.cutting.Record.left_out`); it is then cut out and reported like these.
         """
         found: list[list[LeftOut]] = [[] for _ in self.runs]
         for group, legs in zip(self.groups, self.cuts[self.options.leg], strict=True):
@@ -129,12 +129,12 @@ def prepare(
     *,
     show: Show = silent,
 ) -> Prepared:
-    """Match, find the reference's noise and jumps, and cut legs of several lengths.
+    """Match runs, estimate the reference's noise, find its jumps, and cut legs of several lengths.
 
     Raises
     ------
     InputError
-        When a run has no usable reference or no ticks.
+        If a run has no usable reference or no ticks.
     """
     runs = [looked_at(run, robot, options.limits) for run in runs]
     members: dict[Measure, list[tuple[int, Record, bool]]] = {}
@@ -153,9 +153,9 @@ def prepare(
 def _cut_to_lengths(
     groups: Sequence[Group], robot: Robot, leg: float
 ) -> dict[float, tuple[Concatenated, ...]]:
-    """Legs of all lengths of which there are enough, joined of the shortest.
+    """Legs of all lengths with enough legs, merged from the shortest.
 
-    A length is as good as another where both have the same legs, for the reference is too rare.
+    A length is skipped if it gives as many legs as another, because the reference is sparse.
     """
     records = [[run.record for run in group.every.runs] for group in groups]
     runs = sum(map(len, records))
@@ -194,14 +194,14 @@ def _cut_to_lengths(
 
 
 def _way(record: Record, robot: Robot, leg: float) -> Floats:
-    """What was gone up to each pose of a record, in legs."""
+    """Cumulative travel at each pose of a record, in legs."""
     counters = record.counters
     way = counters.way(robot, leg, QUARTER_TURN)
     return np.interp(record.measured.time, counters.time, way)
 
 
 def finely(prepared: Prepared) -> Concatenated:
-    """Cut the runs into the short legs of a fit: what `match_finely` does, from what is there."""
+    """Cut the runs into the short legs of a fit, as `match_finely`, reusing what is there."""
     found = {}
     for group in prepared.groups:
         for index, every, whole in zip(group.index, group.every.runs, group.whole, strict=True):
@@ -240,11 +240,11 @@ def _group(
 
 
 def jumped_in(group: Group, runs: Concatenated, kind: ReferenceKind) -> NDArray[np.bool_]:
-    """Legs that a jump of the reference spoils, shape (m,)."""
+    """Legs that a jump of the reference invalidates, shape (m,)."""
     both = zip(group.jumps, runs.runs, strict=True)
     return np.concatenate([jumped_legs(jumps, run.rows, kind) for jumps, run in both])
 
 
 def judged_by(prepared: Prepared) -> Literal["position", "heading"]:
-    """What legs are judged by: their positions, or where none are measured, their headings."""
+    """Quantity that legs are judged by: position, or heading where only headings are measured."""
     return "heading" if all(measure == "heading" for measure in prepared.measures) else "position"

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a reference moves as something on wheels can.
+"""Plausibility of a reference: whether it moves as a wheeled robot can.
 
-A robot on wheels goes where it faces (the nonholonomic constraint), so on straight stretches the
-path's direction is the heading, up to one constant angle of the mount; and its length is the
-wheels' way, up to one constant factor. What differs from stretch to stretch is not the robot's
-geometry but the reference, or wheels that slipped there. Medians of short cuts count, so failed
-matches and jumps have no say.
+A wheeled robot moves where it faces (nonholonomic constraint). So on straight stretches the
+direction of the path is the heading, up to one constant mounting angle, and path length is that of
+the wheels, up to one constant factor. What varies from stretch to stretch is not the robot's
+geometry but the reference, or wheels that slipped there. Medians over short cuts are used, which
+failed matches and jumps do not affect.
 """
 
 from __future__ import annotations
@@ -44,44 +44,44 @@ from werrimbi_odom.inference.rules import (
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 _PAIRED = 100
-"""Stretches of a drive of which every two make a slope."""
+"""Stretches of a drive whose pairwise slopes are used (Theil-Sen)."""
 
 What = Literal["another_drive", "short", "sideways", "sideways_by_place", "apart", "metre"]
-"""another_drive: it has nothing in common with the wheels; short: its path is shorter (or longer)
-in places; sideways: it goes askew of its heading, all along; sideways_by_place: now and then;
-apart: ever more; metre: it measures in another metre."""
+"""Kind of anomaly. another_drive: nothing in common with the wheels; short: path shorter (or
+longer) in places; sideways: constant angle between path and heading; sideways_by_place: such an
+angle in places; apart: an angle that grows; metre: another metric scale."""
 
 
 @dataclass(frozen=True, slots=True)
 class Stretch:
-    """Some metres of a run."""
+    """A few metres of a run."""
 
     run: Path
     begin: float
     """[s]"""
     end: float
     size: float
-    """Of what is remarked."""
+    """Size of the anomaly."""
     started: float = 0.0
     """First tick of the run [s], as in `LeftOut`."""
 
 
 @dataclass(frozen=True, slots=True)
 class ReferenceRemark:
-    """What is suspect about a reference."""
+    """An anomaly of a reference."""
 
     what: What
     size: float
-    """short, metre: share of the path, negative where it is shorter; else an angle [rad]."""
+    """short, metre: relative path length error, negative if shorter; else an angle [rad]."""
     usual: float = 0.0
-    """The same where nothing is odd."""
+    """Value over the normal stretches."""
     stretches: tuple[Stretch, ...] = ()
-    """Where; empty: all along."""
+    """Stretches concerned; empty if all."""
 
 
 @dataclass(frozen=True, slots=True)
 class _Looked:
-    """The stretches of all runs; arrays of shape (k,)."""
+    """Stretches of all runs; arrays of shape (k,)."""
 
     run: NDArray[np.intp]
     begin: Floats
@@ -91,10 +91,10 @@ class _Looked:
 
 
 def remarks_on(prepared: Prepared) -> tuple[ReferenceRemark, ...]:
-    """What is suspect about the reference of some runs; nothing where it measures headings alone.
+    """Anomalies of the references of some runs; none where only headings are measured.
 
-    Legs are those that were prepared, and the wheels' way is that of the robot file as given: one
-    factor on it, whatever its size, changes nothing but what is said of the metre.
+    Uses the prepared legs and the path length by the given robot file. A wrong scale of that only
+    affects the remark about the metric scale.
     """
     paths: list[tuple[Run, Residual, NDArray[np.bool_]]] = []
     for group in prepared.groups:
@@ -115,23 +115,25 @@ def remarks_on(prepared: Prepared) -> tuple[ReferenceRemark, ...]:
 
 @dataclass(frozen=True, slots=True)
 class _Cuts:
-    """Cuts of one run that bend little; arrays of shape (m,)."""
+    """Nearly straight cuts of one run; arrays of shape (m,)."""
 
     begin: Floats
     end: Floats
     way: Floats
-    """Of the wheels until its end [m]."""
+    """Path length by the wheels up to its end [m]."""
     share: Floats
-    """The reference's way over the wheels', both as chords."""
+    """Ratio of path length by reference to that by wheels, both as chords."""
     bend: Floats
-    """Turn over way ahead [1/m]: a lever arm turns and stretches the path in proportion to it."""
+    """Turn over forward travel [1/m]: a lever arm rotates and stretches the path in proportion to
+    it."""
     surge: Floats
-    """Gain of speed over way ahead [1/s]: a late reference stretches the path in proportion."""
+    """Gain of speed over forward travel [1/s]: a delay stretches the path in proportion to it."""
     angle: Floats
-    """From the reference's heading to its path, robots that drive backwards turned [rad]; NaN."""
+    """Angle from the reference's heading to its path, reversed in backward driving [rad]; NaN if
+    unknown."""
     turns: tuple[float, float]
-    """Of all cuts, turning ones too: what the wheels turned, and what was measured, both times the
-    sign of the wheels'."""
+    """Total turn over all cuts, turning ones too, by wheels and as measured, both times the sign of
+    the wheels' turn."""
 
 
 def _cuts(item: Residual, gap: NDArray[np.bool_], leg: float) -> _Cuts:
@@ -170,7 +172,7 @@ def _cuts(item: Residual, gap: NDArray[np.bool_], leg: float) -> _Cuts:
 
 
 def _without(values: list[Floats], causes: list[Floats]) -> list[Floats]:
-    """Values less what goes with a cause in all runs alike: the line of least absolute errors."""
+    """Values without their linear dependence on a cause, one slope by least absolute deviations."""
     cause, value = np.concatenate(causes), np.concatenate(values)
     acts = np.isfinite(value) & (np.abs(cause) > 0.0)
     if not acts.any():
@@ -183,7 +185,7 @@ def _without(values: list[Floats], causes: list[Floats]) -> list[Floats]:
 
 
 def _stretches(cuts: list[_Cuts], values: list[Floats], leg: float) -> _Looked:
-    """Medians of stretches, and their standard deviations from the cuts' own scatter."""
+    """Medians of stretches, and their standard deviations from the dispersion of the cuts."""
     rows = []
     for causes in ([own.surge for own in cuts], [own.bend for own in cuts]):
         values = _without(values, causes)
@@ -203,7 +205,7 @@ def _stretches(cuts: list[_Cuts], values: list[Floats], leg: float) -> _Looked:
 
 
 def _odd(looked: _Looked, off: Floats, least: float) -> NDArray[np.intp]:
-    """Stretches that are off by more than `least` and than their own and a usual deviation."""
+    """Stretches that are off by more than `least` and significantly."""
     sigma = np.maximum(looked.sigma, np.median(looked.sigma))
     return np.flatnonzero(np.abs(off) > np.maximum(least, SUSPECT_SIGMA * sigma))
 
@@ -233,7 +235,7 @@ def _lengths(runs: list[Run], cuts: list[_Cuts], leg: float) -> Iterator[Referen
 def _angles(
     runs: list[Run], cuts: list[_Cuts], leg: float, wander: float
 ) -> Iterator[ReferenceRemark]:
-    """What of its headings is suspect, where they are known to wander by so much [rad]."""
+    """Anomalies of the headings, which are known to wander by `wander` [rad]."""
     known = [own.angle[np.isfinite(own.angle)] for own in cuts]
     if not sum(each.size for each in known):
         return
@@ -258,7 +260,7 @@ def _angles(
 
 
 def _drifting(looked: _Looked, off: Floats) -> float | None:
-    """How far the angle goes in the drive in which it goes farthest [rad]; None where it stays."""
+    """Largest drift of the angle over a drive [rad]; None if there is none."""
     found = []
     left = off.copy()
     for run in np.unique(looked.run):
@@ -281,7 +283,7 @@ def _drifting(looked: _Looked, off: Floats) -> float | None:
 
 
 def _metre(cuts: list[_Cuts]) -> Iterator[ReferenceRemark]:
-    """Radii and base off by one and the same factor: lengths are off, and turns are not."""
+    """Radii and base off by the same factor: lengths are wrong, turns are not."""
     share = np.concatenate([own.share for own in cuts]) if cuts else np.zeros(0)
     by_wheels, measured = (sum(own.turns[side] for own in cuts) for side in (0, 1))
     if share.size < SUSPECT_CUTS * SUSPECT_STRETCHES or by_wheels < SUSPECT_TURNED:

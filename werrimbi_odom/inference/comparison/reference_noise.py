@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a reference measures, and how noisy it is by itself.
+"""Kind of measurement of a reference, and its own noise.
 
-All of it is read from the reference's own intervals, before any leg is cut. A model that is wrong
-errs smoothly, or grows with the travel; the noise of a reference does neither. So its noise is
-taken from third differences of measured minus predicted path, over a few poses, and the part of
-them that grows with the span (what the wheels add) is taken off by a line through several spans.
-Differences are taken where the robot moves, if it does so at all: one that stands shows a tracker
-at its best. No reference is better than the step in which its values are written.
+Both are taken from the reference's own intervals, before legs are cut. Errors of a wrong model are
+smooth or grow with travel; noise of a reference does neither. So the noise is the dispersion of
+third differences of measured minus predicted path over a few poses. The part that grows with the
+span (wheel noise) is removed by a line through several spans. Differences are taken in motion where
+possible, as a robot at rest shows a tracker at its best. The noise is never less than the
+quantisation of the written values.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
 Measure = Literal["pose", "position", "heading"]
-"""What the reference gives at both ends of a leg."""
+"""Quantity that the reference measures at both ends of a leg."""
 
 _THIRD = np.array([-1.0, 3.0, -3.0, 1.0])
 
@@ -49,12 +49,13 @@ class Residual:
     """Measured and predicted path of one run, at every reference pose; arrays of shape (n,)."""
 
     time: Floats
-    """The reference's stamps [s]."""
+    """Stamps of the reference [s]."""
     measured: NDArray[np.complex128]
-    """x + iy, frame right-handed; NaN where not measured [m]."""
+    """x + iy in a right-handed frame; NaN where not measured [m]."""
     measured_yaw: Floats
     predicted: NDArray[np.complex128]
-    """Dead reckoning of the reference's point from the first pose, start heading fitted [m]."""
+    """Dead reckoning of the reference's point from the first pose, with fitted start heading
+    [m]."""
     predicted_yaw: Floats
     """In the reference's frame [rad]."""
     intervals: Floats
@@ -64,14 +65,14 @@ class Residual:
 
 
 def measured_alike(run: Run) -> tuple[Run, Measure]:
-    """What most rows of the reference measure, and the run with the other rows left out.
+    """Quantity that most rows of the reference measure, and the run restricted to these rows.
 
-    Where there are none to leave out it is the run itself. Positions without headings keep the
-    heading of the first row, where it was measured.
+    If all rows do, the run itself is returned. Positions without headings keep the heading of the
+    first row if it was measured.
     """
     reference = run.reference
     if reference is None:
-        return run, "pose"  # matching says what is missing
+        return run, "pose"  # matching raises the error
     position, yaw = reference.has_position, reference.has_yaw
     both = position & yaw
     if both.sum() >= max(2, POSE_ROWS * max(position.sum(), yaw.sum())):
@@ -87,18 +88,24 @@ def measured_alike(run: Run) -> tuple[Run, Measure]:
 def residuals_of(
     model: Model, every: Concatenated, measure: Measure
 ) -> tuple[tuple[Residual, ...], Model]:
-    """Dead reckoning along every reference pose, against what was measured, run by run.
+    """Dead reckoning along every reference pose and its difference to the measurement, run by run.
 
     Parameters
     ----------
-    every
+    model : Model
+        The model.
+    every : Concatenated
         Runs from `legs.cutting.every_pose`.
+    measure : Measure
+        Quantity that the reference measures.
 
     Returns
     -------
-    residuals, model
-        The model with the heading at the first pose of each run, where positions alone are
-        measured and the model does not say it: the one that lays the whole path onto them.
+    residuals : tuple of Residual
+        One for each run.
+    model : Model
+        The model with the start heading of each run. Where only positions are measured and the
+        model has none, it is the one that best aligns the whole path with them.
     """
     view = view_of(model.robot.effects)
     relative = legs_shown(model, every)
@@ -153,14 +160,14 @@ def _residual(
 
 
 def chained(relative: Floats) -> tuple[NDArray[np.complex128], Floats]:
-    """Positions and headings from relative poses (m, 3), the first at the origin; (m + 1,)."""
+    """Compose relative poses (m, 3) to positions and headings from the origin; (m + 1,)."""
     yaw = np.concatenate([[0.0], np.cumsum(relative[:, 2])])
     steps = np.exp(1j * yaw[:-1]) * (relative[:, 0] + 1j * relative[:, 1])
     return np.concatenate([[0j], np.cumsum(steps)]), yaw
 
 
 def fitted_heading(predicted: NDArray[np.complex128], measured: NDArray[np.complex128]) -> float:
-    """Heading at the start with which the whole predicted path lies closest to the measured."""
+    """Start heading that best aligns the predicted path with the measured one."""
     known = np.isfinite(measured)
     shape = predicted[known] - predicted[known][0]
     return float(np.angle(np.sum(np.conj(shape) * (measured[known] - measured[known][0]))))
@@ -172,7 +179,7 @@ def _facing(
     measured: NDArray[np.complex128],
     heading: float,
 ) -> Floats:
-    """Headings from the positions about each pose: predicted path laid onto the measured."""
+    """Heading at each pose, by aligning the predicted path with the positions around it."""
     count = measured.size
     index = np.arange(count)
     low, high = np.maximum(index - FACING_POSES, 0), np.minimum(index + FACING_POSES, count - 1)
@@ -185,10 +192,10 @@ def _facing(
 def reference_noise(
     robot: Robot, residuals: Sequence[Residual], kind: ReferenceKind
 ) -> tuple[float | None, float | None]:
-    """Standard deviations (position [m], heading [rad]) of the reference itself.
+    """Standard deviations (position [m], heading [rad]) of the reference.
 
-    Of each pose (absolute) or of each interval (incremental). None where poses are too few to
-    tell, or where nothing of it is measured.
+    Of each pose (absolute) or of each interval (incremental). None if poses are too few, or if the
+    quantity is not measured.
     """
     reading = reading_noise(robot)
     if kind == "incremental":
@@ -211,9 +218,9 @@ def reference_noise(
 def stamp_noise(every: Concatenated, residuals: Sequence[Residual]) -> float:
     """Standard deviation of the stamps of gyros, and of scans [s]; zero for others.
 
-    While the robot turns, its headings scatter more than on a straight line, by its turn rate times
-    that. Told over spans of more than two messages of the ticks, for what is laid between two of
-    them errs alike for all headings.
+    Heading errors in turns have a larger dispersion than on straight lines, by turn rate times
+    this. Spans are longer than two messages of the ticks, since the interpolation between two
+    messages causes the same error in all headings.
     """
     if not every.stamps_err:
         return 0.0
@@ -232,7 +239,7 @@ def stamp_noise(every: Concatenated, residuals: Sequence[Residual]) -> float:
 
 
 def _scatter_and_rate(item: Residual, ticks: Floats) -> tuple[Floats, Floats]:
-    """Sizes of third differences of the heading's error, and turn rates there [rad, rad/s]."""
+    """Absolute third differences of the heading error, and turn rates there [rad, rad/s]."""
     apart, messages = (float(np.median(np.diff(time))) for time in (item.time, ticks))
     span = max(1, round(2.0 * messages / max(apart, 1e-9)))
     first = np.arange(max(item.time.size - 3 * span, 0))
@@ -248,7 +255,7 @@ def _scatter_and_rate(item: Residual, ticks: Floats) -> tuple[Floats, Floats]:
 
 
 Differences = dict[int, tuple[Floats, float]]
-"""By span in intervals: third differences, and the motion that one of them spans."""
+"""By span in intervals: third differences, and the motion over one of them."""
 
 _SPANS = (1, 2, 4)
 
@@ -294,14 +301,14 @@ def _heading_differences(item: Residual) -> Differences:
 
 
 def _moving(driven: Floats, span: int) -> NDArray[np.bool_]:
-    """Which differences over a span were taken in motion; all, where next to none were."""
+    """Differences over a span that were taken in motion; all, if few were."""
     sums = np.concatenate([[0.0], np.cumsum(driven)])
     moved = sums[3 * span :] - sums[: -3 * span] > 0.0
     return moved if moved.sum() >= DIFFERENCES else np.ones(moved.size, dtype=np.bool_)
 
 
 def _level(runs: list[Differences]) -> float | None:
-    """Variance at a span of nothing, from what grows with the span; None where too few."""
+    """Variance extrapolated to zero span; None if there are too few differences."""
     spans, variances, counts = [], [], []
     for span in _SPANS:
         here = [run[span] for run in runs if span in run]
@@ -316,20 +323,20 @@ def _level(runs: list[Differences]) -> float | None:
 
 
 def _intercept(at: Floats, variances: Floats, counts: Floats) -> float:
-    """Where a line through variances, weighed by how well each is known, meets zero."""
+    """Intercept at zero of a weighted line through the variances."""
     weight = counts / np.maximum(variances, 1e-300) ** 2
     weight = weight / weight.sum()
     middle, mean = float(weight @ at), float(weight @ variances)
     if variances.max() < VARIANCE_GROWS * variances[0]:
-        return mean  # no more than chance; a line would carry that chance on to zero
+        return mean  # not significant; a line would extrapolate chance to zero
     spread = float(weight @ (at - middle) ** 2)
     slope = float(weight @ ((at - middle) * variances)) / spread if spread > 0.0 else 0.0
-    # Where the growth outruns the noise the line is not to be trusted down to nothing.
+    # Where growth dominates the noise, do not trust the line down to zero.
     return max(mean - max(slope, 0.0) * middle, NOISE_LEFT * float(variances[0]))
 
 
 def _steps(item: Residual) -> Floats:
-    """Differences of the errors of neighbouring intervals, as those of one: systematic part gone.
+    """Differences of errors of neighbouring intervals, scaled to one, without the systematic part.
 
     Shape (n - 2, 4): x, y, yaw, and the path of the two intervals.
     """
@@ -346,12 +353,12 @@ def _growing(columns: Floats) -> float | None:
 
 
 def _less(variance: float | None, reading: float, rounding: float) -> float | None:
-    """Standard deviation without what reading the counters adds, which the legs have already."""
+    """Standard deviation without encoder quantisation, which the legs account for themselves."""
     return None if variance is None else float(np.sqrt(max(variance - reading, rounding)))
 
 
 def _rounding(values: Sequence[Floats]) -> float:
-    """Variance of values that are written in steps: uniform over the smallest step between two."""
+    """Quantisation variance: uniform over the smallest difference between written values."""
     steps = [np.diff(np.unique(part[np.isfinite(part)])) for part in values]
     every = np.concatenate(steps) if steps else np.zeros(0)
     every = every[every > 1e-9]

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What of the legs' errors is systematic, and whether the wheels' noise is as large as stated.
+"""Systematic part of the legs' errors, and the size of the wheel noise.
 
-For each motion type the errors along, sideways and in heading are laid on travel and turn by least
-squares; standard errors come from the scatter of the legs themselves (HC3), not from the promised
-covariance, which may be what is wrong. What is left over is scatter, and tells how many times too
-small or too large the wheels' noise is stated.
+For each motion type, errors along, sideways and in heading are regressed on travel and turn.
+Standard errors are heteroscedasticity-consistent (HC3), from the dispersion of the legs and not
+from the predicted covariance, which may itself be wrong. The remaining dispersion tells by which
+factor the stated wheel noise is off.
 """
 
 from __future__ import annotations
@@ -34,47 +34,47 @@ TERMS: dict[str, tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]] = {
     "arc": (("travel",), ("travel", "travel × turn"), ("turn", "travel")),
     "spin": (("turn",), ("turn",), ("turn", "size of turn")),
 }
-"""What the error of each channel may be in proportion to, by motion type."""
+"""Regressors of the error of each channel, by motion type."""
 
 
 @dataclass(frozen=True, slots=True)
 class Systematic:
-    """The part of one channel's error that goes with one variable, over one type of motion."""
+    """Part of one channel's error that is proportional to one variable, over one motion type."""
 
     kind: str
     channel: str
     per: str
     """travel [m], turn [rad], size of turn [rad], travel × turn [m·rad]."""
     value: float
-    """Measured minus predicted, per unit of it [m or rad]."""
+    """Measured minus predicted, per unit of the variable [m or rad]."""
     std: float
     p_value: float
     size: float
     """Root mean square of this part over the legs [m or rad]."""
     promised: float
-    """Root mean square of what the covariance promises for the channel [m or rad]."""
+    """Root mean square of the predicted standard deviation of the channel [m or rad]."""
 
     common: bool
-    """Whether most legs have it, and not a few bad ones alone."""
+    """Whether most legs show it, and not only a few outliers."""
 
     @property
     def finding(self) -> bool:
-        """Certain, common, and large enough to matter."""
+        """Whether it is significant, common and relevant."""
         worth = self.size >= WORTH_SAYING * self.promised
         return self.common and worth and self.p_value < SURE_OF_LEGS
 
 
 class NoiseFactor(NamedTuple):
-    """How many times larger the variance of the wheels' noise is than stated (k² by this)."""
+    """Ratio of true to stated variance of the wheel noise (a factor on k²)."""
 
     value: float
     low: float
-    """Likelihood interval, 99.9 %."""
+    """99.9 % likelihood interval."""
     high: float
 
     @property
     def told(self) -> bool:
-        """Whether the legs tell it to better than a factor of ten either way."""
+        """Whether the interval is narrower than `NOISE_FACTOR_TOLD`."""
         return bool(
             np.isfinite(self.value) and self.high < NOISE_FACTOR_TOLD * max(self.low, 1e-12)
         )
@@ -86,7 +86,7 @@ UNTOLD = NoiseFactor(np.nan, 0.0, np.inf)
 def systematic_parts(legs: LegErrors) -> tuple[tuple[Systematic, ...], Floats]:
     """All systematic parts, and the errors without them; shape (m, 3).
 
-    What is no finding stays in the errors: chance would be taken off otherwise.
+    Parts that are no finding stay in the errors, as removing them would remove chance.
     """
     found: list[Systematic] = []
     left = legs.error.copy()
@@ -145,11 +145,11 @@ def _laid_on(
     return parts, predicted
 
 
-_HUBER = 1.5  # standard deviations from which on a leg counts for less
+_HUBER = 1.5  # Huber's threshold, in standard deviations
 
 
 def _of_most(design: Floats, error: Floats, slopes: Floats) -> Floats:
-    """Slopes that a few bad legs cannot carry: Huber's estimate, by reweighting."""
+    """Robust slopes: Huber's M-estimate, by iteratively reweighted least squares."""
     for _ in range(20):
         left = np.abs(error - design @ slopes)
         scale = _HUBER * MEDIAN_TO_SIGMA * float(np.median(left))
@@ -162,23 +162,23 @@ def _of_most(design: Floats, error: Floats, slopes: Floats) -> Floats:
 
 
 _FACTORS = np.logspace(-4.0, 8.0, 241)
-_SAME = 10.828  # of minus two log-likelihood: a 99.9 % interval, for a dozen are looked at
-_BLOCK = 512  # legs at a time, each with a likelihood for every factor: it fits in the cache
+_SAME = 10.828  # of minus two log-likelihood: a 99.9 % interval, as a dozen are examined
+_BLOCK = 512  # legs per block, which fits the cache
 
 
 def noise_factors(
     errors: Floats, covariance: Floats, wheels: Floats, groups: NDArray[np.bool_]
 ) -> list[NoiseFactor]:
-    """Factors on the wheels' part of the covariance that make the scatter of errors likeliest.
+    """Maximum-likelihood factors on the wheel part of the covariance.
 
     Parameters
     ----------
     errors : ndarray, shape (m, 3)
-        Of legs, without their systematic part; NaN where not measured.
+        Errors of legs without the systematic part; NaN where not measured.
     covariance, wheels : ndarray, shape (m, 3, 3)
-        All of the promised covariance, and the part that the wheels' noise makes of it.
+        Predicted covariance, and its part from the wheel noise.
     groups : ndarray, shape (g, m)
-        For each factor, the legs that it is of.
+        For each factor, a mask of its legs.
     """
     known = np.isfinite(errors)
     told = known.any(axis=1) & groups.any(axis=0)
@@ -204,7 +204,7 @@ def noise_factors(
 def _by_wheels(
     known: NDArray[np.bool_], errors: Floats, covariance: Floats, wheels: Floats
 ) -> tuple[Floats, Floats]:
-    """Variances (m, 3) by the wheels where all others are 1, and the squared errors along them."""
+    """Generalised eigenvalues (m, 3) of the wheel part, and the squared errors along these axes."""
     both = known[:, :, None] & known[:, None, :]
     rest = np.where(both, covariance - wheels, 0.0)
     rest = rest + np.where(known, 0.0, 1.0)[:, :, None] * np.eye(3)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What of a comparison deserves to be said: by statistics, so that noise is never a finding."""
+"""Findings of a comparison: only what is statistically significant."""
 
 from __future__ import annotations
 
@@ -38,64 +38,65 @@ from werrimbi_odom.inference.rules import (
 )
 
 Noise = Literal["honest", "too small", "too large", "grows", "comes and goes", "unknown"]
-"""The covariance. `too small`: by a factor of the wheels' noise; `grows`: the errors grow faster
-with the way than that noise does; `comes and goes`: slower."""
+"""Result on the covariance. `too small`: by a factor on the wheel noise; `grows`: errors grow
+faster with path length than that noise; `comes and goes`: slower."""
 
 
 @dataclass(frozen=True, slots=True)
 class Depends:
-    """Errors of a channel that go with a variable."""
+    """Dependence of the errors of a channel on a variable."""
 
     channel: str
-    """along, sideways, heading, or size (of the errors, whatever their sign)."""
+    """along, sideways, heading, or size (of the errors, regardless of sign)."""
     variable: str
     p_value: float
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Verdict:
-    """What is to be said."""
+    """Findings."""
 
     enough: bool
-    """Whether there are legs enough to say anything."""
+    """Whether there are enough legs for any finding."""
     systematic: tuple[Systematic, ...] = ()
-    """The largest first, compared with what is promised; consequences of another left out."""
+    """The largest relative to the predicted deviation first; consequences of another part left
+    out."""
     depends: tuple[Depends, ...] = ()
     cells: tuple[Cell, ...] = ()
     noise: Noise
     factor: NoiseFactor
-    """On the variance of the wheels' noise, at the longest legs that are many."""
+    """Factor on the variance of the wheel noise, at the longest leg length with many legs."""
     judged_at: float
-    """Their length [m]."""
+    """That length [m]."""
     gross: bool = False
-    """Whether errors are those of a set-up mistake."""
+    """Whether errors are as large as those of a set-up mistake."""
     too_short: float = 0.0
-    """Noise of positions alone for which the legs are too short to tell anything [m]; else 0."""
+    """Position noise for which the legs are too short to tell anything [m]; else 0."""
     few: float = 0.0
-    """Share of the squared errors that the worst twentieth of the legs holds."""
+    """Share of the squared errors in the worst twentieth of the legs."""
     few_and_bad: tuple[str, ...] = ()
-    """Motion types of too few legs to say more than that their errors are larger than promised."""
+    """Motion types with few legs, of which only larger errors than predicted can be said."""
     off: tuple[str, ...] = ()
-    """Motion types whose NEES is too large when their systematic part is taken off."""
+    """Motion types whose NEES is too large after removing the systematic part."""
     lengths: tuple[AtLength, ...] = ()
-    """What the legs of each length say of the covariance, where enough; the shortest first."""
+    """Consistency at each length with enough legs, ascending."""
     runs: tuple[int, ...] = ()
-    """Runs whose own legs say that it is too small, where all legs together do not."""
+    """Runs whose own legs show a covariance that is too small, where all legs together do not."""
 
     @property
     def covariance(self) -> Consistency:
-        """Whether it is honest at every length of which there are legs enough."""
+        """Whether the covariance is consistent at every length with enough legs."""
         return of_all(self.lengths)
 
     @property
     def mean_is_right(self) -> bool:
-        """Whether nothing systematic was found, in travel and turn or in anything else."""
+        """Whether no systematic error was found, in travel and turn or in any other variable."""
         depends = any(item.channel in CHANNELS for item in self.depends)
         return not self.systematic and not depends and not self.cells
 
     @property
     def off_at_all(self) -> tuple[str, ...]:
-        """Motion types whose errors are larger than promised, few legs or many."""
+        """Motion types with larger errors than predicted, of few or many legs."""
         return (*self.off, *self.few_and_bad)
 
     @property
@@ -150,7 +151,7 @@ def _too_small(figures: LegStatistics) -> bool:
 
 
 def _too_short(comparison: Comparison) -> float:
-    """Noise of positions alone whose chords over a leg are no heading [m]; else 0."""
+    """Position noise for which the chord of a leg gives no heading [m]; else 0."""
     noises = comparison.prepared.noises
     if any(measure != "position" for measure, _ in noises):
         return 0.0
@@ -184,7 +185,7 @@ def _held_by_few(comparison: Comparison) -> float:
 
 
 def _primary(main: OfLength) -> tuple[Systematic, ...]:
-    """One part for each motion and channel; a heading error bends the path, that is no other."""
+    """Largest part per motion and channel, without position errors caused by heading errors."""
     found = [part for part in main.systematic if part.finding]
     largest: dict[tuple[str, str], Systematic] = {}
     for part in sorted(found, key=lambda part: part.size, reverse=True):
@@ -202,7 +203,7 @@ def _primary(main: OfLength) -> tuple[Systematic, ...]:
 
 
 def _depends(comparison: Comparison, noise: Noise) -> tuple[Depends, ...]:
-    """Dependences of the mean error; of its size only where it is larger than promised."""
+    """Dependences of the mean error; of its size only if that is larger than predicted."""
     found = [
         Depends(channel, item.name, p_value)
         for item in comparison.variables
@@ -224,7 +225,7 @@ def _scatters(figures: LegFigures) -> bool:
 
 
 def _bad(figures: LegFigures) -> bool:
-    """Whether a few legs err beyond any chance, be it in one direction alone."""
+    """Whether a few legs have significant errors, even if in one direction only."""
     count, nees = figures.figures.count, figures.figures.nees
     if not 0 < count < FEWEST_LEGS or not nees > HONEST_WITHIN:
         return False
@@ -232,10 +233,10 @@ def _bad(figures: LegFigures) -> bool:
 
 
 def _noise(comparison: Comparison) -> tuple[Noise, NoiseFactor, float]:
-    """What the scatter of the legs says: of the wheels' noise where one factor on it explains it.
+    """Verdict on the noise by the dispersion of the legs; `too small` if one factor explains it.
 
-    The factor is told at the longest legs that are many, and held against that at the legs asked
-    for. Nothing is called too small or too large where the NEES of no length of leg is.
+    The factor is estimated at the longest leg length with many legs and compared with that at the
+    requested length. The result is never too small or too large unless NEES is, at some length.
     """
     many = [item for item in comparison.lengths if item.all.figures.count >= MANY_LEGS]
     main = comparison.main

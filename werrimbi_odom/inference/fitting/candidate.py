@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""An effect that a model might be missing, and the directions in which it would leave null."""
+"""A candidate effect: one that the model may lack, and the directions away from its null value."""
 
 from __future__ import annotations
 
@@ -14,28 +14,29 @@ from werrimbi_odom.model.effect import AppliedEffect, Effect
 
 @dataclass(frozen=True, slots=True)
 class Candidate:
-    """An effect at null, with values for its shape."""
+    """An effect at its null value, with values for its shape parameters."""
 
     effect: Effect
     shape: Mapping[str, float]
-    """Values of parameters that do nothing while the others are null (a threshold, a length)."""
+    """Values of parameters that have no effect while the others are null (a threshold, a
+    length)."""
     shared: tuple[str, ...] = ()
-    """Parameters that each run could have anew, taken to be the same in all of them."""
+    """Per-run parameters that are taken to be the same in all runs."""
 
     @property
     def name(self) -> str:
-        """Of the effect."""
+        """Name of the effect."""
         return self.effect.name
 
     @property
     def coordinates(self) -> tuple[Mapping[str, float], ...]:
-        """Directions from null, as values of the effect's parameters one usual size away."""
+        """Directions from null, as parameter values one step (`STEP`) away."""
         null = self.effect.nulls | dict(self.shape)
         if self.effect.quadrature is not None:
             amplitude, phase = self.effect.quadrature
             size = STEP * self.effect.parameters[amplitude].scale
             return tuple(null | {amplitude: size, phase: angle} for angle in (0.0, 0.5 * math.pi))
-        if self.place is not None:  # as of its first harmonic, which is most of it
+        if self.place is not None:  # as for its first harmonic, which dominates
             return self.round_the_wheel[:: len(self.round_the_wheel) // 4][:2]
         return tuple(
             null | {name: null[name] + STEP * item.scale}
@@ -45,7 +46,7 @@ class Candidate:
 
     @property
     def place(self) -> str | None:
-        """Parameter that is a place round the wheel, not known yet: each run may have its own."""
+        """Name of a parameter that is an unknown angle round the wheel, possibly one per run."""
         items = self.effect.parameters
         if sum(not item.tries for item in items.values()) == 1:
             for name, item in items.items():
@@ -55,7 +56,7 @@ class Candidate:
 
     @property
     def round_the_wheel(self) -> tuple[Mapping[str, float], ...]:
-        """Directions from null at each place that is tried; empty for an effect that has none."""
+        """Directions from null at each trial angle; empty for an effect without such an angle."""
         if self.place is None:
             return ()
         null = self.effect.nulls | dict(self.shape)
@@ -73,7 +74,7 @@ class Candidate:
         )
 
     def with_value(self, coordinate: Mapping[str, float], factor: float) -> AppliedEffect:
-        """The effect `factor` times along a coordinate."""
+        """Effect at `factor` times a coordinate from null."""
         null = self.effect.nulls | dict(self.shape)
         values = {}
         for name, item in self.effect.parameters.items():

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Effects that a model might be missing, and the score test of each.
+"""Effects that a model may lack, and the score test of each.
 
-A score test asks what an effect would explain without fitting it: its derivative at the null value,
-less what the model can turn already, against the innovations. So all effects of a library cost one
-pass of the filter.
+A score test (Rao) asks what an effect would explain without fitting it. The derivative of the
+whitened innovations at the null value, with the fitted parameters projected out, is compared with
+the innovations. So all effects of a library together cost one pass of the filter.
 """
 
 from __future__ import annotations
@@ -35,28 +35,29 @@ from werrimbi_odom.model.effect import AppliedEffect, Effect
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 BESIDE_POSITIONS = ("reference_heading_delay",)
-"""Effects that are of headings against positions: of headings alone they are another effect."""
+"""Effects that relate headings to positions; for headings alone they equal another effect."""
 
 OF_THE_MEASUREMENT = ("reference_scale",)
-"""Effects that all three multipliers together do as well: never tried beside them."""
+"""Effects equivalent to scaling all three multipliers together: never tried beside these."""
 
 
 @dataclass(frozen=True, slots=True)
 class Score:
-    """What a candidate would explain."""
+    """Result of the score test of a candidate."""
 
     candidate: Candidate
     gain: float
-    """Fall of the squared innovations, in their own variances: chi-squared when it is absent."""
+    """Test statistic: fall of the whitened squared innovations; chi-squared under the null
+    hypothesis."""
     degrees: int
     coefficients: Floats
-    """How far along its coordinates; (coordinates,) or (runs, coordinates)."""
+    """Step along each coordinate; (coordinates,) or (runs, coordinates)."""
     places: Floats | None = None
-    """Of what lies in one place round a wheel, where: (1,) or (runs,) [rad]."""
+    """Angle round the wheel of a local effect, (1,) or (runs,) [rad]; else None."""
 
     @property
     def excess(self) -> float:
-        """Gain beyond what as many useless parameters would bring, in units of its scatter."""
+        """Gain above its null expectation, in units of its null standard deviation."""
         return (self.gain - self.degrees) / math.sqrt(2.0 * self.degrees)
 
 
@@ -69,21 +70,23 @@ def candidates(
     asked: bool = False,
     own_scale: bool = False,
 ) -> tuple[Candidate, ...]:
-    """All that may be tried: a candidate for each set of shapes of each effect.
+    """All candidates: one for each combination of trial shapes of each effect.
 
     Parameters
     ----------
-    known
-        Effects that the model holds already.
-    channels
+    effects : iterable of Effect
+        Library of effects.
+    known : iterable of str
+        Effects that the model already has.
+    channels : iterable of str
         Extra measured channels of the runs; effects that need others are left out.
     runs : int
-        How many there are: of one run, nobody can say whether a phase stays.
+        Number of runs: with one run nobody can tell whether a phase is the same in each.
     asked : bool
-        The user asked for these effects. Else those that are the base by another name
-        (`Parameter.as_base`) are left to the search of set-ups, which knows whose robots have them.
+        The user asked for these effects. Otherwise those that stand for the wheel base
+        (`Parameter.as_base`) are left to the set-up search, which knows which robots have them.
     own_scale : bool
-        Nobody knows the reference's own metre, and the multipliers are not free.
+        The metric scale of the reference is unknown and the multipliers are not free.
     """
     there, measured = set(known), set(channels)
     found = []
@@ -111,19 +114,19 @@ def candidates(
 
 
 class Signature(NamedTuple):
-    """What a candidate does to the innovations, each in units of its own noise."""
+    """Derivative of the whitened innovations in a candidate's parameters."""
 
     candidate: Candidate
     flat: Floats
-    """(n, coordinates), or (n, runs * coordinates) where each run has values of its own."""
+    """Shape (n, coordinates), or (n, runs * coordinates) where each run has its own values."""
     free: Floats
-    """The same, less what the model can turn already."""
+    """The same with the nuisances projected out."""
 
 
 def signatures(
     runs: Concatenated, point: Point, numbers: Sequence[FreeParameter], tried: Sequence[Candidate]
 ) -> tuple[Floats, Iterator[Signature]]:
-    """Innovations (n,) that `numbers` cannot explain, and what each candidate does to them."""
+    """Innovations (n,) with `numbers` projected out, and the signature of each candidate."""
     if runs.headings_alone:
         tried = [candidate for candidate in tried if candidate.name not in BESIDE_POSITIONS]
     prediction = predict_all(point.model, runs)
@@ -159,14 +162,14 @@ def signatures(
 def unexplained(
     runs: Concatenated, point: Point, numbers: Sequence[FreeParameter], prediction: Prediction
 ) -> tuple[Nuisance, Floats]:
-    """What `numbers` can turn, and the innovations (n,) clear of it."""
+    """Span of the derivatives in `numbers`, and the innovations (n,) with it projected out."""
     white, basis = stacked(runs, point, numbers, prediction).flat()
     frame = nuisance(basis)
     return frame, frame.residual(white)
 
 
 def of_each_run(runs: Concatenated, marks: Floats) -> Floats:
-    """Columns (m, 3, k) once for each run, and zero in the others: (m, 3, runs * k)."""
+    """Expand columns (m, 3, k) to one copy per run, zero in other runs: (m, 3, runs * k)."""
     here = (runs.run_of_leg == run for run in range(len(runs.runs)))
     return np.concatenate([marks * legs[:, None, None] for legs in here], axis=-1)
 
@@ -174,7 +177,7 @@ def of_each_run(runs: Concatenated, marks: Floats) -> Floats:
 def scores(
     runs: Concatenated, point: Point, numbers: Sequence[FreeParameter], tried: Sequence[Candidate]
 ) -> tuple[Score, ...]:
-    """Score of each candidate beside what `numbers` can turn; those without any effect left out."""
+    """Score test of each candidate, with `numbers` as nuisances; undetermined ones left out."""
     rest, found = signatures(runs, point, numbers, tried)
     results: list[Score] = []
     for candidate, flat, free in found:
@@ -194,7 +197,7 @@ def scores(
 def _scores_of_places(
     candidate: Candidate, runs: int, free: Floats, rest: Floats
 ) -> Iterator[Score]:
-    """Of what lies in one place round a wheel: the best bump, and the best flat."""
+    """Scores of an effect local to an angle round the wheel: the best bump and the best flat."""
     assert candidate.place is not None
     tries = np.array(candidate.effect.parameters[candidate.place].tries)
     blocks = runs if candidate.per_run else 1
@@ -210,11 +213,12 @@ def _slope(
     coordinate: Mapping[str, float],
     prediction: Prediction,
 ) -> Floats:
-    """Change of the legs for one coordinate's step, (m, 3)."""
+    """Derivative of the legs in one coordinate, per step, (m, 3)."""
     poses: list[Floats] = []
     for factor in (1.0, -1.0):
         applied = candidate.with_value(coordinate, factor)
-        # One side alone at a bound; and of a law that is a line in its size, at many places.
+        # One-sided at a bound, and for laws linear in their size, which are evaluated at many
+        # angles.
         one_sided = candidate.place is not None
         one_sided |= applied.values == candidate.with_value(coordinate, 0.0).values
         if factor < 0.0 and one_sided:
@@ -225,7 +229,7 @@ def _slope(
 
 
 def put_in(model: Model, score: Score) -> Model:
-    """The model with a candidate at the values that its score suggests."""
+    """Add a candidate to the model, at the values that its score suggests."""
     candidate = score.candidate
     effect = candidate.effect
     start = dict(effect.nulls) | dict(candidate.shape)
@@ -263,5 +267,5 @@ def put_in(model: Model, score: Score) -> Model:
 
 
 def parameters_of_candidate(candidate: Candidate) -> tuple[FreeParameter, ...]:
-    """What a fit may turn of it."""
+    """Parameters of a candidate that a fit may change."""
     return parameters_to_fit(candidate.effect, candidate.shared)

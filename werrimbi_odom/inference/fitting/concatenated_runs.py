@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs laid end to end: one array for the steps of all of them, one for their legs.
+"""Runs laid end to end: one array for the steps of all runs, one for their legs.
 
-Effects work row by row, and legs know only their own start and end; so a session of many drives
-costs what one long drive would, and not a round of numpy calls for each.
+Effects work row by row, and legs only depend on their own start and end. So a session of many
+drives costs as much as one long drive, without a round of numpy calls for each.
 """
 
 from __future__ import annotations
@@ -27,11 +27,11 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.wiring import Wiring
 
 MODELS = 8
-"""Of which it is remembered what was worked out: a fit comes back to a few only."""
+"""Models whose results are cached: a fit returns to a few only."""
 DELAYS = 4
-"""The same of shifts of the reference's clock: a fit moves one either way, and then on."""
+"""Reference delays whose shifted runs are cached: a fit moves one both ways, then on."""
 DRIVES = 2
-"""Of which it is remembered what effects may look at: twenty numbers for each step."""
+"""Robots whose inputs to effects are cached: twenty numbers for each step."""
 Found = TypeVar("Found")
 
 
@@ -56,13 +56,13 @@ class Concatenated:
     intervals: Floats
     """Reference intervals in each leg, shape (m,)."""
     duration: Floats
-    """Of each leg, shape (m,) [s]."""
+    """Duration of each leg, shape (m,) [s]."""
     gap: NDArray[np.bool_]
-    """Legs that are none, for they hold something that is left out; shape (m,)."""
+    """Legs that are gaps, as they overlap an excluded stretch; shape (m,)."""
     stepped: NDArray[np.bool_]
-    """Legs in which something happened at once (an event), which may end anywhere; shape (m,)."""
+    """Legs with an abrupt event, whose end pose may be anything; shape (m,)."""
     finer: Concatenated | None = None
-    """The same nodes in shorter legs, of which these are joined."""
+    """The same nodes in shorter legs, which these legs merge."""
     _features: dict[tuple[float, ...], Drive[Floats]] = field(default_factory=dict)
     _delayed: dict[float, Concatenated] = field(default_factory=dict)
     _known: dict[Hashable, Any] = field(default_factory=dict)
@@ -71,7 +71,7 @@ class Concatenated:
     _latest: list[tuple[tuple[object, ...], Any]] = field(default_factory=list)
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """For another process: without what is remembered, some of it by laws (functions)."""
+        """Pickle without the caches, some of which have functions as keys."""
         own = {
             item.name: getattr(self, item.name)
             for item in fields(self)
@@ -86,38 +86,38 @@ class Concatenated:
 
     @property
     def data(self) -> int:
-        """Number of measured coordinates at the ends of legs that count."""
+        """Number of measured coordinates at the ends of legs that are not gaps."""
         return int(np.isfinite(self.finish[~self.gap]).sum())
 
     @property
     def headings_alone(self) -> bool:
-        """Whether the references measure headings and nothing else: gyros, mostly."""
+        """Whether references measure headings only, as gyros do."""
         return not np.isfinite(self.finish[:, :2]).any()
 
     @property
     def stamps_err(self) -> bool:
-        """Whether the stamps' noise is told apart: of gyros, and of scans.
+        """Whether stamp noise is estimated: for gyros and for scans.
 
-        Matches say how well each scan was seen, and nothing of when.
+        A scan match states its own uncertainty, but not that of its stamp.
         """
         return self.headings_alone or self.own_axes
 
     @property
     def headings_laid(self) -> bool:
-        """Whether headings are a gyro's that were laid upon those of a localiser."""
+        """Whether headings come from a gyro aligned to those of a localiser."""
         return any(run.measured.gyro is not None for run in self.runs)
 
     @property
     def own_axes(self) -> bool:
-        """Whether references begin with axes of their own, so that no direction is common."""
+        """Whether references start in axes of their own, so that runs share no direction."""
         return any(run.measured.own_axes for run in self.runs)
 
     @property
     def shares(self) -> Floats | None:
-        """Variances of place and heading that scans state at each leg's end, (m, 2).
+        """Stated variances of position and heading at each leg's end, relative to usual, (m, 2).
 
-        Over the largest that is usual in a drive, which counts for all (`with_stated_noise`). None
-        where it is not stated of all.
+        The unit is the largest typical value of a drive, which stands for all
+        (`with_stated_noise`). None if any run states none.
         """
         found = []
         for name in ("sigma_xy", "sigma_yaw"):
@@ -145,12 +145,12 @@ class Concatenated:
         return np.concatenate([np.arange(run.ends[0], run.ends[-1]) + first for run, first in both])
 
     def per_leg(self, values: Floats) -> Floats:
-        """Sums over the steps of each leg of values for all steps."""
+        """Sum values of all steps over each leg."""
         sums = np.concatenate([[0.0], np.cumsum(values)])
         return np.asarray(sums[self.end] - sums[self.begin])
 
     def delayed(self, delay: float) -> Concatenated:
-        """The same legs, when the reference saw at t - `delay` [s] what it stamps t."""
+        """Same legs with a reference delay: what it stamps t was seen at t - `delay` [s]."""
         if all(delay == run.delay for run in self.runs):
             return self
         known = self._delayed.get(delay)
@@ -164,7 +164,7 @@ class Concatenated:
         return known
 
     def known(self, key: Hashable, work: Callable[[Concatenated], Found]) -> Found:
-        """What `work` makes of the runs, worked out once for a key."""
+        """Result of `work` on the runs, cached by key."""
         found: Found | None = self._known.get(key)
         if found is None:
             found = work(self)
@@ -172,15 +172,15 @@ class Concatenated:
         return found
 
     def of_model(self, model: object, key: Hashable, work: Callable[[], Found]) -> Found:
-        """What `work` finds of a model by its legs, worked out once for the last few models."""
+        """Result of `work` for a model, of the size of the legs; cached for the last few models."""
         return _recalled(self._of_models, model, key, work, MODELS)
 
     def of_steps(self, model: object, key: Hashable, work: Callable[[], Found]) -> Found:
-        """The same of what is as long as the steps, for the last model alone."""
+        """Result of `work` for a model, of the size of the steps; cached for the last model."""
         return _recalled(self._of_steps, model, key, work, 1)
 
     def latest(self, of: tuple[object, ...], work: Callable[[], Found]) -> Found:
-        """What `work` finds, unless it was found the last time, of the very same objects."""
+        """Result of `work`, cached while called with the identical objects."""
         if not self._latest or any(
             one is not other for one, other in zip(self._latest[0][0], of, strict=True)
         ):
@@ -197,12 +197,12 @@ class Concatenated:
         return np.concatenate(begin), np.concatenate(end)
 
     def raw(self, robot: Robot) -> WheelTravel[Floats]:
-        """Travel of all steps before any effect."""
+        """Wheel travel of all steps before any effect."""
         left, right = wiring_of(robot.effects).wheels(*self.known("counts", _counts))
         return WheelTravel(left * robot.left_tick, right * robot.right_tick)
 
     def drive(self, robot: Robot) -> Drive[Floats]:
-        """What effects may look at, over the steps of all runs."""
+        """Inputs of the effects over the steps of all runs."""
         wiring = wiring_of(robot.effects)
         key = (*wiring, robot.left_tick, robot.right_tick, robot.track)
         known = self._features.get(key)
@@ -218,8 +218,10 @@ def concatenated(runs: Sequence[MatchedRun], finer: Concatenated | None = None) 
 
     Parameters
     ----------
+    runs : sequence of MatchedRun
+        Runs in order.
     finer : Concatenated, optional
-        The runs of which these are `joined`.
+        The same runs in shorter legs, from which these are `joined`.
     """
     steps = _starts([run.time.size - 1 for run in runs])
     legs = _starts([run.legs for run in runs])
@@ -240,12 +242,12 @@ def concatenated(runs: Sequence[MatchedRun], finer: Concatenated | None = None) 
         gap=np.concatenate([run.gap for run in runs]),
         stepped=np.concatenate([run.stepped for run in runs]),
         finer=finer,
-        _features={} if finer is None else finer._features,  # they are of steps, which are the same
+        _features={} if finer is None else finer._features,  # depend only on the steps, the same
     )
 
 
 def laid_out(runs: Sequence[MatchedRun] | Concatenated) -> Concatenated:
-    """Runs laid end to end, if they are not yet."""
+    """Lay runs end to end, if they are not yet."""
     return runs if isinstance(runs, Concatenated) else concatenated(runs)
 
 
@@ -269,7 +271,7 @@ def _drive_of(
 
 
 def _drives_joined(parts: Sequence[DriveOfRun]) -> DriveOfRun:
-    """Drives laid end to end."""
+    """Concatenate the inputs of the effects."""
     if len(parts) == 1:
         return parts[0]
 
@@ -298,7 +300,7 @@ def _recalled(
 
 
 def _counts(runs: Concatenated) -> WheelTravel[Floats]:
-    """Of both wheels in all steps."""
+    """Counts of both wheels in all steps."""
     counts: WheelTravel[Floats] = _joined([WheelTravel(run.left, run.right) for run in runs.runs])
     return counts
 
@@ -308,7 +310,7 @@ def _starts(sizes: Sequence[int]) -> NDArray[np.intp]:
 
 
 def _remember(memory: dict[Any, Any], key: Any, value: Any, most: int = MODELS) -> None:
-    """Put it in as the latest; what was not asked for the longest is forgotten."""
+    """Cache a value as the latest; the least recently used is dropped."""
     memory.pop(key, None)
     while len(memory) >= most:
         del memory[next(iter(memory))]
@@ -316,7 +318,7 @@ def _remember(memory: dict[Any, Any], key: Any, value: Any, most: int = MODELS) 
 
 
 def _joined(parts: Sequence[Any]) -> Any:
-    """Values of one kind, their arrays laid end to end."""
+    """Concatenate arrays, tuples or mappings of arrays."""
     first = parts[0]
     if len(parts) == 1:
         return first

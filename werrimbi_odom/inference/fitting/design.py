@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whitened innovations of all legs, what they cost, and how they change with every number."""
+"""Whitened innovations of all legs, their cost (-2 log-likelihood), and their Jacobian."""
 
 from __future__ import annotations
 
@@ -29,7 +29,7 @@ from werrimbi_odom.model.pose import Floats
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """Where a fit stands: the model, its noise, and the legs on which the reference jumped."""
+    """Current state of a fit: model, noise variances, and excluded legs."""
 
     model: Model
     variances: Variances
@@ -39,47 +39,48 @@ class Point:
 
     @property
     def skip(self) -> NDArray[np.bool_]:
-        """Excluded legs of all runs, one after the other."""
+        """Excluded legs of all runs, concatenated."""
         return np.concatenate(self.excluded)
 
 
 @dataclass(frozen=True, slots=True)
 class Design:
-    """Whitened innovations (m, 3) and their derivatives (m, 3, p)."""
+    """Whitened innovations (m, 3) and their Jacobian (m, 3, p)."""
 
     white: Floats
     slopes: Floats
     columns: tuple[tuple[FreeParameter, int], ...]
-    """What the p are; a number of the runs' own has one column for each run, with its index."""
+    """Parameter of each of the p columns; a per-run parameter has one column per run, with its
+    index."""
     sized: bool = True
-    """Whether any length was measured: headings know lengths over lengths alone."""
+    """Whether any length was measured: headings only determine ratios of lengths."""
 
     def flat(self) -> tuple[Floats, Floats]:
-        """As (3 m,) and (3 m, p)."""
+        """Innovations and Jacobian as (3 m,) and (3 m, p)."""
         return self.white.ravel(), self.slopes.reshape(self.white.size, self.slopes.shape[-1])
 
 
 def unexpected(
     runs: Concatenated, point: Point, prediction: Prediction | None = None
 ) -> Innovations:
-    """Innovations of all runs; the latest are remembered with them."""
+    """Innovations of all runs; the latest are cached."""
     seen = prediction or predict_all(point.model, runs)
     return runs.latest((point, seen), lambda: Costs(runs, point).innovations(point.variances, seen))
 
 
 @dataclass(frozen=True, slots=True)
 class Costs:
-    """Minus two log-likelihood of sets of variances, the model being given."""
+    """Minus two log-likelihood as a function of the variances, for a fixed model."""
 
     runs: Sequence[MatchedRun] | Concatenated
     point: Point
 
     def prediction(self) -> Prediction:
-        """Of all runs."""
+        """Prediction of all runs."""
         return predict_all(self.point.model, laid_out(self.runs))
 
     def innovations(self, sets: Variances, prediction: Prediction) -> Innovations:
-        """For each set."""
+        """Innovations for each set of variances."""
         model = self.point.model
         return innovations(
             model.robot,
@@ -92,15 +93,15 @@ class Costs:
         )
 
     def __call__(self, sets: Variances, prediction: Prediction | None = None) -> Floats:
-        """Cost of each set."""
+        """Minus two log-likelihood of each set."""
         found = self.innovations(sets, prediction or self.prediction())
         return found.minus_two_log_likelihood()
 
 
 def slopes_of(runs: Concatenated, model: Model, numbers: Sequence[FreeParameter]) -> Floats:
-    """Derivatives of the legs' relative poses in numbers, (m, 3, p), by central differences.
+    """Jacobian of the legs' relative poses, (m, 3, p), by central differences.
 
-    A number of the runs' own is moved in all of them at once: legs feel their own run's alone.
+    A per-run parameter is moved in all runs at once, since a leg depends only on its own run.
     """
     columns = [
         runs.of_model(model, number, partial(_slope, runs, model, number)) for number in numbers
@@ -112,7 +113,8 @@ def _slope(runs: Concatenated, model: Model, number: FreeParameter) -> Floats:
     if number.name == YAW_DRIFT:
         return np.outer(runs.duration, [0.0, 0.0, 1.0])
     ahead, behind = model.moved_by(number, number.scale), model.moved_by(number, -number.scale)
-    # What effects look at hardly changes with a radius; it is worked out once, as it is now.
+    # Inputs of the effects hardly change with a radius; they are computed once, for the current
+    # one.
     looked_at = model.robot if number.name in MULTIPLIERS else None
     width = ahead.value(number) - behind.value(number) if not number.per_run else 2.0 * number.scale
     poses = [legs_shown(side, runs, looked_at) for side in (ahead, behind)]
@@ -125,7 +127,7 @@ def stacked(
     numbers: Sequence[FreeParameter],
     prediction: Prediction | None = None,
 ) -> Design:
-    """The design for numbers at a point; start headings that were not measured are among them."""
+    """Design of parameters at a point, with start headings that were not measured among them."""
     local = [number for number in numbers if number.name != START_YAW]
     found = unexpected(runs, point, prediction)
     marks = found.marks(slopes_of(runs, point.model, local))
@@ -135,9 +137,9 @@ def stacked(
 def spread_out(
     runs: Concatenated, model: Model, white: Floats, slopes: Floats, local: Sequence[FreeParameter]
 ) -> Design:
-    """Local columns, those of the runs' own given a column for each run.
+    """Design with the columns of per-run parameters expanded to one for each run.
 
-    `slopes` has one column more than `local`: that of the start headings.
+    `slopes` has one more column than `local`: that of the start headings.
     """
     columns: list[tuple[FreeParameter, int]] = []
     parts = []

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A Kalman filter from reference pose to reference pose, over many stretches of legs side by side.
+"""Kalman filter from one reference pose to the next, vectorised over stretches of legs.
 
-A long run is cut into stretches: where the reference gives a full pose, the filter may start anew
-from it at the price of one leg's worth of knowledge in many. So an hour of driving takes as many
-rounds of the loop as a minute.
+A long run is cut into stretches. Where the reference gives a full pose, the filter may restart from
+it, which loses the information of about one leg. So an hour of driving takes as many iterations of
+the loop as a minute.
 """
 
 from __future__ import annotations
@@ -19,60 +19,60 @@ from werrimbi_odom.inference.fitting.leg_loop import Loop, both_of, go_along
 from werrimbi_odom.model.pose import Floats
 
 STRETCH = 100
-"""Legs, at the least, after which the filter starts anew where it can."""
+"""Least number of legs after which the filter may restart."""
 
 SIDE_BY_SIDE = 50
-"""Stretches into which a long record is cut, about."""
+"""Approximate number of stretches of a long record."""
 
 
 class Legs(NamedTuple):
-    """What the filter is to be told of m legs, for g sets of variances."""
+    """Inputs of the filter for m legs and g sets of variances."""
 
     relative: Floats
     """Predicted relative pose, (m, 3), each in the frame of its own start."""
     noise: Floats
-    """Covariance of it, (g, m, 3, 3)."""
+    """Process noise: covariance of the relative pose, (g, m, 3, 3)."""
     start: Floats
-    """Measured pose at the legs' starts, (m, 3), NaN where not measured."""
+    """Measured pose at the start of each leg, (m, 3), NaN where not measured."""
     finish: Floats
-    """Measured pose at their ends."""
+    """Measured pose at the end of each leg."""
     reading: Floats
-    """Covariance of the measured pose at each leg's end, (g, m, 3, 3); (g, 1, 3, 3) if all alike.
+    """Measurement covariance of the pose at each leg's end, (g, m, 3, 3); (g, 1, 3, 3) if constant.
 
-    It stands for that at its start too."""
+    It also stands for that at the leg's start."""
     begins: NDArray[np.bool_]
-    """Where the filter must start anew: first legs of runs, (m,)."""
+    """Legs at which the filter must restart: the first of each run, (m,)."""
     skip: NDArray[np.bool_]
-    """Legs on which the reference jumped, and gaps, (m,)."""
+    """Gaps, and legs on which the reference jumped, (m,)."""
     heading: Floats
-    """Heading at the start of a run where it was not measured, at the run's first leg, (m,)."""
+    """Start heading of a run where it was not measured, at its first leg, (m,)."""
     stretch: int = STRETCH
 
 
 class Ways(NamedTuple):
-    """How a change of a leg's relative pose comes to the innovations, for the first set.
+    """Linear map from perturbations of the legs to innovations, for the first set of variances.
 
-    All in the order of the filter's loop: the first legs of all stretches, the second legs ... The
-    filter has s states, the first three of which are the pose.
+    Rows are in the order of the filter's loop: the first legs of all stretches, then the second
+    legs, and so on. The filter has s states, the first three of which are the pose.
     """
 
     leg: NDArray[np.intp]
-    """Which leg it is, (m,)."""
+    """Index of the leg of each row, (m,)."""
     enter: Floats
-    """Turns its change into one of the states, (m, s, 3)."""
+    """Map from a perturbation of the leg to the states, (m, s, 3)."""
     carry: Floats
-    """Takes the change at the end of the leg before to the end of this one, (m, s, s)."""
+    """State transition from the end of the previous leg to the end of this one, (m, s, s)."""
     leave: Floats
-    """Makes the change of the innovation of the change at the leg's end, (m, 3, s)."""
+    """Map from the state perturbation at the leg's end to the innovation, (m, 3, s)."""
     free: NDArray[np.bool_]
-    """Stretches that begin with a heading that was not measured."""
+    """Stretches that start with a heading that was not measured."""
     rounds: list[slice]
-    """Of the loop."""
+    """Rows of each iteration of the loop."""
 
     def innovations(self, slopes: Floats) -> Floats:
-        """Derivatives (m, 3, w + 1) for those of the legs' relative poses (m, 3, w).
+        """Jacobian of the innovations (m, 3, w + 1) from that of the relative poses (m, 3, w).
 
-        The last one is in the run's start heading.
+        The last column is for the start heading of the run.
         """
         count, _, width = slopes.shape
         states = self.carry.shape[-1]
@@ -89,33 +89,33 @@ class Ways(NamedTuple):
         return found
 
     def _left_by(self, change: Floats) -> Floats:
-        """Derivatives of the innovations (m, 3, p) for those of the states (m, s, p); in order."""
+        """Jacobian of the innovations (m, 3, p) from that of the states (m, s, p), loop order."""
         for before, now in itertools.pairwise(self.rounds):
             last = slice(before.start, before.start + now.stop - now.start)
             change[now] += self.carry[now] @ change[last]
         return np.asarray(self.leave @ change)
 
     def of_states(self, change: Floats) -> Floats:
-        """Derivatives of the innovations (m, 3, p) for what comes to the states in legs, (m, s, p).
+        """Jacobian of the innovations (m, 3, p) for perturbations added to the states (m, s, p).
 
-        That is in the axes of the states themselves.
+        Perturbations are in the axes of the states.
         """
         found = np.empty((change.shape[0], 3, change.shape[-1]))
         found[self.leg] = self._left_by(change[self.leg])
         return found
 
     def shocks(self, weighed: Floats, precision: Floats) -> Shocks:
-        """What the innovations say of a change of the states in one leg alone, for every leg.
+        """Score and information of a shock to the states in a single leg, for every leg.
 
-        The same loop backwards (its adjoint): de Jong and Penzer, "Diagnosing shocks in time
-        series", J. Am. Stat. Assoc. 93, 1998. So all legs are asked at the cost of one pass.
+        This is the adjoint of the filter loop (de Jong and Penzer, "Diagnosing shocks in time
+        series", J. Am. Stat. Assoc. 93, 1998), so all legs are tested in one backward pass.
 
         Parameters
         ----------
         weighed : ndarray, shape (m, 3)
-            Innovations times `precision`.
+            `precision` times the innovations.
         precision : ndarray, shape (m, 3, 3)
-            Inverse of their covariance; zero in what was not measured.
+            Inverse of their covariance; zero for coordinates that were not measured.
         """
         seen = self.leave.swapaxes(-1, -2)
         score = -(seen @ weighed[self.leg, :, None])[..., 0]
@@ -134,35 +134,35 @@ class Ways(NamedTuple):
 
 
 class Shocks(NamedTuple):
-    """Of a change of the filter's s states in each of m legs."""
+    """Score and information of a shock to the s states in each of m legs."""
 
     score: Floats
-    """Derivative of the log-likelihood in the change, (m, s)."""
+    """Derivative of the log-likelihood in the shock, (m, s)."""
     known: Floats
-    """Its information (minus the second derivative), (m, s, s)."""
+    """Fisher information of the shock, (m, s, s)."""
     both: Floats
-    """That between a change in this leg and one in the next, (m, s, s); zero where none follows."""
+    """Cross information of shocks in this leg and the next, (m, s, s); zero where none follows."""
     enter: Floats
-    """Turns the axes of the robot at a leg's start into those of the states, (m, s, 3)."""
+    """Rotation from the robot's axes at the leg's start to those of the states, (m, s, 3)."""
 
 
 _COLUMNS = 32
-"""Of derivatives, at a time: what they take fits in the processor's cache."""
+"""Columns of derivatives per block, which fits the processor's cache."""
 
 
 class Unexpected(NamedTuple):
     """Innovations in the frame of the robot at each leg's start."""
 
     value: Floats
-    """(g, m, 3), zero where nothing was measured."""
+    """Shape (g, m, 3), zero where nothing was measured."""
     covariance: Floats
-    """(g, m, 3, 3)."""
+    """Shape (g, m, 3, 3)."""
     ways: Ways
-    """What changes of the legs do to them."""
+    """Linear map from perturbations of the legs to the innovations."""
 
 
 def stretches(legs: Legs) -> NDArray[np.intp]:
-    """First legs of the stretches."""
+    """First leg of each stretch."""
     length = max(legs.stretch, legs.begins.size // SIDE_BY_SIDE)
     full = np.all(np.isfinite(legs.start), axis=-1).tolist()
     starts = []
@@ -176,9 +176,9 @@ def stretches(legs: Legs) -> NDArray[np.intp]:
 
 
 def in_rounds(legs: Legs) -> tuple[NDArray[np.intp], NDArray[np.intp], list[slice]]:
-    """First legs of the stretches, longest stretch first; legs in the loop's order; its rounds.
+    """First legs of the stretches, longest first; legs in loop order; rows of each iteration.
 
-    That is the first legs of all stretches, then the second of all that have one ...
+    Loop order is the first legs of all stretches, then the second legs of those that have one, ...
     """
     first = stretches(legs)
     length = np.diff(np.append(first, legs.relative.shape[0]))
@@ -191,10 +191,10 @@ def in_rounds(legs: Legs) -> tuple[NDArray[np.intp], NDArray[np.intp], list[slic
 
 
 def filtered(legs: Legs) -> Unexpected:
-    """Filter all stretches at once.
+    """Run the filter over all stretches at once.
 
-    States and covariances go through the loop for all sets. What they do to the derivatives is a
-    matrix for each leg, so these follow by a loop of one product.
+    States and covariances go through the loop for all sets of variances. Their effect on
+    derivatives is one matrix per leg, so a second loop with one product propagates these.
     """
     sets, count = legs.noise.shape[0], legs.relative.shape[0]
     first, leg, rounds = in_rounds(legs)

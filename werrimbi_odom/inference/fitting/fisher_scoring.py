@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The least of minus two log-likelihood within bounds, by Fisher's scoring that learns on the way.
+"""Minimum of minus two log-likelihood within bounds, by Fisher scoring with a secant correction.
 
-Expected curvature is positive, so every step goes downhill. What it lacks of the true one (a number
-that data hardly tell is overshot, to and fro) is learnt from the gradients that come by: Dennis,
-Gay and Welsch, "An adaptive nonlinear least-squares algorithm", ACM Trans. Math. Softw. 7, 1981.
+The expected information is positive definite, so each step descends. Its difference to the true
+Hessian, which makes weakly determined parameters oscillate, is learnt from successive gradients:
+Dennis, Gay and Welsch, "An adaptive nonlinear least-squares algorithm", ACM Trans. Math. Softw. 7,
+1981.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 from werrimbi_odom.model.pose import Floats
 
 Evaluate = Callable[[Floats], tuple[float, Floats, Floats]]
-"""Cost, gradient (n,) and expected curvature (n, n), at numbers (n,)."""
+"""Function from parameters (n,) to cost, gradient (n,) and expected Hessian (n, n)."""
 
 
 def minimum(
@@ -28,20 +29,25 @@ def minimum(
     longest: float = 2.0,
     rounds: int = 25,
 ) -> Floats:
-    """Numbers of least cost, shape (n,).
+    """Minimise a cost within bounds.
 
     Parameters
     ----------
-    evaluate
-        The cost and what is expected of it nearby; an infinite cost where there is none.
+    evaluate : callable
+        Cost, gradient and expected Hessian; the cost is infinite outside its domain.
     start : ndarray, shape (n,)
-        Where to begin; put within the bounds.
+        Start values; clipped to the bounds.
     lowest, highest : float and ndarray, shape (n,)
         Bounds.
     longest : float
-        Step of a number, at most: no curvature holds farther than that.
+        Largest step of a parameter: the quadratic model is not trusted beyond.
     rounds : int
-        Steps, at most.
+        Largest number of iterations.
+
+    Returns
+    -------
+    ndarray, shape (n,)
+        Parameters of least cost.
     """
     here = np.clip(start, lowest, highest)
     damping = 1e-6
@@ -58,7 +64,7 @@ def minimum(
         step[free] = -np.linalg.solve(damped[np.ix_(free, free)], gradient[free])
         tried = np.clip(here + np.clip(step, -longest, longest), lowest, highest)
         ahead = evaluate(tried)
-        if not np.isfinite(ahead[0]):  # no such place: nearer, and nothing was learnt
+        if not np.isfinite(ahead[0]):  # outside the domain: shorten the step, no secant information
             if damping > 1e4:
                 break
             damping = max(10.0 * damping, 1e-2)
@@ -66,7 +72,7 @@ def minimum(
         moved = np.max(np.abs(tried - here), initial=0.0)
         if moved < longest:
             lacking = _lacking(lacking, ahead[2], tried - here, ahead[1] - gradient)
-        else:  # cut short: what was learnt was of another place
+        else:  # clipped step: the secant is not of this region
             lacking = np.zeros_like(expected)
         if ahead[0] > cost + 1e-9 * abs(cost):
             if damping > 1e4:
@@ -81,10 +87,10 @@ def minimum(
 
 
 def _lacking(before: Floats, expected: Floats, step: Floats, change: Floats) -> Floats:
-    """What the expected curvature lacks of the true one, after a step that changed the gradient so.
+    """Update the estimated difference between true and expected Hessian by one secant.
 
-    The symmetric matrix nearest to the one before (shrunk to what this step asks for) with which
-    both together explain the change.
+    It is the symmetric matrix nearest to the previous one, scaled down as in Dennis et al., for
+    which the sum satisfies the secant equation.
     """
     if not step @ change > 0.0:
         return before
@@ -100,7 +106,7 @@ def _lacking(before: Floats, expected: Floats, step: Floats, change: Floats) -> 
 
 
 def hessian(function: Callable[[Floats], Floats], here: Floats) -> Floats:
-    """Second derivatives (n, n) of what takes rows (g, n), by differences of gradients."""
+    """Hessian (n, n) of a function of rows (g, n), by differences of gradients."""
     step = 0.05
     rows = []
     for index in range(here.size):
@@ -112,7 +118,7 @@ def hessian(function: Callable[[Floats], Floats], here: Floats) -> Floats:
 
 
 def _gradient(function: Callable[[Floats], Floats], here: Floats) -> Floats:
-    """By central differences taken in one pass."""
+    """Gradient by central differences in one vectorised call."""
     step = 1e-4
     moves = step * np.eye(here.size)
     values = function(np.concatenate([here + moves, here - moves]))

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Maximum likelihood of calibration, effects and noise from any driving with a reference.
+"""Maximum-likelihood fit of calibration, effects and noise from any driving with a reference.
 
-Two blocks that hardly disturb each other are fitted in turn: the numbers (multipliers, parameters
-of effects, nuisances of runs) by Gauss-Newton on the whitened innovations, and the variances
-(`noise`) on their likelihood. What the driving does not excite is left as it was.
+Two nearly independent blocks of parameters are fitted in turn: model parameters (multipliers,
+parameters of effects, nuisance parameters of runs) by Gauss-Newton on the whitened innovations, and
+variances (`noise`) by their likelihood. Parameters that the driving does not excite keep their
+values.
 """
 
 from __future__ import annotations
@@ -46,40 +47,40 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 _MEDIAN_CHI2_3 = 2.366
-_TAIL = 4.0  # degrees of freedom of the Student-t that weighs legs until the jumps are known
+_TAIL = 4.0  # degrees of freedom of the Student-t weights until jumps are known
 
 
 @dataclass(frozen=True, slots=True)
 class ModelFit:
-    """What a fit found."""
+    """Result of a fit."""
 
     point: Point
     free: tuple[FreeParameter, ...]
-    """Shared numbers that the driving determines, and that were fitted."""
+    """Shared parameters that the driving determines, and that were fitted."""
     covariance: Floats
-    """Of the values of `free`; singular where they are more than the `numbers` that data hold."""
+    """Covariance of the values of `free`; singular where they exceed the identifiable `numbers`."""
     mute: tuple[FreeParameter, ...]
-    """Shared numbers that the driving does not determine; left alone."""
+    """Shared parameters that are not identifiable; left unchanged."""
     ways: Directions
-    """What the data determine, in the columns of the design for the fitted numbers."""
+    """Identifiable directions, in the columns of the design."""
     at_bound: tuple[FreeParameter, ...]
-    """Fitted numbers that ran against what is physically possible."""
+    """Fitted parameters that ended at a physical bound."""
     minus_two_log_likelihood: float
-    """With what is known of wheels' noise beforehand (`noise.prior_cost`)."""
+    """Minus two log posterior: includes the prior on the noise (`noise.prior_cost`)."""
 
     @property
     def held(self) -> tuple[str, ...]:
-        """Directions that the driving does not determine (`CALIBRATED`, or numbers): as given."""
+        """Directions that are not identifiable (of `CALIBRATED`, or parameters): kept as given."""
         return self.ways.held
 
     @property
     def numbers(self) -> int:
-        """How many shared numbers the data hold."""
+        """Number of shared parameters that the data determine (rank)."""
         return len(self.ways.shared)
 
     @property
     def robot(self) -> Robot:
-        """With everything put in that was determined."""
+        """Robot with all fitted values."""
         return self.point.model.robot
 
 
@@ -88,7 +89,7 @@ def start_point(
     robot: Robot,
     options: EvaluationOptions = EvaluationOptions(),
 ) -> Point:
-    """Where a fit begins: the robot as given, no leg excluded, headings from the first legs."""
+    """Start of a fit: the robot as given, no leg excluded, start headings from the first legs."""
     laid = laid_out(runs)
     guess = (
         max(robot.left_wheel_noise, LEAST_WHEEL_NOISE),
@@ -117,15 +118,21 @@ def fit_model(
     find_jumps: bool = True,
     rounds: int = 3,
 ) -> ModelFit:
-    """Fit numbers and noise to all runs at once.
+    """Fit parameters and noise to all runs at once.
 
     Parameters
     ----------
-    numbers
-        What may be turned; those of the runs' own among them.
+    runs : sequence of MatchedRun, or Concatenated
+        Runs to fit.
+    point : Point
+        Start of the fit.
+    numbers : sequence of FreeParameter
+        Parameters that may change, including per-run ones.
     find_jumps : bool
-        Find the legs on which the reference jumped. Once for a set of runs: what is compared with
-        this fit later must leave the same legs out.
+        Find the legs on which the reference jumped. Do this once for a set of runs: fits that are
+        compared must exclude the same legs.
+    rounds : int
+        Largest number of alternations between noise and model parameters.
     """
     laid = laid_out(runs)
     given = point.model
@@ -173,7 +180,7 @@ def _at_bound(value: float, number: FreeParameter) -> bool:
 
 
 def _robustly(runs: Concatenated, point: Point, numbers: Sequence[FreeParameter]) -> Point:
-    """Come near the answer whatever the reference's jumps, then find these."""
+    """Iteratively reweighted least squares with Student-t weights, then detection of jumps."""
     for _ in range(12):
         design = stacked(runs, point, numbers)
         deviation = np.sum(design.white**2, axis=-1)
@@ -189,14 +196,14 @@ def _robustly(runs: Concatenated, point: Point, numbers: Sequence[FreeParameter]
 
 
 def without_jumps(runs: Concatenated, point: Point) -> Point:
-    """The point with the legs left out on which its model cannot believe the reference."""
+    """Exclude the legs whose innovations are outliers under the point's model."""
     return replace(point, excluded=_jumps(runs, point))
 
 
 def _jumps(runs: Concatenated, point: Point) -> tuple[NDArray[np.bool_], ...]:
     nothing = tuple(np.zeros(size, dtype=np.bool_) for size in np.diff(runs.legs))
     if runs.headings_alone:
-        return nothing  # a gyro does not jump; legs that deviate are those that turn
+        return nothing  # a gyro does not jump: outliers are legs with turns
     white = unexpected(runs, replace(point, excluded=nothing)).whitened()
     deviation = np.sum(white**2, axis=-1)
     found = []
@@ -210,7 +217,7 @@ def _jumps(runs: Concatenated, point: Point) -> tuple[NDArray[np.bool_], ...]:
 def _gauss_newton(
     runs: Concatenated, point: Point, numbers: Sequence[FreeParameter], ways: Directions
 ) -> tuple[Point, bool]:
-    """The point of least squares near a point, and whether it is another one."""
+    """Gauss-Newton with backtracking; also return whether the point moved."""
     prediction = predict_all(point.model, runs)
     best = np.inf
     for number in range(6):
@@ -240,14 +247,14 @@ def _small(design: Design, step: Floats) -> bool:
 
 
 def _step(design: Design, ways: Directions, weight: Floats | None = None) -> Floats:
-    """Least squares step of the columns, weighted by leg (m,), in the directions given."""
+    """Least-squares step of the columns, weighted by leg (m,), within the given directions."""
     root = np.sqrt(np.ones(design.white.shape[0]) if weight is None else weight)[:, None]
     matrix = (design.slopes * root[..., None]).reshape(design.white.size, len(design.columns))
     return -ways.matrix @ solved(matrix @ ways.matrix, (design.white * root).ravel())
 
 
 def moved(model: Model, design: Design, step: Floats) -> Model:
-    """The model after a step in the design's columns."""
+    """Apply a step in the design's columns to the model."""
     shared: dict[str, float] = {}
     own: list[dict[str, float]] = [{} for _ in model.own]
     for (number, index), move in zip(design.columns, step.tolist(), strict=True):
@@ -264,19 +271,19 @@ def _scaled(variances: Variances, factor: float) -> Variances:
 
 
 def _nuisances(robot: Robot, run: MatchedRun) -> dict[str, float]:
-    """What has to be fitted for a run because its reference does not measure it."""
+    """Nuisance parameters of a run: what its reference does not measure."""
     heading = _first_heading(robot, run)
     own = {} if heading is None else {START_YAW: heading}
     if not run.measured.has_position.any():
-        own[YAW_DRIFT] = 0.0  # a heading alone is a gyro's, and gyros drift
+        own[YAW_DRIFT] = 0.0  # a reference of headings only is a gyro, and gyros drift
     return own
 
 
 def _turned_to_the_first_legs(runs: Concatenated, point: Point) -> Point:
-    """The point with each start heading that was not measured guessed anew, where that is better.
+    """Re-estimate unmeasured start headings from the first legs, where that lowers the cost.
 
-    A heading that suited a model without some effect may be so far off with it that least squares
-    do not find the way.
+    A heading fitted without some effect can be so far off once the effect is in that least squares
+    does not converge.
     """
     model = point.model
     if all(START_YAW not in mine for mine in model.own):
@@ -295,7 +302,7 @@ def _turned_to_the_first_legs(runs: Concatenated, point: Point) -> Point:
 
 
 def _first_heading(robot: Robot, run: MatchedRun) -> float | None:
-    """Start heading that turns the first legs onto the measured positions; None where measured."""
+    """Start heading that aligns the first legs with the measured positions; None if measured."""
     if run.measured.has_yaw[0]:
         return None
     heading, pose, predicted = 0.0, 0j, [0j]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a fit may turn: multipliers, parameters of effects, and nuisances of each run."""
+"""Free parameters of a fit: multipliers, parameters of effects, and nuisance parameters of runs."""
 
 from __future__ import annotations
 
@@ -24,34 +24,36 @@ MULTIPLIERS = (
 )
 
 START_YAW = "start_yaw"
-"""Name of a run's heading at its first reference pose, where that was not measured [rad]."""
+"""Name of a run's heading at its first reference pose, where not measured [rad]."""
 
 YAW_DRIFT = "yaw_drift"
-"""Name of a run's drift of the reference's heading, where that is a gyro's alone [rad/s]."""
+"""Name of the drift rate of a run's reference heading, where that is from a gyro [rad/s]."""
 
 NUISANCES = (START_YAW, YAW_DRIFT)
 
 STEP = 0.2
-"""Share of a parameter's usual size over which its derivative is taken: less than what bends a law,
-more than what a reference delay needs to feel beyond one interval of the ticks."""
+"""Finite-difference step as a share of a parameter's usual size: small enough for laws to stay
+linear, large enough for a reference delay to exceed one interval of the ticks."""
 
 
 @dataclass(frozen=True, slots=True)
 class FreeParameter:
-    """One number that a fit may change.
+    """A parameter that a fit may change.
 
     Parameters
     ----------
     name : str
         A multiplier, ``effect.parameter``, or `START_YAW`.
+    unit : str
+        Its unit.
     scale : float
-        A change that is small and yet well above rounding; derivatives are taken over it.
+        Finite-difference step: small, yet well above rounding.
     bounds : (float, float)
-        What is physically possible; a fit that ends there is a finding of its own.
+        Physical limits; a fit that ends at one is a finding of its own.
     undetermined : float
-        Standard deviation above which the data say less than is known beforehand.
+        Standard deviation above which the data add nothing to prior knowledge.
     per_run : bool
-        Each run has its own value.
+        Whether each run has its own value.
     """
 
     name: str
@@ -62,7 +64,7 @@ class FreeParameter:
     per_run: bool = False
 
     def bounds_about(self, value: float) -> tuple[float, float]:
-        """The bounds, wider where a robot file is beyond them: a factor that was mended there."""
+        """Bounds, widened to include a robot file's value beyond them."""
         (low, high), reach = self.bounds, 0.5 * abs(value)
         return (low if value >= low else value - reach, high if value <= high else value + reach)
 
@@ -78,13 +80,14 @@ DRIFT_OF_YAW = FreeParameter(YAW_DRIFT, "rad/s", 1e-4, (-10.0, 10.0), float("inf
 
 
 def parameters_to_fit(effect: Effect, shared: Sequence[str] = ()) -> tuple[FreeParameter, ...]:
-    """The parameters of an effect as numbers.
+    """Free parameters of an effect.
 
     Parameters
     ----------
-    shared
-        Parameters that are the same in all runs, although each run could have its own (a phase,
-        where counters keep their zero).
+    effect : Effect
+        The effect.
+    shared : sequence of str
+        Per-run parameters that are the same in all runs (a phase, where counters keep their zero).
     """
     return tuple(
         FreeParameter(
@@ -101,11 +104,11 @@ def parameters_to_fit(effect: Effect, shared: Sequence[str] = ()) -> tuple[FreeP
 
 
 def is_determined(parameter: Parameter, value: float, std: float) -> bool:
-    """Whether a fit says anything of a parameter.
+    """Whether an estimate is informative.
 
-    It does not where one deviation to either side is all that physics allows; nor of a length or
-    another scale of a law where one deviation is as much as itself, for then not even its order of
-    magnitude is known.
+    It is not if one standard deviation to either side covers the physical range. Nor is a length,
+    or another scale of a law, if its deviation is as large as itself, as not even its order of
+    magnitude is known then.
     """
     low, high = parameter.bounds
     scale = abs(value) if parameter.tries and low > 0.0 else math.inf
@@ -113,48 +116,48 @@ def is_determined(parameter: Parameter, value: float, std: float) -> bool:
 
 
 def shared_of(numbers: Sequence[FreeParameter]) -> list[FreeParameter]:
-    """Free parameters that all runs have in common."""
+    """Free parameters that all runs share."""
     return [number for number in numbers if not number.per_run]
 
 
 def own_of(numbers: Sequence[FreeParameter]) -> list[FreeParameter]:
-    """Free parameters of which each run has its own."""
+    """Free parameters with a value for each run."""
     return [number for number in numbers if number.per_run]
 
 
 @dataclass(frozen=True, slots=True)
 class Model:
-    """A robot, and what each run has of its own (`NUISANCES`, phases ...)."""
+    """A robot, and the values that belong to each run (`NUISANCES`, phases, ...)."""
 
     robot: Robot
     own: tuple[Mapping[str, float], ...]
 
     def of_run(self, index: int) -> Robot:
-        """The robot with the run's own values in its effects."""
+        """Robot with a run's own values in its effects."""
         own = self.own[index]
         return changed(self.robot, {name: own[name] for name in own if name not in NUISANCES})
 
     def start_yaw(self, index: int) -> float | None:
-        """Fitted heading at the first reference pose of a run, if it was not measured [rad]."""
+        """Fitted heading at a run's first reference pose, if it was not measured [rad]."""
         return self.own[index].get(START_YAW)
 
     @property
     def start_yaws(self) -> list[float | None]:
-        """The same for all runs."""
+        """Fitted start headings of all runs."""
         return [own.get(START_YAW) for own in self.own]
 
     @property
     def drifts(self) -> Floats:
-        """Drift of the reference's heading in each run [rad/s]."""
+        """Drift rate of the reference's heading in each run [rad/s]."""
         return np.array([own.get(YAW_DRIFT, 0.0) for own in self.own])
 
     @property
     def nuisance_parameters(self) -> list[FreeParameter]:
-        """What is turned because of the references; start headings `design.stacked` adds itself."""
+        """Nuisance parameters of the references; `design.stacked` adds start headings itself."""
         return [DRIFT_OF_YAW] if any(YAW_DRIFT in own for own in self.own) else []
 
     def without_nuisances(self) -> Model:
-        """The model without what belongs to the references alone."""
+        """Model without the nuisance parameters of the references."""
         own = tuple(
             {name: value for name, value in mine.items() if name not in NUISANCES}
             for mine in self.own
@@ -162,12 +165,12 @@ class Model:
         return Model(self.robot, own)
 
     def laid_out(self, steps: NDArray[np.intp]) -> Robot:
-        """The robot with the runs' own values as arrays over the steps of all runs, (n,).
+        """Robot with per-run values as arrays over the steps of all runs, (n,).
 
         Parameters
         ----------
-        steps
-            First step of each run, and the number of all; shape (runs + 1,).
+        steps : ndarray, shape (runs + 1,)
+            First step of each run, and the number of all steps.
         """
         first = self.own[0] if self.own else {}
         names = [name for name in first if name not in NUISANCES]
@@ -178,16 +181,16 @@ class Model:
         return changed(self.robot, cast("Mapping[str, float]", values))
 
     def value(self, number: FreeParameter, index: int = 0) -> float:
-        """Where a number stands."""
+        """Current value of a parameter."""
         return self.own[index][number.name] if number.per_run else value_of(self.robot, number.name)
 
     def turned(self, changes: Mapping[str, float], own: Sequence[Mapping[str, float]]) -> Model:
-        """The model with shared values and the runs' own values changed."""
+        """Model with shared and per-run values replaced."""
         merged = tuple({**before, **after} for before, after in zip(self.own, own, strict=True))
         return Model(changed(self.robot, changes), merged)
 
     def moved_by(self, number: FreeParameter, move: float) -> Model:
-        """One number moved, a run's own in all runs that have it; bounds are kept."""
+        """Model with one parameter moved within bounds; a per-run one in all runs that have it."""
         if not number.per_run:
             now = value_of(self.robot, number.name)
             low, high = number.bounds_about(now)
@@ -213,7 +216,7 @@ def value_of(robot: Robot, name: str) -> float:
 
 
 def changed(robot: Robot, changes: Mapping[str, float]) -> Robot:
-    """A robot with multipliers and parameters of its effects changed."""
+    """Robot with multipliers and parameters of its effects replaced."""
     plain = {name: value for name, value in changes.items() if "." not in name}
     effects = robot.effects
     for name, value in changes.items():

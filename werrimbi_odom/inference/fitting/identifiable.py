@@ -1,12 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which numbers the data hold: directions in which a fit may move, and those that it must not.
+"""Identifiability: directions that the data determine, and directions that a fit must not move.
 
-The three multipliers are taken as base, ratio of the radii, and size of both. A heading knows the
-right and the left radius over the base, two numbers: base and ratio are then fitted and both radii
-keep their mean as it was given, for that is what a tape knows best. (An effect with a length of its
-own would tell them apart, at the price of that length: play over base is known, play is not.) What
-is held is neither told with an error bar, nor written, nor offered as a rival.
+The three multipliers are parametrised as base, radius ratio and mean radius. A reference of
+headings determines each radius over the base, two numbers. Then base and ratio are fitted and the
+mean radius stays as given, as a tape measures it best. (An effect with a length of its own could
+separate them, at the cost of that length: play over base is identifiable, play alone is not.) A
+held direction is not reported with a standard deviation, not written to a file and not tested as an
+alternative.
 """
 
 from __future__ import annotations
@@ -30,32 +31,32 @@ from werrimbi_odom.model.robot import Robot
 
 SIZE = "wheel_radius_scale"
 CALIBRATED = ("track_width", "unequal_wheel_radii", SIZE)
-"""Effects that are the robot file's own multipliers by another name, the first to be kept first."""
+"""Effects equivalent to the robot file's multipliers, in order of precedence."""
 
 
 @dataclass(frozen=True, slots=True)
 class Directions:
-    """What a fit may move: q directions in the p columns of a design."""
+    """Directions that a fit may move: q directions in the p columns of a design."""
 
     names: tuple[str, ...]
-    """Of each: a number, or one of `CALIBRATED`."""
+    """Name of each: a parameter, or one of `CALIBRATED`."""
     matrix: Floats
-    """Moves of the columns for a unit of each, shape (p, q)."""
+    """Step of the columns for a unit step along each direction, shape (p, q)."""
     limits: Floats
-    """Standard deviation of each above which the data say less than is known beforehand, (q,)."""
+    """Standard deviation of each above which the data add nothing to prior knowledge, (q,)."""
     shared: list[int]
-    """Those that all runs have in common."""
+    """Indices of those that all runs share."""
     held: tuple[str, ...]
-    """Shared directions that the data do not determine."""
+    """Shared directions that are not identifiable."""
 
     def covariance(self, flat: Floats) -> Floats:
-        """Covariance of the columns' values (p, p) for whitened derivatives (n, p)."""
+        """Covariance of the columns' parameters (p, p) for a whitened Jacobian (n, p)."""
         inside = covariance_of(flat @ self.matrix)
         return np.asarray(self.matrix @ inside @ self.matrix.T)
 
 
 def every_direction(columns: Sequence[tuple[FreeParameter, int]], robot: Robot) -> Directions:
-    """All directions of a design's columns; those of single runs have no limit."""
+    """All directions of a design's columns; per-run ones have no limit."""
     names = [number.name for number, _ in columns]
     found: list[tuple[str, dict[int, float], float, bool]] = []
     calibrated = all(name in names for name in MULTIPLIERS)
@@ -85,7 +86,7 @@ def every_direction(columns: Sequence[tuple[FreeParameter, int]], robot: Robot) 
 
 
 def determined(design: Design, robot: Robot) -> Directions:
-    """The directions that the data determine, and those of single runs."""
+    """Identifiable shared directions, and all per-run ones."""
     every = every_direction(design.columns, robot)
     marks = design.flat()[1] @ every.matrix
     asked = [index for index in every.shared if design.sized or every.names[index] != SIZE]
@@ -115,11 +116,11 @@ def determined(design: Design, robot: Robot) -> Directions:
 
 
 def _plainest_first(asked: Sequence[int], names: Sequence[str], seen: Floats) -> list[int]:
-    """What is asked for, the calibration by how plainly it is seen and then the rest as it stands.
+    """Order of precedence: calibration directions by sensitivity, then the others as they are.
 
-    A robot that veers on straight lines has unequal wheels; once they are, another base would turn
-    the veer too, a hundred times less, and must not take their place. Of two that are seen as
-    plainly as each other (base and size, by headings) the first is the first.
+    A robot that veers on straight lines has unequal wheels. Once the ratio is fitted, another base
+    could explain the veer too, with a hundredth of the sensitivity; it must not replace the ratio.
+    Between directions of similar sensitivity (base and size, by headings) the first one wins.
     """
     left = [index for index in asked if names[index] in CALIBRATED]
     order = []
@@ -133,7 +134,7 @@ def _plainest_first(asked: Sequence[int], names: Sequence[str], seen: Floats) ->
 def put_back(
     model: Model, given: Model, held: Iterable[str], numbers: Sequence[FreeParameter]
 ) -> Model:
-    """The model with what is held as it was given."""
+    """Reset the held directions of a model to the given values."""
     names = set(held)
     changes = {number.name: given.value(number) for number in numbers if number.name in names}
     if names & set(CALIBRATED):
@@ -149,12 +150,12 @@ def put_back(
                 strict=True,
             )
         )
-        if names >= set(CALIBRATED):  # to the last digit
+        if names >= set(CALIBRATED):  # exactly
             changes |= {name: float(getattr(given.robot, name)) for name in MULTIPLIERS}
     return Model(changed(model.robot, changes), model.own)
 
 
 def _sizes(robot: Robot) -> tuple[float, float, float]:
-    """Base, logarithm of right over left radius, their geometric mean."""
+    """Base, log ratio of right to left radius, and geometric mean radius."""
     base, left, right = (float(getattr(robot, name)) for name in MULTIPLIERS)
     return base, math.log(right / left), math.sqrt(left * right)

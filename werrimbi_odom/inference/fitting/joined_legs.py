@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Predictions of long legs from those of the short legs that they are joined of.
+"""Predictions of long legs from those of the short legs that they merge.
 
-A leg's error is that of its parts, each turned into the frame of the whole and carried to its end
-(`model.covariance.carried`). So many lengths of leg cost one pass over the steps.
+A leg's error is the sum of its parts' errors, each rotated into the frame of the whole and carried
+to its end (`model.covariance.carried`). So any number of leg lengths costs one pass over the steps.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from werrimbi_odom.model.pose import Floats
 
 
 def predict_joined(model: Model, runs: Concatenated) -> Prediction:
-    """What `predict_all` says, from the finer legs of `runs` where those tell all."""
+    """As `predict_all`, from the finer legs of `runs` where that is exact."""
     if runs.finer is None or not joins(model):
         return predict_all(model, runs)
     robot = model.robot
@@ -55,7 +55,7 @@ def predict_joined(model: Model, runs: Concatenated) -> Prediction:
 
 
 def joins(model: Model) -> bool:
-    """Whether a leg is what its parts are: no effect that may look at where its leg began."""
+    """Whether legs are sums of their parts: no effect depends on where a leg begins."""
     own = any(name not in NUISANCES for mine in model.own for name in mine)
     view = view_of(model.robot.effects)
     timed = view.heading_delay != 0.0 or view.wander != 0.0
@@ -63,12 +63,12 @@ def joins(model: Model) -> bool:
 
 
 def _sums(values: Floats) -> Floats:
-    """Sums up to each row, zero at the first."""
+    """Cumulative sum with a leading zero."""
     return np.concatenate([np.zeros_like(values[:1]), np.cumsum(values, axis=0)])
 
 
 def _turns(angle: Floats) -> Floats:
-    """Rotations of (x, y, yaw) about the robot, (n, 3, 3)."""
+    """Rotation matrices of (x, y, yaw), (n, 3, 3)."""
     cos, sin = np.cos(angle), np.sin(angle)
     turn = np.zeros((angle.size, 3, 3))
     turn[:, 0, 0], turn[:, 0, 1] = cos, -sin

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The filter's loop: predict a leg, compare, correct.
+"""Loop of the Kalman filter: predict a leg, compute the innovation, correct.
 
-Twice: all stretches in step by arrays, and leg by leg in single numbers, the lines that `compiled`
-makes machine code of (in plain Python they would take fifty times as long as the arrays).
+It exists twice: vectorised over all stretches, and leg by leg in scalars, which `compiled` turns
+into machine code (plain Python would take fifty times as long as the arrays).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 UNMEASURED = 1e6
-"""Variance [m², rad²] that stands for a coordinate that was not measured."""
+"""Measurement variance [m², rad²] for a coordinate that was not measured."""
 
 
 class Loop(NamedTuple):
@@ -28,9 +28,9 @@ class Loop(NamedTuple):
     """The legs in the order of the rounds, (m,): the first of all stretches, the second ..."""
     rounds: list[slice]
     state: Floats
-    """Pose at which each of j stretches begins, (j, 3)."""
+    """Start pose of each of j stretches, (j, 3)."""
     spread: Floats
-    """Covariance of it, (g, j, 3, 3)."""
+    """Covariance of the start poses, (g, j, 3, 3)."""
     relative: Floats
     """Of the legs in their own order, as in `filtering.Legs`: (m, 3) ..."""
     noise: Floats
@@ -98,9 +98,9 @@ def side_by_side(of: Loop) -> None:
         spread = 0.5 * (spread + spread.swapaxes(-1, -2))
         kept = identity - gain[0] * seen[:, None, :]
         if leapt.any():
-            # What was measured at the end of a leg with a jump is all that is known of it; the rest
-            # (the heading, where positions alone are measured) is as well known as the wheels
-            # carried it there.
+            # After a jump, the measured coordinates restart from the measurement alone. The others
+            # (the heading, where only positions are measured) keep their predicted value and
+            # variance.
             both, apart = both_of(seen), both_of(~seen)
             anew = np.where(apart, before[1], np.where(both, reading[:, own], 0.0))
             new[:, leapt] = 0.0
@@ -128,7 +128,7 @@ def leg_by_leg(
     turns: Floats,
     carry: Floats,
 ) -> None:
-    """Predict, compare, correct; each stretch for itself, for g sets of variances.
+    """The loop in scalars, one stretch after the other, for g sets of variances.
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ def leg_by_leg(
                 cos, sin = math.cos(yaw), math.sin(yaw)
                 ahead, aside, turned = relative[row, 0], relative[row, 1], relative[row, 2]
                 dx, dy = cos * ahead - sin * aside, sin * ahead + cos * aside
-                # The covariance is swung about by the heading's error, and the leg's own added.
+                # Propagate the covariance with the transition Jacobian and add the process noise.
                 n = noise[group, row]
                 xx, xy, yy = (
                     xx - 2.0 * dy * xt + dy * dy * tt,
@@ -181,7 +181,7 @@ def leg_by_leg(
                         passed[1, column] = kept[1, column] + dx * kept[2, column]
                         passed[2, column] = kept[2, column]
 
-                # The innovation and its covariance, whose inverse is that of its cofactors.
+                # Innovation and its covariance, inverted by cofactors.
                 seen_x, seen_y, seen_t = known[row, 0], known[row, 1], known[row, 2]
                 off_x = finish[row, 0] - x if seen_x else 0.0
                 off_y = finish[row, 1] - y if seen_y else 0.0
@@ -205,8 +205,8 @@ def leg_by_leg(
                 size = 1.0 / (a * co_a + b * co_b + c * co_c)
 
                 if jumped[row]:
-                    # What was measured at the end of a leg with a jump is all that is known of it;
-                    # the rest is as well known as the wheels carried it there.
+                    # After a jump, the measured coordinates restart from the measurement alone; the
+                    # others keep their predicted value and variance.
                     values[group, row, 0] = values[group, row, 1] = values[group, row, 2] = 0.0
                     if seen_x:
                         x, xx = finish[row, 0], of[0, 0]
@@ -261,7 +261,7 @@ def leg_by_leg(
 
 
 def turn_into(turn: Floats, yaw: Floats) -> None:
-    """Write rotations of (x, y, yaw) by angles of shape (g, s)."""
+    """Write rotation matrices of (x, y, yaw) for angles of shape (g, s)."""
     cos, sin = np.cos(yaw), np.sin(yaw)
     turn[:] = 0.0
     turn[..., 0, 0] = turn[..., 1, 1] = cos
@@ -270,10 +270,10 @@ def turn_into(turn: Floats, yaw: Floats) -> None:
 
 
 def diagonal_of(rows: NDArray[np.bool_]) -> Floats:
-    """Matrices (m, 3, 3) that are one where rows (m, 3) are true."""
+    """Diagonal matrices (m, 3, 3) with ones where rows (m, 3) are true."""
     return np.asarray(rows[..., None] * np.eye(3))
 
 
 def both_of(known: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Which entries of a covariance are of two known coordinates."""
+    """Mask of the covariance entries whose two coordinates are known."""
     return known[..., :, None] & known[..., None, :]

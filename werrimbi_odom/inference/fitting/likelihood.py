@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the reference says that the model did not expect: innovations, white under a true model.
+"""Likelihood by innovations: what the reference measures less what the model predicts.
 
-A Kalman filter carries the pose from one reference pose to the next with the closed-form noise of
-the leg between them. What it did not expect (the innovation) has a known covariance and is
-independent from leg to leg, whatever the reference measures: full poses, positions alone, a heading
-alone, two poses in a drive. So likelihood, fits and tests for all of them rest on one loop.
+A Kalman filter carries the pose from one reference pose to the next, with the closed-form noise of
+the leg between them. The innovations have a known covariance and are independent from leg to leg
+(white under a true model), whatever the reference measures: full poses, positions only, headings
+only, two poses per drive. So likelihood, fits and tests for all of these rest on one loop.
 """
 
 from __future__ import annotations
@@ -40,9 +40,9 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True, slots=True)
 class Variances:
-    """The variances of the noise; arrays of shape (g,) for g sets tried at once.
+    """Noise variances; arrays of shape (g,) for g sets evaluated at once.
 
-    The reference's are of each pose (absolute, local_map) or of each interval (incremental).
+    Those of the reference are per pose (absolute, local_map) or per interval (incremental).
     """
 
     left: Floats
@@ -50,29 +50,29 @@ class Variances:
     right: Floats
     """k_R² [m]."""
     xy: Floats
-    """Of the reference's position, each coordinate [m²]."""
+    """Variance of the reference's position, per coordinate [m²]."""
     yaw: Floats
-    """Of the reference's heading [rad²]."""
+    """Variance of the reference's heading [rad²]."""
     stamp: Floats
-    """Of the stamps of a gyro, or of scans, against those of the ticks [s²]: at a speed v and a
-    turn rate ω the pose errs by v and ω times that. A gyro is read in bursts and its messages wait;
-    where the noise of positions is estimated, what stamps err by is part of it."""
+    """Variance of the stamps of a gyro, or of scans, relative to the ticks [s²]. At speed v and
+    turn rate ω a stamp error of 1 s is a pose error of v and ω. A gyro is read in bursts and its
+    messages are queued; where the noise of positions is estimated, it includes the stamp errors."""
     walk_xy: Floats
-    """Of the walk of a local_map's error in each coordinate, a second [m²/s]."""
+    """Random walk of a local_map's error per coordinate, variance per second [m²/s]."""
     walk_yaw: Floats
-    """The same in heading [rad²/s]."""
+    """Random walk of its heading error, variance per second [rad²/s]."""
     reversion: Floats
-    """Square of the rate at which that error is drawn back to nothing [1/s²]."""
+    """Square of the rate at which that error reverts to zero [1/s²]."""
 
     def wandered(self) -> Floats:
-        """Variance of a local_map's error in x, y, yaw, however long one waits, (g, 3)."""
+        """Stationary variance of a local_map's error in x, y, yaw, (g, 3)."""
         walk = np.stack([self.walk_xy, self.walk_xy, self.walk_yaw], axis=-1)
         return np.asarray(walk / (2.0 * np.sqrt(self.reversion))[:, None])
 
 
 @dataclass(frozen=True, slots=True)
 class Innovations:
-    """Measured minus expected pose at the end of each leg.
+    """Measured minus predicted pose at the end of each leg.
 
     In the frame of the robot at the leg's start: (along, sideways, heading) [m, m, rad].
     """
@@ -82,10 +82,10 @@ class Innovations:
     covariance: Floats
     """Shape (g, m, 3, 3)."""
     ways: Ways | None
-    """How changes of the legs come to them, for the first set of variances; None where each leg
-    stands for itself."""
+    """Linear map from perturbations of the legs to the innovations, for the first set of variances;
+    None where legs are independent."""
     known: NDArray[np.bool_]
-    """Which coordinates were measured and are to be counted, shape (m, 3)."""
+    """Coordinates that were measured and count, shape (m, 3)."""
     _roots: list[Floats] = field(default_factory=list)
 
     def cost_of_legs(self) -> Floats:
@@ -94,24 +94,24 @@ class Innovations:
         return np.where(self.known.any(axis=-1), misfit + volume, 0.0)
 
     def minus_two_log_likelihood(self) -> Floats:
-        """Of each set of variances, constants left out; shape (g,)."""
+        """Minus two log-likelihood of each set of variances without constants, shape (g,)."""
         return np.asarray(np.sum(self.cost_of_legs(), axis=-1))
 
     def whitened(self) -> Floats:
-        """Innovations of unit variance, (m, 3); first set."""
+        """Whitened innovations (unit covariance), (m, 3); first set."""
         return np.asarray((self._root() @ self.value[0][..., None])[..., 0])
 
     def marks(self, slopes: Floats) -> Floats:
-        """Their derivatives for those of the legs' relative poses, as `change` has them."""
+        """Jacobian of the whitened innovations from that of the relative poses; see `_change`."""
         return np.asarray(self._root() @ self._change(slopes))
 
     def shocks(self, white: Floats) -> Shocks:
-        """What they say of a change of the states in one leg alone, for every leg.
+        """Score and information of a shock to the states in a single leg, for every leg.
 
         Parameters
         ----------
         white : ndarray, shape (m, 3)
-            What of the whitened ones is left.
+            Whitened innovations, with nuisances projected out.
         """
         back = self._root().swapaxes(-1, -2)
         weighed, precision = (back @ white[..., None])[..., 0], back @ self._root()
@@ -121,15 +121,15 @@ class Innovations:
         return Shocks(weighed, precision, nothing, nothing + np.eye(3))
 
     def shown(self, change: Floats) -> Floats:
-        """What changes of the states in legs (m, s, p) add to the whitened ones, (m, 3, p)."""
+        """Effect of state perturbations (m, s, p) on the whitened innovations, (m, 3, p)."""
         return np.asarray(
             self._root() @ (change if self.ways is None else -self.ways.of_states(change))
         )
 
     def _change(self, slopes: Floats) -> Floats:
-        """From derivatives of the legs' relative poses (m, 3, p) to its own, (m, 3, p + 1).
+        """Jacobian of the innovations (m, 3, p + 1) from that of the relative poses (m, 3, p).
 
-        The last one is in the run's heading at its first reference pose, zero where that was
+        The last column is for the heading at the run's first reference pose; it is zero if
         measured.
         """
         return _alone(slopes) if self.ways is None else self.ways.innovations(slopes)
@@ -152,19 +152,29 @@ def innovations(
     heading: float = 0.0,
     stretch: int = STRETCH,
 ) -> Innovations:
-    """Filter all runs and keep what was unexpected.
+    """Filter all runs and return their innovations.
 
     Parameters
     ----------
+    robot : Robot
+        The robot, with its effects.
+    runs : Concatenated
+        Measured poses of m legs.
+    prediction : Prediction
+        Predicted legs.
+    variances : Variances
+        Sets of noise variances.
+    kind : ReferenceKind
+        Error model of the reference.
     excluded : ndarray of bool, shape (m,), optional
-        Legs on which the reference jumped: like gaps they are not counted, and the pose starts anew
-        after them.
+        Legs on which the reference jumped. Like gaps they do not count, and the pose restarts after
+        them.
     start_yaws : sequence of float or None, optional
-        For each run the heading at the first reference pose, where that was not measured [rad].
-    heading
-        Variance of these, where nobody fitted them, of a local_map [rad²].
+        Heading at the first reference pose of each run, where not measured [rad].
+    heading : float
+        Variance of these where they were not fitted, for a local_map [rad²].
     stretch : int
-        Legs, at the least, after which the filter may start anew.
+        Least number of legs after which the filter may restart.
     """
     count = runs.count
     skip = runs.gap if excluded is None else runs.gap | excluded
@@ -206,7 +216,7 @@ def _of_increments(
     variances: Variances,
     skip: NDArray[np.bool_],
 ) -> Innovations:
-    """Legs are independent: the noise of each interval of the reference is its own."""
+    """Innovations for an incremental reference: noise of intervals, so of legs, is independent."""
     value = errors_between(*measured, prediction)
     known = np.isfinite(value) & ~skip[:, None]
     none = np.zeros(runs.count)
@@ -227,21 +237,21 @@ def _of_increments(
 
 
 def _alone(slopes: Floats) -> Floats:
-    """Changes of innovations where each leg stands for itself, and no start heading is fitted."""
+    """Jacobian of the innovations where legs are independent and no start heading is fitted."""
     return np.concatenate([-slopes, np.zeros((*slopes.shape[:2], 1))], axis=-1)
 
 
 def relative_errors(run: MatchedRun, prediction: Prediction) -> Floats:
     """Measured minus predicted relative pose of each leg, shape (m, 3); NaN where not measured.
 
-    In the frame of the robot at the leg's start, as the reference gives it.
+    In the frame of the robot at the leg's start, as measured by the reference.
     """
     measured = np.stack([run.measured.x, run.measured.y, run.measured.yaw], axis=-1)
     return errors_between(measured[:-1], measured[1:], prediction)
 
 
 def errors_between(start: Floats, finish: Floats, prediction: Prediction) -> Floats:
-    """The same for measured poses (m, 3) at the legs' starts and ends."""
+    """As `relative_errors`, for measured poses (m, 3) at the starts and ends of the legs."""
     step = finish - start
     cos, sin = np.cos(start[:, 2]), np.sin(start[:, 2])
     relative = np.stack(
@@ -254,10 +264,10 @@ def errors_between(start: Floats, finish: Floats, prediction: Prediction) -> Flo
 
 
 def paces(speed: Floats, turn_rate: Floats) -> Floats:
-    """Variances of a pose for stamps that err by 1 s, from speeds (m,); (m, 3).
+    """Variances of a pose for stamp errors of 1 s, from speeds (m,); (m, 3).
 
-    It errs along the way alone. Which way that is in the reference's axes changes as the robot
-    drives: each coordinate has half of it.
+    The error is along the path. Its direction in the reference's axes changes as the robot drives,
+    so each coordinate gets half of the variance.
     """
     place = 0.5 * np.square(speed)
     return np.stack([place, place, np.square(turn_rate)], axis=-1)
@@ -270,7 +280,7 @@ def _reading(
     prediction: Prediction,
     kind: ReferenceKind,
 ) -> Floats:
-    """Covariance of a measured pose, and of the counters' reading with it; (g, 1 or m, 3, 3)."""
+    """Covariance of a measured pose, including encoder quantisation; (g, 1 or m, 3, 3)."""
     stamps = runs.stamps_err
     reading = np.zeros((variances.left.size, runs.count if stamps else 1, 3, 3))
     shares = runs.known("shares", lambda runs: runs.shares) if kind == "absolute" else None
@@ -286,9 +296,9 @@ def _reading(
 
 
 def wheel_part(prediction: Prediction, runs: Concatenated, left: Floats, right: Floats) -> Floats:
-    """Covariance of the legs from the wheels' noise, k_L² and k_R² (g,) [m]; (g, m, 3, 3).
+    """Covariance of the legs by the wheel noise k_L² and k_R² (g,) [m]; (g, m, 3, 3).
 
-    A leg in which something happened at once may end anywhere.
+    A leg with an abrupt event may end anywhere.
     """
     noise = np.asarray(
         left[:, None, None, None] * prediction.per_left
@@ -299,12 +309,12 @@ def wheel_part(prediction: Prediction, runs: Concatenated, left: Floats, right: 
 
 
 def reading_noise(robot: Robot) -> Floats:
-    """Variance of a pose from reading both counters once, uniform over one count; shape (3,)."""
+    """Quantisation variance of a pose from one reading of both counters (uniform), shape (3,)."""
     left, right = robot.left_tick**2 / 12.0, robot.right_tick**2 / 12.0
     along = 0.25 * (left + right)
     return np.array([along, along, (left + right) / robot.track**2])
 
 
 def _diagonal(rows: NDArray[np.bool_]) -> Floats:
-    """Diagonal matrices of rows, shape (m, 3) to (m, 3, 3)."""
+    """Diagonal matrices from rows, shape (m, 3) to (m, 3, 3)."""
     return np.asarray(rows[..., None] * np.eye(3))

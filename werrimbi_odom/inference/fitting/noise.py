@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The variances that data and prior knowledge make likeliest, and how well they are known.
+"""Maximum a posteriori estimates of the noise variances, and their precision.
 
-Of two wheels, of the reference's position and heading, of the stamps of gyros and scans, and of how
-its error wanders where it tells its place on a map.
+The variances are those of both wheels, the reference's position and heading, the stamps of gyros
+and scans, and the slowly varying error of a reference that localises on a map.
 """
 
 from __future__ import annotations
@@ -42,48 +42,48 @@ from werrimbi_odom.model.robot import Robot
 NOISES = ("left_wheel_noise", "right_wheel_noise", "reference_sigma_xy", "reference_sigma_yaw")
 
 STAMP_NOISE = "reference_sigma_stamp"
-"""Beside them, of a gyro or of scans [s]."""
+"""Additional noise of a gyro or of scans [s]."""
 
 WALK = ("reference_walk_xy", "reference_walk_yaw", "reference_reversion")
-"""And of a reference on a local map [m/s^0.5, rad/s^0.5, 1/s]."""
+"""Additional noise of a reference on a local map [m/s^0.5, rad/s^0.5, 1/s]."""
 
 _ALL = (*NOISES, STAMP_NOISE, *WALK)
 
 _LOWEST = np.log(1e-14)
 _HIGHEST = np.log([STRANGE_NOISE**2] * 2 + [10.0] * 6)
-"""Of the variances, in logarithms: what wheels do not do is no noise of theirs."""
+"""Bounds of the log variances; the wheels' one is physical."""
 
 
 @dataclass(frozen=True, slots=True)
 class NoiseEstimate:
-    """A standard deviation of noise; `determined` is False where data were mute."""
+    """Estimated standard deviation of a noise; `determined` tells if it is identifiable."""
 
     value: float
     share: float
-    """Standard deviation of its logarithm, where the likelihood of a scale is nearly normal."""
+    """Standard deviation of its logarithm, in which the likelihood of a scale is nearly normal."""
     determined: bool
 
     @property
     def interval(self) -> tuple[float, float]:
-        """Of 95 %."""
+        """95 % confidence interval."""
         factor = float(np.exp(NORMAL_95 * self.share))
         return self.value / factor, self.value * factor
 
     @property
     def std(self) -> float:
-        """To be stated beside the value (`upper_part`)."""
+        """Standard deviation to report with the value (`upper_part`)."""
         if not self.determined:
             return self.value * self.share
         return upper_part(self.value, self.share)
 
 
 def of_no_wheel(noise: NoiseEstimate) -> bool:
-    """Whether a wheel's noise went to the most that a fit may call so: it is none."""
+    """Whether a wheel's noise is at its upper bound, so that it is no wheel noise."""
     return noise.determined and bool(np.isclose(noise.value, STRANGE_NOISE))
 
 
 def with_noise(robot: Robot, noises: Mapping[str, NoiseEstimate]) -> Robot:
-    """The robot with the wheels' noise put in, where it was determined."""
+    """Robot with the wheel noise that was determined."""
     wheels = ("left_wheel_noise", "right_wheel_noise")
     found = {
         name: noises[name].value for name in wheels if name in noises and noises[name].determined
@@ -92,7 +92,7 @@ def with_noise(robot: Robot, noises: Mapping[str, NoiseEstimate]) -> Robot:
 
 
 def with_noises(variances: Variances, sigmas: Mapping[str, float]) -> Variances:
-    """Variances with some standard deviations put in, by their names in `NOISES`."""
+    """Variances with some standard deviations replaced, by their names in `NOISES`."""
     parts = zip(_ALL, _each(variances), strict=True)
     return Variances(
         *(np.array([sigmas[name] ** 2]) if name in sigmas else part for name, part in parts)
@@ -100,7 +100,7 @@ def with_noises(variances: Variances, sigmas: Mapping[str, float]) -> Variances:
 
 
 def held_variances(variances: Variances, options: EvaluationOptions) -> Variances:
-    """The variances with what is known of the reference put in."""
+    """Variances with the known noise of the reference put in."""
     if options.sigma_xy is not None:
         variances = replace(variances, xy=np.array([options.sigma_xy**2]))
     if options.sigma_yaw is not None:
@@ -109,7 +109,7 @@ def held_variances(variances: Variances, options: EvaluationOptions) -> Variance
 
 
 def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Variances:
-    """Variances of greatest posterior likelihood, the model being given (`fisher_scoring`)."""
+    """Maximum a posteriori variances for a fixed model (`fisher_scoring`)."""
     prediction = costs.prediction()
     moving = _moving(costs, held)
     logs = minimum(
@@ -122,11 +122,11 @@ def likeliest(costs: Costs, start: Variances, held: tuple[bool, bool]) -> Varian
 
 
 def prior_cost(costs: Costs, variances: Variances) -> Floats:
-    """What is known before any drive, as minus two log-likelihood; shape (g,).
+    """Minus two log prior density of the noise; shape (g,).
 
-    Log-normal laws (`rules`) of k_L, k_R, of a gyro's random walk and stamps, and of a localiser:
-    enough that a few legs cannot call a wrong base or a late clock noise, nothing beside the data
-    of an hour.
+    Priors are log-normal (`rules`), on k_L and k_R, on a gyro's random walk and stamps, and on a
+    localiser. They keep a few legs from explaining a wrong base or a delay as noise, and are
+    negligible against an hour of data.
     """
     middle, spread = _prior(costs)
     rows = np.stack(_each(variances), axis=-1)
@@ -134,7 +134,7 @@ def prior_cost(costs: Costs, variances: Variances) -> Floats:
 
 
 def _prior(costs: Costs) -> tuple[Floats, Floats]:
-    """Logarithms of usual standard deviations, and their spread; infinite where unknown."""
+    """Log means of the prior standard deviations, and their spread; infinite where unknown."""
     runs = laid_out(costs.runs)
     middle = np.array([TYPICAL_WHEEL_NOISE, TYPICAL_WHEEL_NOISE, 1.0, 1.0, TYPICAL_STAMP_NOISE])
     spread = np.array([WHEEL_NOISE_SPREAD, WHEEL_NOISE_SPREAD, np.inf, np.inf, STAMP_NOISE_SPREAD])
@@ -156,9 +156,9 @@ def _scored(
     moving: NDArray[np.bool_],
     logs: Floats,
 ) -> tuple[float, Floats, Floats]:
-    """Cost at the logarithms of the variances, its gradient, and its expected curvature.
+    """Cost at log variances, its gradient and its expected Hessian (Fisher information).
 
-    The innovations' derivatives come from one pass of the filter over all sets.
+    Derivatives of the innovations come from one pass of the filter over all sets.
     """
     step = 1e-4
     sets = _variances(base, moving, np.concatenate([logs[None], logs + step * np.eye(logs.size)]))
@@ -184,16 +184,23 @@ def noise_estimates(
     held: tuple[bool, bool],
     information: Callable[[Variances], float] | None = None,
 ) -> dict[str, NoiseEstimate]:
-    """The noises [m^0.5, m^0.5, m, rad] (and [s] of stamps) that the data can tell.
+    """Noise estimates [m^0.5, m^0.5, m, rad] (and [s] for stamps) with standard deviations.
 
-    What the reference does not measure has none; standard deviations are from the curvature.
+    Noises of what the reference does not measure are left out. Standard deviations are from the
+    observed information.
 
     Parameters
     ----------
-    information
-        Logarithm of the determinant of the information on what was fitted beside the noise. Fitted
-        numbers take errors away that were noise; with it the estimates are those of restricted
-        likelihood (Patterson and Thompson, Biometrika 58, 1971), by one Newton step.
+    costs : Costs
+        Likelihood at the fitted model.
+    variances : Variances
+        Maximum a posteriori variances.
+    held : (bool, bool)
+        Whether the reference's noise in position and in heading is known.
+    information : callable, optional
+        Log determinant of the information on the fitted model parameters, as a function of the
+        variances. Fitting these absorbs noise. With it the estimates are those of restricted
+        maximum likelihood (Patterson and Thompson, Biometrika 58, 1971), by one Newton step.
     """
     moving = _moving(costs, held)
     function = _in_logs(costs, variances, moving)
@@ -222,7 +229,7 @@ def noise_estimates(
 
 
 def _moving(costs: Costs, held: tuple[bool, bool]) -> NDArray[np.bool_]:
-    """Which of the variances the data may tell: those of what is measured and not known."""
+    """Mask of the variances to estimate: those of what is measured and not known."""
     runs = laid_out(costs.runs)
     measured = np.isfinite(runs.finish)
     places, headings = bool(measured[:, :2].any()), bool(measured[:, 2].any())
@@ -242,7 +249,7 @@ def _moving(costs: Costs, held: tuple[bool, bool]) -> NDArray[np.bool_]:
 
 
 def _each(variances: Variances) -> tuple[Floats, ...]:
-    """In the order of `_ALL`."""
+    """Variances in the order of `_ALL`."""
     return tuple(getattr(variances, item.name) for item in fields(variances))
 
 
@@ -251,7 +258,7 @@ def _row(variances: Variances) -> Floats:
 
 
 def _variances(base: Variances, moving: NDArray[np.bool_], logs: Floats) -> Variances:
-    """Of rows of logarithms, shape (g, free)."""
+    """Variances from rows of log values, shape (g, free)."""
     table = np.tile(_row(base), (logs.shape[0], 1))
     table[:, moving] = np.exp(logs)
     return Variances(*table.T)

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parts of drives: what errors are alike in for seconds together, and by what values scatter.
+"""Clusters of legs within which errors are correlated, and cluster-robust standard errors.
 
-Standard deviations by the curvature of the likelihood hold where the model does. Where it lacks a
-law, each part of the drives asks for values of its own, and the values of all of them together are
-known no better than those agree.
+Standard deviations from the curvature of the likelihood hold if the model does. If an effect is
+missing, each part of the drives pulls the estimates its own way, and the overall estimate is only
+as good as the parts agree.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from werrimbi_odom.model.pose import Floats
 
 
 def parts_of(run: NDArray[np.intp]) -> NDArray[np.intp]:
-    """The part of a run to which each leg belongs, counted through, (m,).
+    """Index of the part (cluster) of each leg, numbered over all runs, (m,).
 
     Parameters
     ----------
@@ -44,14 +44,16 @@ def parts_of(run: NDArray[np.intp]) -> NDArray[np.intp]:
 
 
 def parts_of_innovations(runs: Concatenated, white: Floats) -> NDArray[np.intp] | None:
-    """The part to which each innovation belongs, (3 m,); -1 where nothing was measured.
+    """Index of the part of each innovation, (3 m,); -1 where nothing was measured.
 
-    None where legs with data are so long, or so few, that each stands for itself.
+    None where legs with data are so long or so few that each is independent.
 
     Parameters
     ----------
+    runs : Concatenated
+        The runs of the legs.
     white : ndarray, shape (3 m,)
-        Innovations; all three of a leg that is left out are zero.
+        Innovations; all three of an excluded leg are zero.
     """
     known = np.abs(white.reshape(-1, 3)).max(axis=1) > SILENT
     run = runs.run_of_leg[known]
@@ -63,28 +65,30 @@ def parts_of_innovations(runs: Concatenated, white: Floats) -> NDArray[np.intp] 
 
 
 def heard_share(parts: NDArray[np.intp]) -> float:
-    """Share of a pattern's size that a part must hold to say anything of it.
+    """Share of a pattern's norm that a part must hold to be informative.
 
-    Of very many drives each part holds less than is asked of one of 28, however alike they are.
+    With very many drives each part holds less, so the share required falls below that for 28.
     """
     return LASTING_HEARD * math.sqrt(min(1.0, LASTING_PARTS / (parts.max() + 1)))
 
 
 def widening(white: Floats, flat: Floats, moves: Floats, runs: Concatenated) -> Floats:
-    """By how much values scatter from part to part beyond their standard deviations, (p,).
+    """Factor on the standard deviations for disagreement between parts, (p,).
 
-    The sandwich (Huber 1967; taken together in clusters: Liang and Zeger, Biometrika 73, 1986) over
-    the inverse information, where parts disagree beyond chance; 1 where they agree, since 28 parts
-    tell a deviation only to 13 %.
+    This is the ratio of the sandwich estimator (Huber 1967; clustered: Liang and Zeger, Biometrika
+    73, 1986) to the inverse information, where parts disagree significantly. It is 1 where they
+    agree, since 28 parts determine a deviation only to 13 %.
 
     Parameters
     ----------
     white : ndarray, shape (n,)
-        Innovations at the fit.
+        Whitened innovations at the fit.
     flat : ndarray, shape (n, p)
-        Their derivatives.
+        Their Jacobian.
     moves : ndarray, shape (p, q)
-        What of the columns was free.
+        Directions of the columns that were free.
+    runs : Concatenated
+        The runs of the legs.
     """
     wide = np.ones(moves.shape[0])
     parts = parts_of_innovations(runs, white)

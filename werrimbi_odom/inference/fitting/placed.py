@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The score of what lies in one place round a wheel: how large it is, and where in each run.
+"""Score of an effect local to one angle round a wheel: its size, and its angle in each run.
 
-A law that swings once in a turn is a line in its amplitude times the cosine and the sine of its
-phase; one that is local is no line in its place. So its derivative in the size is taken at a few
-places round the wheel, and between them by trigonometric interpolation; the places that explain
-most, with one size for all runs, are its score. Of a bump and of a flat each the best: in the first
-harmonic they are one, half a turn apart, and only what is left of it tells which.
+A law of one cycle per turn is linear in amplitude times cosine and sine of its phase. A local law
+is not linear in its angle. So the derivative in its size is taken at a few angles, with
+trigonometric interpolation between them, and the score is the largest gain over the angles with one
+size for all runs. Bump and flat are scored separately: their first harmonics are the same, half a
+turn apart, and only higher ones tell them apart.
 """
 
 from __future__ import annotations
@@ -19,36 +19,36 @@ from werrimbi_odom.inference.linear import SILENT
 from werrimbi_odom.model.pose import Floats
 
 FINE = 96
-"""Places that are looked at: 4 degrees apart, of laws whose parts are no narrower than 30."""
+"""Number of trial angles: 4 degrees apart, for laws with features no narrower than 30."""
 
 _ROUNDS = 4
-"""In which size and places are found in turn; they hardly move after the second."""
+"""Alternations between size and angles; they hardly move after the second."""
 
 
 class Placed(NamedTuple):
-    """The best of one sign."""
+    """Best fit of one sign."""
 
     gain: float
     """Fall of the squared innovations."""
     size: float
-    """In steps of the size."""
+    """Size, in finite-difference steps."""
     places: Floats
-    """Of each block [rad]."""
+    """Angle in each block [rad]."""
 
 
 def best_placed(tries: Floats, free: Floats, rest: Floats, blocks: int) -> list[Placed]:
-    """The best places and size, of a positive size and of a negative one; those without gain out.
+    """Best angles and size for a positive and for a negative size; those without gain left out.
 
     Parameters
     ----------
     tries : ndarray, shape (k,)
-        Places at which derivatives were taken, evenly round the wheel [rad].
+        Angles of the derivatives, evenly spaced round the wheel [rad].
     free : ndarray, shape (n, blocks * k)
-        Derivatives of the innovations in the size at each place, clear of the nuisances.
+        Derivatives of the innovations in the size at each angle, nuisances projected out.
     rest : ndarray, shape (n,)
-        Innovations clear of them.
+        Innovations, nuisances projected out.
     blocks : int
-        Runs with a place of their own; 1: one place for all.
+        Number of runs with an angle of their own; 1 for one common angle.
     """
     count = tries.size
     at = tries[0] + 2.0 * np.pi * np.arange(FINE) / FINE
@@ -77,7 +77,7 @@ def best_placed(tries: Floats, free: Floats, rest: Floats, blocks: int) -> list[
 
 
 def _interpolation(tries: Floats, at: Floats) -> Floats:
-    """Weights (q, k) of values at even places round a circle for the values at others."""
+    """Trigonometric interpolation weights (q, k) from evenly spaced angles to others."""
     count = tries.size
     apart = at[:, None] - tries
     orders = np.arange(1, (count - 1) // 2 + 1)

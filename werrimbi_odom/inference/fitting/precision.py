@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""How well a fit's numbers are known, as a function of the noise that it found with them."""
+"""Precision of a fit's parameters, as a function of the noise estimated with them."""
 
 from __future__ import annotations
 
@@ -23,21 +23,21 @@ from werrimbi_odom.model.pose import Floats
 
 @dataclass(frozen=True, slots=True)
 class Precision:
-    """What whitened derivatives say of the numbers that were free, at any noise."""
+    """Jacobian of the fitted parameters, to be whitened by any noise."""
 
     runs: Concatenated
     point: Point
     local: tuple[FreeParameter, ...]
-    """Columns of `slopes`."""
+    """Parameters of the columns of `slopes`."""
     slopes: Floats
     moves: Floats
-    """Of the design's columns, for a unit of each number that was free, (p, q)."""
+    """Step of the design's columns for a unit of each free direction, (p, q)."""
 
     @classmethod
     def of(
         cls, runs: Concatenated, point: Point, local: Sequence[FreeParameter], moves: Floats
     ) -> Precision:
-        """Of a fit that ended at a point; start headings are no local numbers."""
+        """Precision at the end point of a fit; start headings are not in `local`."""
         numbers = tuple(local)
         return cls(runs, point, numbers, slopes_of(runs, point.model, numbers), moves)
 
@@ -48,12 +48,12 @@ class Precision:
         return spread_out(self.runs, point.model, found.whitened(), marks, self.local)
 
     def information(self, variances: Variances) -> float:
-        """Logarithm of the determinant of the information on what was free."""
+        """Log determinant of the information matrix of the free directions."""
         marks = self._design(variances).flat()[1] @ self.moves
         return float(np.linalg.slogdet(marks.T @ marks)[1])
 
     def _variances_of(self, names: Sequence[str], variances: Variances) -> Floats:
-        """Of shared numbers."""
+        """Variances of shared parameters."""
         design = self._design(variances)
         columns = [number.name for number, _ in design.columns]
         rows = self.moves[[columns.index(name) for name in names]]
@@ -61,12 +61,12 @@ class Precision:
         return np.asarray(np.einsum("pi,ij,pj->p", rows, inside, rows))
 
     def widening(self, noises: Mapping[str, NoiseEstimate], names: Sequence[str]) -> Floats:
-        """By how much to widen deviations of shared numbers so that 1.96 of them hold 95 %.
+        """Factor on the standard deviations of shared parameters, so that 1.96 of them cover 95 %.
 
-        A fit takes its noise for known. Here variances are averaged over the log-normal law of each
-        noise (law of total variance, three points by Gauss and Hermite), and standard deviations
-        are widened by Student's t, with the degrees of freedom by which the noise tells each of
-        them (Satterthwaite, Biometrics 2, 1946).
+        A fit treats its noise estimate as known. Here variances are averaged over the log-normal
+        distribution of each noise (law of total variance, three-point Gauss-Hermite quadrature).
+        The standard deviations are widened by Student's t, with effective degrees of freedom by
+        Satterthwaite (Biometrics 2, 1946).
         """
         given = self.point.variances
         centre = with_noises(given, {name: item.value for name, item in noises.items()})
@@ -82,8 +82,8 @@ class Precision:
                     for value in values
                 )
                 found = found + (more + less - 2.0 * middle) / 6.0
-                scatter += np.log(more / less) ** 2 / 12.0  # of the logarithm of a variance
-        # That of an estimate of n degrees of freedom is 2 / n; below three t has no deviation.
+                scatter += np.log(more / less) ** 2 / 12.0  # variance of a log variance
+        # With n degrees of freedom it is 2 / n; below three, t has no standard deviation.
         freedom = 2.0 / np.clip(scatter, 1e-6, 0.6)
         wide = np.array([student_quantile(0.975, degrees) for degrees in freedom]) / NORMAL_95
         return np.asarray(wide * np.sqrt(found / fitted))

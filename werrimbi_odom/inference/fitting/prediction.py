@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the model predicts for every leg: the relative pose that the reference shows, its noise."""
+"""Predicted relative pose and its noise for every leg, as seen by the reference."""
 
 from __future__ import annotations
 
@@ -27,44 +27,52 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True, slots=True)
 class Prediction:
-    """Legs as the model sees them; each in the frame of the reference at its own start.
+    """Predicted legs, each in the frame of the reference at its own start.
 
-    Arrays have shape (m, 3) for (x, y, yaw) [m, m, rad] or (m, 3, 3).
+    Arrays have shape (m, 3) for (x, y, yaw) [m, m, rad], or (m, 3, 3).
     """
 
     relative: Floats
-    """Relative pose of each leg's end, of the point and axis that the reference measures."""
+    """Relative pose of each leg's end, for the point and axis that the reference measures."""
     per_left: Floats
     """Covariance of the relative pose for a left wheel noise k_L² of 1 m."""
     per_right: Floats
-    """The same for k_R²."""
+    """Covariance of the relative pose for a right wheel noise k_R² of 1 m."""
     length: Floats
-    """DrivenPath driven in each leg, shape (m,), [m]."""
+    """Path length of each leg, shape (m,), [m]."""
     along: Floats
-    """Signed travel in each leg, shape (m,), [m]."""
+    """Signed travel of each leg, shape (m,), [m]."""
     turn: Floats
-    """Change of heading in each leg, shape (m,), [rad]."""
+    """Heading change of each leg, shape (m,), [rad]."""
 
 
 def predict(robot: Robot, run: MatchedRun, start_yaw: float | None = None) -> Prediction:
-    """What a robot predicts for the legs of one run.
+    """Predict the legs of one run.
 
     Parameters
     ----------
+    robot : Robot
+        The robot, with its effects.
+    run : MatchedRun
+        The run, cut into legs.
     start_yaw : float, optional
-        Heading at the first reference pose where that was not measured [rad].
+        Heading at the first reference pose where not measured [rad].
     """
     own = {} if start_yaw is None else {START_YAW: start_yaw}
     return predict_all(Model(robot, (own,)), concatenated([run]))
 
 
 def legs_shown(model: Model, runs: Concatenated, looked_at: Robot | None = None) -> Floats:
-    """Relative pose of every leg as the reference shows it, shape (m, 3) [m, m, rad].
+    """Relative pose of every leg as seen by the reference, shape (m, 3) [m, m, rad].
 
     Parameters
     ----------
+    model : Model
+        The model.
+    runs : Concatenated
+        The runs of the legs.
     looked_at : Robot, optional
-        Whose travel effects look at, where it is as good as the model's own and known already.
+        Robot whose travel is the input of the effects, where that is cached and close enough.
     """
     view = seen_by(model, runs)
     runs = runs.delayed(view.delay)
@@ -74,7 +82,7 @@ def legs_shown(model: Model, runs: Concatenated, looked_at: Robot | None = None)
 
 
 def predict_all(model: Model, runs: Concatenated) -> Prediction:
-    """The same, with the noise that it has for unit noise of each wheel."""
+    """Relative poses of all legs, with their covariance for unit noise of each wheel."""
     return runs.of_model(model, "prediction", lambda: _predicted(model, runs))
 
 
@@ -97,7 +105,7 @@ def right_handed(poses: Floats, view: View) -> Floats:
 
 
 def path_of(model: Model, runs: Concatenated) -> DrivenPath:
-    """What the model makes of the steps of all runs (the reference's delay being none); kept."""
+    """Path of the model over the steps of all runs, without a reference delay; cached."""
     return runs.of_steps(model, "path", lambda: _path_of(model, runs))
 
 
@@ -107,9 +115,9 @@ def _path_of(model: Model, runs: Concatenated) -> DrivenPath:
 
 
 def seen_by(model: Model, runs: Concatenated) -> View:
-    """How the reference looks at the robot; what it has anew in each run as arrays over the legs.
+    """Extrinsics of the reference; per-run values are arrays over the legs.
 
-    That can be the wandering of a heading alone: all else is one number.
+    The only per-run value can be the wander of the heading.
     """
     return view_of(model.laid_out(runs.legs).effects)
 
@@ -119,8 +127,8 @@ def headings_of(
 ) -> Floats:
     """Heading at the start of each step, in the reference's frame, shape (n,) [rad].
 
-    Every leg starts from the measured heading where there is one, as its prediction does; else the
-    path is followed from the run's start.
+    Every leg starts from the measured heading if there is one, as its prediction does; otherwise
+    the path is followed from the run's start.
     """
     measured = right_handed(runs.start, view)[:, 2] - view.yaw
     if np.any(view.wander):
@@ -135,10 +143,9 @@ def headings_of(
 
 
 def anchors(runs: Concatenated, known: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """The leg that each step's pose is followed from, shape (n,).
+    """Leg from whose start each step's pose is followed, shape (n,).
 
-    That is the latest leg of the run at whose start something is `known` (m,); with none, its
-    first leg.
+    It is the latest leg of the run with a `known` start (m,), or the run's first leg if none is.
     """
     return runs.known(("anchors", known.tobytes()), lambda runs: _anchors(runs, known))
 
@@ -165,7 +172,7 @@ def _path(
     latest: list[Any] = [None, None]
 
     def led_to(found: AfterEffects) -> DrivenPath:
-        """The path; headings and places of a pass are of one."""
+        """Path of one pass, cached, so that its headings and places agree."""
         if latest[0] is not found:
             latest[:] = found, _from_motion(*found)
         path: DrivenPath = latest[1]
@@ -183,10 +190,10 @@ def _path(
 def places_of(
     path: DrivenPath, heading: Floats, runs: Concatenated, view: View
 ) -> tuple[Floats, Floats]:
-    """Where each step begins, in the reference's frame; arrays of shape (n,) [m].
+    """Position at the start of each step, in the reference's frame; arrays of shape (n,) [m].
 
-    Every leg starts from the measured position where there is one; else the path is followed from
-    the last one that was measured, or from zero.
+    Every leg starts from the measured position if there is one; otherwise the path is followed from
+    the last measured one, or from zero.
     """
     start = right_handed(runs.start, view)
     known = np.isfinite(start[:, 0]) & np.isfinite(start[:, 1])
@@ -205,7 +212,7 @@ def _from_motion(travel: WheelTravel[Floats], motion: BodyMotion[Floats]) -> Dri
 
 
 def _shown(path: DrivenPath, runs: Concatenated, view: View, drifts: Floats) -> Floats:
-    """The legs' relative poses, seen at the reference's point, axis and times."""
+    """Relative poses of the legs, for the reference's lever arm, axis and stamps."""
     begin, end = runs.begin, runs.end
     turn = path.yaw[end] - path.yaw[begin]
     moved = np.exp(-1j * path.yaw[begin]) * (path.position[end] - path.position[begin])
@@ -228,7 +235,7 @@ def _shown(path: DrivenPath, runs: Concatenated, view: View, drifts: Floats) -> 
 
 
 def _since_start(runs: Concatenated, nodes: NDArray[np.intp]) -> Floats:
-    """Time at each leg's node since its drive began, shape (m,) [s]."""
+    """Time since the start of the drive at each leg's node, shape (m,) [s]."""
     found = np.empty(runs.count)
     for index, run in enumerate(runs.runs):
         own = slice(runs.legs[index], runs.legs[index + 1])
@@ -237,7 +244,7 @@ def _since_start(runs: Concatenated, nodes: NDArray[np.intp]) -> Floats:
 
 
 def _late(path: DrivenPath, runs: Concatenated, nodes: NDArray[np.intp], delay: float) -> Floats:
-    """How far a heading that is `delay` late [s] is behind, at each leg's node [rad]."""
+    """Difference of a heading delayed by `delay` [s] to the true one, at each leg's node [rad]."""
     behind = np.empty(runs.count)
     for index, run in enumerate(runs.runs):
         own = slice(runs.legs[index], runs.legs[index + 1])

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What each run has of its own (a phase whose counter starts anywhere), learnt in that run.
+"""Per-run values (such as a phase whose counter starts anywhere), estimated in each run.
 
-Shared values stay as they are. So a robot file that does not say a phase is judged alike by every
-verb, and a model that was fitted elsewhere is judged on drives that took no part in its fit.
+Shared values stay fixed. So all commands judge a robot file without a phase alike, and a model that
+was fitted elsewhere is judged on drives outside its fit.
 """
 
 from __future__ import annotations
@@ -34,7 +34,7 @@ from werrimbi_odom.model.effect import AppliedEffect
 
 
 def known_at_home(model: Model, runs: Concatenated, kind: ReferenceKind) -> Model:
-    """A model in other runs, without what belongs to the references alone."""
+    """Model in other runs, without the nuisance parameters of the references."""
     plain = model.without_nuisances()
     if not any(plain.own) and all(applied.ready for applied in plain.robot.effects):
         return Model(plain.robot, tuple({} for _ in runs.runs))
@@ -42,7 +42,7 @@ def known_at_home(model: Model, runs: Concatenated, kind: ReferenceKind) -> Mode
 
 
 def at_home(model: Model, runs: Concatenated, kind: ReferenceKind) -> Point:
-    """A model in other runs: shared values stay, what those runs have of their own is fitted."""
+    """Model in other runs: shared values stay, per-run values are fitted."""
     own = sorted({name for mine in model.own for name in mine if name not in NUISANCES})
     effects = tuple(
         replace(
@@ -68,9 +68,9 @@ def at_home(model: Model, runs: Concatenated, kind: ReferenceKind) -> Point:
 
 
 def with_own_values(runs: Concatenated, point: Point) -> tuple[Point, tuple[FreeParameter, ...]]:
-    """The point with what each run has of its own in the robot's effects, and all their numbers.
+    """Point with the per-run values of the robot's effects, and all their free parameters.
 
-    A phase can be anywhere, so it is looked for by its score, which knows no start value.
+    A phase can be anywhere, so it is found by its score, which needs no start value.
     """
     numbers: list[FreeParameter] = []
     for applied in point.model.robot.effects:
@@ -88,13 +88,13 @@ def with_own_values(runs: Concatenated, point: Point) -> tuple[Point, tuple[Free
 
 
 def _learnt(runs: Concatenated, point: Point, applied: AppliedEffect) -> Model:
-    """The model with the phases of an effect in each run."""
+    """Model with the phases of an effect in each run."""
     robot = point.model.robot
     others = tuple(item for item in robot.effects if item is not applied)
     bare = replace(point, model=replace(point.model, robot=replace(robot, effects=others)))
     candidate = Candidate(applied.effect, {})
     found = scores(runs, bare, CALIBRATION, [candidate])
-    # Of a bump and a flat, which are each the other to the first order, what the robot has.
+    # Bump and flat are equivalent to first order: take the one that the robot has.
     score = next((each for each in found if _of_sign(each, applied)), None)
     if score is None:
         return bare.model

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The filter of `filtering` for a reference whose own error wanders: a localiser, a local map.
+"""The filter of `filtering` for a reference with a time-correlated error: a localiser, a local map.
 
-What is measured is the pose, and an error that was nearly the same a moment ago, and noise of the
-moment. The error that wanders is a first-order Gauss-Markov process (Ornstein and Uhlenbeck): a
-random walk that is drawn back to nothing, so that it is bounded, as the error of whoever looks at
-walls is. It is three more states beside the pose, in the frame of the reference.
+The measurement is the pose, plus a slowly varying error, plus white noise. The error is a
+first-order Gauss-Markov process (Ornstein-Uhlenbeck): a random walk with reversion to zero, so it
+is bounded, as is the error of a sensor that sees walls. It adds three states to the pose, in the
+frame of the reference.
 
-Where headings are a gyro's that were laid upon a localiser's, they do not wander so: an angle, a
-drift and the gyro's scale, none of them known well, stay as they are for all of a drive. Angle and
-random walk are the error of the heading itself; drift and scale are two states more.
+Where headings come from a gyro aligned to a localiser, their error is different: an offset, a drift
+and a scale factor, none well known, are constant over a drive. Offset and random walk are the
+heading error itself; drift and scale factor are two more states.
 """
 
 from __future__ import annotations
@@ -26,53 +26,53 @@ from werrimbi_odom.inference.rules import LAID_DRIFT, LAID_SCALE, LAID_YAW, LOST
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 ANEW = 1e2
-"""Variance [m², rad²] of what may be anything: the error after a jump, the pose after a gap."""
+"""Variance [m², rad²] of an unknown quantity: the error after a jump, the pose after a gap."""
 
 _LOST = np.square([LOST_XY, LOST_XY, LOST_YAW])
 
 
 class LaidHeading(NamedTuple):
-    """Headings of a gyro in place of a localiser's, for m legs and g sets of variances."""
+    """Headings from a gyro in place of a localiser's, for m legs and g sets of variances."""
 
     turn: Floats
-    """What the robot turned in each leg, by the model, (m,) [rad]."""
+    """Predicted turn of each leg, (m,) [rad]."""
     duration: Floats
-    """Of each leg, (m,) [s]."""
+    """Duration of each leg, (m,) [s]."""
     walk: Floats
-    """Variance of the gyro's random walk in a second, (g,) [rad²/s]."""
+    """Random walk of the gyro, variance per second, (g,) [rad²/s]."""
 
 
 class Wander(NamedTuple):
-    """The error that wanders, for g sets of variances."""
+    """Gauss-Markov error of the reference, for g sets of variances."""
 
     variance: Floats
-    """Of it in x, y, yaw, however long one waits, (g, 3) [m², rad²]."""
+    """Stationary variance in x, y, yaw, (g, 3) [m², rad²]."""
     kept: Floats
-    """Share of it that is left at each leg's end, (g, m)."""
+    """Autocorrelation over each leg, (g, m)."""
     gap: NDArray[np.bool_]
-    """Legs after which the robot may be anywhere, and the reference is lost somewhat; (m,). On
-    others to be skipped it jumped: its error may be anything, and the robot drove on."""
+    """Legs after which the pose is unknown and the reference partly lost, (m,). On other skipped
+    legs it jumped: its error is unknown, while the robot drove on."""
     heading: float
-    """Variance of a start heading that was not measured: none where it is fitted [rad²]."""
+    """Variance of a start heading that was not measured; zero where it is fitted [rad²]."""
     laid: LaidHeading | None = None
-    """Where headings are a gyro's; their error is then no process that is drawn back."""
+    """Headings from a gyro; their error does not revert to zero."""
 
     def kept_of_each(self) -> Floats:
-        """Share of the error in x, y, yaw that is left at each leg's end, (g, m, 3)."""
+        """Autocorrelation of the error in x, y, yaw over each leg, (g, m, 3)."""
         kept = np.repeat(self.kept[..., None], 3, axis=-1)
         if self.laid is not None:
             kept[..., 2] = 1.0
         return kept
 
     def added(self) -> Floats:
-        """Variance of the error that is new at each leg's end, (g, m, 3)."""
+        """Process noise variance of the error over each leg, (g, m, 3)."""
         new = (1.0 - np.square(self.kept_of_each())) * self.variance[:, None]
         if self.laid is not None:
             new[..., 2] = self.laid.walk[:, None] * self.laid.duration
         return new
 
     def begun(self) -> Floats:
-        """Variance of all states that are no pose where a stretch begins, (g, 3 or 5)."""
+        """Initial variance of all states other than the pose, (g, 3 or 5)."""
         if self.laid is None:
             return self.variance
         known = np.square([LAID_YAW, LAID_SCALE, LAID_DRIFT])
@@ -80,7 +80,7 @@ class Wander(NamedTuple):
 
 
 def filtered_wandering(legs: Legs, wander: Wander) -> Unexpected:
-    """Filter all stretches at once; innovations are of what is measured."""
+    """Run the filter over all stretches at once; innovations are of the measurements."""
     sets, count = legs.noise.shape[0], legs.relative.shape[0]
     first, leg, rounds = in_rounds(legs)
     reading = np.broadcast_to(legs.reading, legs.noise.shape)
@@ -98,8 +98,8 @@ def filtered_wandering(legs: Legs, wander: Wander) -> Unexpected:
     finish = np.where(known, finish, 0.0)
     doubted = reading[:, leg] + UNMEASURED * (~known[:, None, :] * np.eye(3))
     lost = ANEW * (known & wander.gap[leg, None])
-    over = wander.gap & ~np.append(wander.gap[1:], False)  # a gap is a leg for each pose in it
-    throws = np.array([True, True, laid is None])  # a gyro does not lose its place
+    over = wander.gap & ~np.append(wander.gap[1:], False)  # a gap is one leg per pose in it
+    throws = np.array([True, True, laid is None])  # a gyro keeps its heading through a jump
     anew = ANEW * (jumped[:, None] & known & throws) + _LOST * over[leg, None]
     kept, added = wander.kept_of_each()[:, leg], wander.added()[:, leg]
 
@@ -156,7 +156,7 @@ def filtered_wandering(legs: Legs, wander: Wander) -> Unexpected:
 
 
 def _begun(reading: Floats, finite: NDArray[np.bool_], begun: Floats, heading: float) -> Floats:
-    """Covariance at the first poses of the stretches, (g, s, n, n): pose is measured less error."""
+    """Initial covariance of the stretches, (g, s, n, n): the pose is measurement less error."""
     size = 3 + begun.shape[1]
     spread = np.zeros((*reading.shape[:2], size, size))
     own = np.einsum("gi,ij->gij", begun[:, :3], np.eye(3))[:, None]

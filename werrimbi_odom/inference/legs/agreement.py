@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""How a reference goes with the wheels in a drive, whatever a robot file says: by consensus.
+"""Relation between reference and wheels in a drive, estimated by consensus without the robot file.
 
-A turn is a linear function of both wheels' travel, a squared displacement a quadratic one of turn
-and way; so neither wiring nor sizes, nor where the reference is mounted, nor which way its axes
-point, need be known. Which function it is, most of the drive says: of many that a few windows of
-time propose, the one that most windows keep to (Fischler and Bolles, Commun. ACM 24, 1981). A
-window in which the robot was held or carried keeps to none that a driven one does.
+A turn is a linear function of both wheels' travel; a squared displacement is quadratic in path and
+turn. So wiring, sizes, mounting of the reference and direction of its axes need not be known. The
+function is found by RANSAC (Fischler and Bolles, Commun. ACM 24, 1981): pairs of time windows
+propose candidates, and the one with the most inliers wins. Windows in which the robot was held or
+carried are outliers.
 """
 
 from __future__ import annotations
@@ -34,44 +34,47 @@ from werrimbi_odom.inference.rules import (
 )
 from werrimbi_odom.model.pose import Floats
 
-_TRIES = 200  # laws of two windows each: 50 of them of driven ones alone, where half are driven
-_REFINED = 3  # times a law is fitted to the windows that keep to it
+_TRIES = 200  # minimal samples of two windows; 50 are of driven windows alone if half are driven
+_REFINED = 3  # refits to the inliers
 _RATIOS = np.linspace(0.02, 0.98, 49)
 _TINY = 1e-12
-_PARALLEL = 0.05  # sine of an angle, below which two windows hold one number
-_CLEARLY = 0.1  # share of the largest, from which on a ratio is worth something
+_PARALLEL = 0.05  # sine of the angle below which two windows are collinear
+_CLEARLY = 0.1  # ratios are formed only above this share of the largest value
 
 
 @dataclass(frozen=True, slots=True)
 class Agreement:
-    """What the reference should show in each window, (k,), and how far it is from that."""
+    """Reference prediction for each window, (k,), and its deviation from the measurement."""
 
     windows: Windows
-    """With the reference as early as the wheels."""
+    """Windows, with the reference shifted by the lag."""
     expected: Floats
     gross: Floats
-    """What would be shown if all travel of both wheels went into it."""
+    """Value that would be measured if all travel of both wheels went into it."""
     lag: float
-    """By which the reference is late [s]."""
+    """Delay of the reference behind the wheels [s]."""
     law: Floats
-    """Of a turn: by travel of each wheel [rad/m]; of a way: by the squares' coefficients."""
+    """Coefficients: of a turn, per travel of each wheel [rad/m]; of a squared displacement, of its
+    terms."""
 
     @property
     def off(self) -> Floats:
-        """By how much it is not as expected."""
+        """Absolute deviation of the measurement from the prediction."""
         return np.abs(self.windows.measured - self.expected)
 
 
 def turns_agree(windows: Windows, base: float) -> Agreement | None:
-    """How turns follow the wheels; None where too little of the drive says so.
+    """Estimate how turns depend on wheel travel; None if too little of the drive is consistent.
 
-    A drift at rest is taken off; what is as fast as turning is none.
+    Drift at rest is subtracted first, unless it is as fast as turning.
 
     Parameters
     ----------
+    windows : Windows
+        Windows of turns.
     base : float
-        The robot file's [m]. Its law is taken where some of the drive keeps to it: a robot that is
-        held turns less than it should, and seldom just as much.
+        Wheel base of the robot file [m]. Its law is preferred where part of the drive agrees with
+        it: a held robot turns less than predicted, and rarely by just that law.
     """
     rest = windows.at_rest()
     rest = rest[np.abs(rest) < NO_DRIVING_TURNS * windows.steps * windows.step]
@@ -104,15 +107,17 @@ def turns_agree(windows: Windows, base: float) -> Agreement | None:
 
 
 def ways_agree(windows: Windows, turns: Agreement | None, base: float) -> Agreement | None:
-    """How displacements follow the wheels; None where too little of the drive says so.
+    """Estimate how displacements depend on wheel travel; None if too little is consistent.
 
     Parameters
     ----------
-    turns
-        What headings said of the wheels; without them the robot file's wiring is asked, and that
-        with one wheel reversed.
+    windows : Windows
+        Windows of displacements.
+    turns : Agreement or None
+        Result for the turns. Without it, the wiring of the robot file and that with one wheel
+        reversed are tried.
     base : float
-        The robot file's, for a unit of turning [m].
+        Wheel base of the robot file, as the unit of turning [m].
     """
     if turns is not None:
         turned = np.interp(windows.time, turns.windows.time, turns.expected)
@@ -140,7 +145,7 @@ def ways_agree(windows: Windows, turns: Agreement | None, base: float) -> Agreem
             break
     if best is None:
         return None
-    if turns is None:  # a law that is learnt at a wrong lag is off itself
+    if turns is None:  # a law fitted at a wrong lag is itself biased
         beside = [kept_at(best[1] + side * windows.step, best[3]) for side in (-1.0, 1.0)]
         best = max([best, *filter(None, beside)], key=lambda each: each[0])
     _, lag, law, wiring = best
@@ -151,7 +156,7 @@ def ways_agree(windows: Windows, turns: Agreement | None, base: float) -> Agreem
 
 
 def _of_size(windows: Windows, sizes: Floats) -> Windows:
-    """With the travel of both wheels by their sizes, which the robot file may have wrong."""
+    """Scale the travel of both wheels by their sizes, which the robot file may have wrong."""
     left, right = sizes[0] * windows.left, sizes[1] * windows.right
     before = np.abs(windows.left) + np.abs(windows.right)
     grown = (np.abs(left) + np.abs(right)) / np.maximum(before, _TINY)
@@ -160,14 +165,14 @@ def _of_size(windows: Windows, sizes: Floats) -> Windows:
 
 
 def _lags(step: float) -> list[float]:
-    """None first, then ever later and earlier ones; two steps apart at the least."""
+    """Lags to try: zero, then growing in both directions, at least two steps apart."""
     apart = max(2.0 * step, AGREE_LAG_STEP)
     some = [number * apart for number in range(1, int(AGREE_LATEST / apart) + 1)]
     return [0.0, *(sign * lag for lag in some for sign in (1.0, -1.0))]
 
 
 def _turn(windows: Windows, laws: Floats) -> tuple[Floats, Floats]:
-    """What some laws (2, n) expect of each window, and what at most, (k, n)."""
+    """Predicted and largest possible turn of each window under some laws (2, n), each (k, n)."""
     shown = np.stack([windows.left, windows.right], axis=1) @ laws
     return shown, windows.rolled[:, None] * np.abs(laws).sum(axis=0)
 
@@ -185,7 +190,7 @@ def _turn_law(windows: Windows, base: float) -> Floats:
     best = every[:, int(np.argmax(_kept(windows, *_turn(windows, every))[0]))]
     own, best = (_refined(windows, law, terms) for law in (np.array([-1.0, 1.0]) / base, best))
     kept, asked = _kept(windows, *_turn(windows, np.stack([own, best], axis=1)))
-    # What nearly all of the drive keeps to is the robot's law, whatever the file says of wiring.
+    # A law that nearly all of the drive fits is the robot's, whatever wiring the file has.
     needed = AGREE_LAGS if kept[1] > AGREE_LAGS * asked[1] else AGREE_OWN
     return own if kept[0] > needed * kept[1] else best
 
@@ -198,7 +203,7 @@ def _refined(windows: Windows, law: Floats, terms: Floats) -> Floats:
         )
         if keeps.sum() < AGREE_FEWEST:
             break
-        scale = 1.0 / gross[keeps, 0]  # a fast window is worth no more than a slow one
+        scale = 1.0 / gross[keeps, 0]  # weights fast and slow windows alike
         law = np.linalg.lstsq(
             terms[keeps] * scale[:, None], windows.measured[keeps] * scale, rcond=1e-2
         )[0]
@@ -206,7 +211,7 @@ def _refined(windows: Windows, law: Floats, terms: Floats) -> Floats:
 
 
 def _sizes(measured: Floats, shown: Floats) -> Floats:
-    """Factors between what is shown and what is measured, of which one may be right."""
+    """Candidate scale factors from prediction to measurement."""
     large = np.abs(shown) > _CLEARLY * np.abs(shown).max(initial=0.0)
     if not large.any():
         return np.ones(1)
@@ -214,7 +219,7 @@ def _sizes(measured: Floats, shown: Floats) -> Floats:
 
 
 def _way(windows: Windows, wiring: Floats, base: float, laws: Floats) -> tuple[Floats, Floats]:
-    """As `_turn`, of displacements: laws (3, n) of squared way, way times turn, squared turn."""
+    """As `_turn`, for displacements: laws (3, n) of path squared, path times turn, turn squared."""
     terms = _way_terms(windows, wiring, base)
     shown = np.sqrt(np.maximum(terms @ laws, 0.0)) * windows.chord[:, None]
     of_way = np.sqrt(np.maximum(laws[0], 0.0)) * float(np.abs(wiring).sum()) / 2.0
@@ -228,7 +233,7 @@ def _way_terms(windows: Windows, wiring: Floats, base: float) -> Floats:
 
 
 def _way_law(windows: Windows, wiring: Floats, base: float) -> Floats:
-    """A scale, and the arm at which the reference is seen to swing."""
+    """Estimate the scale of the path, and the lever arm at which the reference swings in turns."""
     seen = windows.measured / windows.chord
     terms, squares = _way_terms(windows, wiring, base), seen**2
     way, turn = np.sqrt(terms[:, 0]), np.sqrt(terms[:, 2])
@@ -236,8 +241,9 @@ def _way_law(windows: Windows, wiring: Floats, base: float) -> Floats:
     scale = _usual_size(seen[~swings], way[~swings])
     arm = _usual_size(seen[swings], turn[swings]) if swings.sum() >= AGREE_FEWEST else 0.0
     sideways = np.linspace(-1.0, 1.0, 9) * arm
-    # Seen from beside the axle a robot in arcs goes now farther and now less far than its wheels:
-    # the commonest of both is no scale, and the file's or what suits all on the average is.
+    # With a lateral lever arm, a robot in arcs moves now farther and now less far than its wheels.
+    # The commonest ratio is then no scale, so the file's scale and the least-squares fit are tried
+    # too.
     every = np.linalg.lstsq(terms / np.maximum(squares, _TINY)[:, None], squares > 0.0, rcond=1e-2)
     laws = np.stack(
         [
@@ -267,7 +273,7 @@ def _way_law(windows: Windows, wiring: Floats, base: float) -> Floats:
 
 
 def _usual_size(measured: Floats, shown: Floats) -> float:
-    """The factor that most have; 1 where there are none."""
+    """The scale factor with the most inliers; 1 if there are too few windows."""
     if measured.size < AGREE_FEWEST:
         return 1.0
     sizes = _sizes(measured, shown)
@@ -277,10 +283,10 @@ def _usual_size(measured: Floats, shown: Floats) -> float:
 
 
 def _kept(windows: Windows, shown: Floats, gross: Floats) -> tuple[Floats, Floats]:
-    """How much of a drive keeps to each of some laws (k, n), and how much could; (n,) each.
+    """Weight of the inliers of some laws (k, n), and of all windows; each (n,).
 
-    A window says the more the more its travel goes into what is measured: that a robot drives
-    straight and does not turn speaks for every size of its base.
+    A window weighs more the more of its travel goes into the measurement. A straight drive without
+    turning, for example, agrees with any base.
     """
     share = np.abs(shown) / np.maximum(gross, _TINY)
     keeps = np.abs(windows.measured[:, None] - shown) <= AGREE_WITHIN * gross
@@ -289,14 +295,14 @@ def _kept(windows: Windows, shown: Floats, gross: Floats) -> tuple[Floats, Float
 
 
 def _plain(found: Agreement, near: bool, least: float) -> Agreement | None:
-    """What was found, if a fair share of what speaks of it keeps to it.
+    """Accept the result if a fair share of the informative windows are inliers.
 
     Parameters
     ----------
-    near
-        Whether the robot file says the same.
-    least
-        What must have been turned, or gone, in accord.
+    near : bool
+        Whether the law agrees with the robot file.
+    least : float
+        Least turn or path that the inliers must add up to.
     """
     windows = found.windows
     asked = (windows.rolled > windows.still) & np.isfinite(windows.measured)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the encoders counted, at their messages and between them."""
+"""Encoder counts, at the messages and interpolated between them."""
 
 from __future__ import annotations
 
@@ -23,12 +23,12 @@ from werrimbi_odom.model.recorded_counts import wheel_steps
 from werrimbi_odom.model.robot import Robot
 
 ROUNDING = 1e-3
-"""Share of a message by which a usual interval may be off in stamps of whole microseconds."""
+"""Relative tolerance of the usual interval, for stamps in whole microseconds."""
 
 
 @dataclass(frozen=True)
 class Counters:
-    """What the encoders counted up to each accepted message; arrays of shape (k,)."""
+    """Encoder counts up to each accepted message; arrays of shape (k,)."""
 
     time: Floats
     """[s]"""
@@ -36,21 +36,21 @@ class Counters:
     """Counts since the first message."""
     right: Floats
     first_left: float
-    """The counter itself at the first message."""
+    """Raw counter value at the first message."""
     first_right: float
     channels: Mapping[str, Floats] = field(default_factory=dict)
     """Extra measured channels at each message."""
     every: int = 1
-    """Messages from one node to the next."""
+    """Messages per node."""
     leaps: tuple[tuple[float, float, str], ...] = ()
-    """Where a counter leapt: from and to [s], and what it did, in words."""
+    """Counter jumps: begin and end [s], and a description."""
     restamped: float = 0.0
-    """By how much stamps were put right, rms [s] (`even_stamps`)."""
+    """Correction of the stamps, rms [s] (`even_stamps`)."""
 
     def at_most(self, rate: float) -> Counters:
-        """The same with nodes at every so many messages, as many as come to `rate` [Hz] or more.
+        """Thin the nodes to the lowest rate that is at least `rate` [Hz].
 
-        What was counted, and when, stays known at each message.
+        Counts and times of all messages remain known.
         """
         usual = float(np.median(np.diff(self.time)))
         return replace(self, every=max(1, int(1.0 / (rate * usual) + ROUNDING)))
@@ -61,16 +61,16 @@ class Counters:
 
     @property
     def nodes(self) -> NDArray[np.intp]:
-        """Messages at which there is a node: every so many, and the last."""
+        """Indices of the messages that are nodes: every `every`-th one, and the last."""
         last = self.time.size - 1
         return np.append(np.arange(0, last, self.every), last)
 
     def message_at(self, time: Floats) -> NDArray[np.intp]:
-        """Between which two nodes some instants lie: the number of the later one."""
+        """Index of the first node at or after some instants."""
         return np.searchsorted(self.time[self.nodes], time)
 
     def way(self, robot: Robot, leg: float, turn: float) -> Floats:
-        """What was gone up to each message, in legs: path over `leg` [m], turning over `turn`."""
+        """Cumulative travel at each message, in legs: path / `leg` [m] + turning / `turn`."""
         counts = wiring_of(robot.effects).wheels(np.diff(self.left), np.diff(self.right))
         left, right = counts[0] * robot.left_tick, counts[1] * robot.right_tick
         path = np.abs(0.5 * (left + right)) / leg
@@ -79,14 +79,14 @@ class Counters:
 
 
 def counters_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Counters:
-    """The counters of a run, without the rows that an encoder does not accept.
+    """Counters of a run, without the rows that the encoder model rejects.
 
-    Parts of a run share them, being numbers for each row.
+    Parts of a run share one computation.
 
     Raises
     ------
     InputError
-        When fewer than two rows can be used, or the clock was set back.
+        If fewer than two rows are usable, or the clock was set back.
     """
     together = run.reference is not None and run.reference.stamped_together
     least = EVEN_LEAST_TOGETHER if together else EVEN_LEAST
@@ -148,13 +148,13 @@ def _told(
 def nodes_at(
     counters: Counters, at: Floats
 ) -> tuple[Floats, Floats, Floats, NDArray[np.intp], Mapping[str, Span[Floats]]]:
-    """Nodes at the counters' messages and at the times `at` (n, ascending).
+    """Nodes at the counters' messages and at the ascending times `at` (n,).
 
     Returns
     -------
     time, left, right, ends, channels
-        Of the nodes (k + 1,), the counts between them (k,) and (k,), the nodes of `at` (n,), and
-        what other channels measured at the start and end of each step.
+        Times of the nodes (k + 1,), counts between them (k,) and (k,), node indices of `at` (n,),
+        and values of the other channels at the start and end of each step.
     """
     kept = counters.nodes
     known, left, right = (part[kept] for part in (counters.time, counters.left, counters.right))
@@ -178,7 +178,7 @@ def nodes_at(
 
 
 def _with(values: Floats, new: Floats, here: NDArray[np.intp]) -> Floats:
-    """Values with new ones, which come to stand at the indices `here`."""
+    """Insert `new` into `values` so that they end up at the indices `here`."""
     whole = np.empty(values.size + new.size)
     old = np.ones(whole.size, dtype=np.bool_)
     old[here] = False
@@ -187,13 +187,13 @@ def _with(values: Floats, new: Floats, here: NDArray[np.intp]) -> Floats:
 
 
 def between_messages(time: Floats, known: Floats, *columns: Floats) -> Floats:
-    """Columns that are known at the instants `known` (k,), at any times (n,); shape (n, columns).
+    """Interpolate columns known at the instants `known` (k,) at times (n,); shape (n, columns).
 
-    Between two messages the wheels follow a monotone cubic: a straight line would cut the corners
-    of every start and stop, by a millimetre where a robot that brakes at 1 m/s² is read at 10 Hz,
-    while a smoother curve would swing beyond what was counted. Before the first message and after
-    the last the robot stands. Slopes at the messages are those of Fritsch and Butland (SIAM J. Sci.
-    Stat. Comput. 5, 1984), worked out where they are asked for alone.
+    Between messages the counts follow a monotone cubic. Linear interpolation would cut the corners
+    of every start and stop, by a millimetre for a robot that brakes at 1 m/s² and is read at 10 Hz;
+    a smoother curve would overshoot the counts. Before the first message and after the last the
+    robot stands. Slopes at the messages are those of Fritsch and Butland (SIAM J. Sci. Stat.
+    Comput. 5, 1984), computed only where needed.
     """
     within = np.clip(time, known[0], known[-1])
     before = np.clip(np.searchsorted(known, within, side="right") - 1, 0, known.size - 2)
@@ -237,7 +237,7 @@ def _slope(time: Floats, values: Floats, at: NDArray[np.intp]) -> Floats:
 
 
 def _at_edge(near: Floats, slope: Floats, other: Floats, other_slope: Floats) -> Floats:
-    """Slope at the first or the last knot: of a parabola, as long as that stays monotone."""
+    """Slope at the first or last knot: that of a parabola, limited to stay monotone."""
     found = ((2.0 * near + other) * slope - near * other_slope) / (near + other)
     found = np.where(np.sign(found) != np.sign(slope), 0.0, found)
     steep = (np.sign(slope) != np.sign(other_slope)) & (np.abs(found) > 3.0 * np.abs(slope))
@@ -245,5 +245,5 @@ def _at_edge(near: Floats, slope: Floats, other: Floats, other_slope: Floats) ->
 
 
 def summed(steps: Floats) -> Floats:
-    """Sums up to each node, zero at the first."""
+    """Cumulative sum with a leading zero."""
     return np.concatenate([[0.0], np.cumsum(steps)])

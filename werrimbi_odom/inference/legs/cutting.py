@@ -1,17 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where legs are cut: ticks and reference brought onto common nodes, and leg after leg of travel.
+"""Cutting runs into legs: ticks and reference on common nodes, one leg per unit of travel.
 
-A reference pose falls between two tick messages. The steps are split there, in counts, so that
+A reference pose falls between two tick messages. Steps are split there, in counts, so that
 splitting a step changes neither its motion nor its noise. Everything that is fitted later (radii,
-separation, effects, noise) acts on these counts, so this is done once for a run, and again only
-where the reference's clock is shifted.
+base, effects, noise) acts on these counts. So a run is split once, and again only when the
+reference's clock is shifted.
 
-No leg spans a stretch that is left out (the robot was held or carried, a gap of the reference or
-of the ticks). From the last leg
-that ends before it to where it ends there is one that is marked as a gap: fits and judgements skip
-it, and what goes on along a run (distance, wheel angle, the heading of positions alone) goes
-through it.
+No leg spans an excluded stretch (robot held or carried, gap in the reference or the ticks). The
+interval from the last leg before such a stretch to its end is marked as a gap: fits and judgements
+skip it, while state that accumulates along a run (distance, wheel angle, heading where only
+positions are measured) continues through it.
 """
 
 from __future__ import annotations
@@ -48,31 +47,31 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 ROUNDING = 1e-12
-"""Share of a drive, by which sums of its steps may be off."""
+"""Relative rounding error of sums over the steps of a drive."""
 
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """One run on one clock: counters, usable reference poses, what is left out; r poses."""
+    """A run on one clock: counters, r usable reference poses, excluded stretches."""
 
     name: str
     counters: Counters
     measured: Reference
     """Usable poses, shape (r,)."""
     gap: NDArray[np.bool_]
-    """Intervals between them that are left out, shape (r - 1,)."""
+    """Excluded intervals between poses, shape (r - 1,)."""
     left_out: tuple[LeftOut, ...]
     sigma_xy: float | None
-    """Noise of the reference's position as the record states it [m]."""
+    """Stated standard deviation of the reference's position [m]."""
     sigma_yaw: float | None
-    """Noise of the reference's heading as the record states it [rad]."""
+    """Stated standard deviation of the reference's heading [rad]."""
     happened: tuple[tuple[float, float], ...] = ()
     """See `Run.happened`."""
 
 
 @dataclass(frozen=True, slots=True)
 class MatchedRun:
-    """One run on common nodes: n steps, m legs."""
+    """A run on common nodes: n steps, m legs."""
 
     record: Record
     rows: NDArray[np.intp]
@@ -80,9 +79,9 @@ class MatchedRun:
     measured: Reference
     """These poses."""
     gap: NDArray[np.bool_]
-    """Legs that are none, for they hold something that is left out; shape (m,)."""
+    """Legs that are gaps, as they overlap an excluded stretch; shape (m,)."""
     delay: float
-    """What the reference stamps t is taken to have been seen at t - delay [s]."""
+    """Delay of the reference: what it stamps t was seen at t - delay [s]."""
     time: Floats
     """Stamps of the nodes, shape (n + 1,), [s]."""
     left: Floats
@@ -96,45 +95,45 @@ class MatchedRun:
 
     @property
     def name(self) -> str:
-        """Of the run."""
+        """Name of the run."""
         return self.record.name
 
     @property
     def counters(self) -> Counters:
-        """What the encoders counted."""
+        """Encoder counts."""
         return self.record.counters
 
     @property
     def sigma_xy(self) -> float | None:
-        """Noise of the reference's position as the record states it [m]."""
+        """Stated standard deviation of the reference's position [m]."""
         return self.record.sigma_xy
 
     @property
     def sigma_yaw(self) -> float | None:
-        """Noise of the reference's heading as the record states it [rad]."""
+        """Stated standard deviation of the reference's heading [rad]."""
         return self.record.sigma_yaw
 
     @property
     def intervals(self) -> Floats:
-        """Reference intervals in each leg, shape (m,): an incremental reference errs at each."""
+        """Reference intervals in each leg, shape (m,): each adds an incremental error."""
         return np.diff(self.rows).astype(np.float64)
 
     @property
     def stepped(self) -> NDArray[np.bool_]:
-        """Legs in which something happened at once, so that they may end anywhere; shape (m,)."""
+        """Legs with an abrupt event, whose end pose may therefore be anything; shape (m,)."""
         return touched(self.measured.time, self.record.happened)
 
     @property
     def legs(self) -> int:
-        """Number of legs, those that are marked as gaps among them."""
+        """Number of legs, including those marked as gaps."""
         return self.ends.size - 1
 
 
 def at_edges(runs: Sequence[MatchedRun]) -> tuple[NDArray[np.bool_], ...]:
-    """Legs of each run that a shifted clock would move out of the ticks' time; of few legs none.
+    """Legs of each run that a clock shift could move outside the ticks; all False if legs are few.
 
-    A record that begins or ends in motion knows nothing of the motion beyond, so such legs would
-    speak against a delay however true it is.
+    Beyond the ends of the record the motion is unknown. If it begins or ends in motion, these legs
+    would count against a delay even if that is true.
     """
     found = []
     for run in runs:
@@ -157,16 +156,18 @@ def match(
     Parameters
     ----------
     robot : Robot
-        Its travel decides where legs end; they stay there whatever is fitted later.
+        Robot whose travel decides where legs end; later fits do not move them.
     leg : float
-        Length of a leg [m]. A leg is at least one interval of the reference.
+        Length of a leg [m]. A leg spans at least one interval of the reference.
+    limits : EncoderLimits, optional
+        Limits of the encoder model.
     turn : float
-        Turning on the spot that makes a leg too [rad]; path and turning add up.
+        Turning on the spot that also makes a leg [rad]; path and turning add up.
 
     Raises
     ------
     InputError
-        When the run has no reference, or none while the ticks were recorded.
+        If the run has no reference, or none while ticks were recorded.
     """
     record = record_of(run, robot, limits, leg, turn)
     return divided(record, rows_of_legs(record, robot, leg, turn))
@@ -175,25 +176,25 @@ def match(
 def match_finely(
     runs: Sequence[Run], robot: Robot, leg: float, limits: EncoderLimits | None = None
 ) -> list[MatchedRun]:
-    """Runs in the short legs of a fit, `leg` [m] being the length that is judged by."""
+    """Cut runs into the short legs of a fit, given the leg length used for evaluation [m]."""
     records = (record_of(run, robot, limits, leg) for run in runs)
     return [cut_finely(record, robot, leg) for record in records]
 
 
 def cut_finely(record: Record, robot: Robot, leg: float) -> MatchedRun:
-    """One of them."""
+    """Cut one record into the short legs of a fit."""
     parts = 1.0 / PARTS_OF_A_LEG
     record = replace(record, counters=record.counters.at_most(RATE_OF_FIT))
     return divided(record, rows_of_legs(record, robot, parts * leg, parts * QUARTER_TURN))
 
 
 def every_pose(record: Record) -> MatchedRun:
-    """A run with a leg from each usable reference pose to the next."""
+    """Cut a record at every usable reference pose."""
     return divided(record, np.arange(record.measured.time.size))
 
 
 def divided(record: Record, rows: NDArray[np.intp]) -> MatchedRun:
-    """A run with a leg from each of some reference poses to the next."""
+    """Cut a record at the given reference poses."""
     measured = _poses(record.measured, rows)
     time, left, right, ends, channels = nodes_at(record.counters, measured.time)
     gap = _gaps_between(record, rows)
@@ -201,7 +202,7 @@ def divided(record: Record, rows: NDArray[np.intp]) -> MatchedRun:
 
 
 def joined(run: MatchedRun, rows: NDArray[np.intp]) -> MatchedRun:
-    """The same nodes with a leg from each of some of its poses to the next."""
+    """Merge legs: keep the nodes, with legs between the given poses only."""
     return replace(
         run,
         rows=rows,
@@ -212,7 +213,7 @@ def joined(run: MatchedRun, rows: NDArray[np.intp]) -> MatchedRun:
 
 
 def delayed(run: MatchedRun, delay: float) -> MatchedRun:
-    """The same legs, when the reference saw at t - `delay` [s] what it stamps t."""
+    """Same legs with a reference delay: what it stamps t was seen at t - `delay` [s]."""
     if delay == run.delay:
         return run
     counters = run.counters
@@ -224,9 +225,9 @@ def delayed(run: MatchedRun, delay: float) -> MatchedRun:
 
 
 def with_stated_noise(options: EvaluationOptions, runs: Sequence[MatchedRun]) -> EvaluationOptions:
-    """The reference's noise as it was given, else as the records state it, if all do.
+    """Fill in the reference's noise from the records, if not given and all records state it.
 
-    A localiser states how far it may be off in all, and not what it errs by from pose to pose.
+    The noise stated by a localiser is that of its absolute pose, not of its increments.
     """
     if options.reference_kind == "local_map":
         return options
@@ -249,12 +250,12 @@ def record_of(
     leg: float = 1.0,
     turn: float = QUARTER_TURN,
 ) -> Record:
-    """Ticks and reference on one clock, and what is left out of both.
+    """Put ticks and reference on one clock, and list the stretches to exclude.
 
     Parameters
     ----------
     leg, turn : float
-        What makes a leg [m, rad]; see `match`.
+        Travel that makes a leg [m, rad]; see `match`.
 
     Raises
     ------
@@ -292,7 +293,7 @@ def record_of(
 
 
 def _surely_around(part: LeftOut) -> tuple[float, float]:
-    """From when to when no leg goes: of what a hand does the ends are known to a window's half."""
+    """Stretch that no leg may touch, widened where its ends are only known to half a window."""
     unsure = NO_DRIVING_ENDS if part.why in ("held", "carried") else 0.0
     return part.begin - unsure, part.end + unsure
 
@@ -300,7 +301,7 @@ def _surely_around(part: LeftOut) -> tuple[float, float]:
 def _silences(
     run: Run, robot: Robot, counters: Counters, seen: Floats, leg: float, turn: float
 ) -> tuple[LeftOut, ...]:
-    """What is no driving, leaps of the ticks, and silences of them or of the reference."""
+    """Exclusions of a run: no driving, counter jumps, and gaps of ticks or reference."""
     way = counters.way(robot, leg, turn)
     parts = [("the reference is", seen, np.interp(seen, counters.time, way))]
     inside = (counters.time >= seen[0]) & (counters.time <= seen[-1])
@@ -339,19 +340,19 @@ def _driven(robot: Robot, counters: Counters, begin: float, end: float) -> str:
 def usable_rows(
     time: Floats, known: NDArray[np.bool_], first: float, last: float
 ) -> NDArray[np.intp]:
-    """Rows with something `known`, in the ticks' time, each later than the one before.
+    """Rows with a known value within the ticks' time span, in strictly ascending time.
 
     Parameters
     ----------
     time, known : ndarray, shape (r,)
-        When each row of a reference was seen [s], and whether it holds what is asked for.
+        Time of each row of a reference [s], and whether it holds the wanted value.
     first, last : float
-        Time of the first tick and of the last [s].
+        Time of the first and the last tick [s].
     """
     within = known & (time >= first) & (time <= last)
     if within.sum() < FEW_POSES:
-        # Where a robot was put down and where it was found, by tape: it stood a moment before the
-        # first tick and after the last.
+        # Few poses are start and end measured by tape: the robot stood still for a moment before
+        # the first tick and after the last.
         within = known & (time >= first - MOMENT) & (time <= last + MOMENT)
     rows = np.flatnonzero(within)
     if rows.size == 0:
@@ -369,14 +370,14 @@ def rows_of_legs(record: Record, robot: Robot, leg: float, turn: float) -> NDArr
 
 
 def leg_ends(way: Floats, gap: NDArray[np.bool_], leg: float = 1.0) -> NDArray[np.intp]:
-    """Rows at which legs begin and end: every time a leg's worth of way has gone by.
+    """Rows at which legs begin and end: whenever one leg's worth of travel has accumulated.
 
-    After a gap it begins anew, and what there is of a leg before it belongs to no leg.
+    After a gap the count restarts; an incomplete leg before it is dropped.
 
     Parameters
     ----------
     way : ndarray, shape (r,)
-        What was gone up to each row of the reference, in any unit.
+        Cumulative travel at each row of the reference, in any unit.
     gap : ndarray of bool, shape (r - 1,)
         Intervals that no leg may span.
     leg : float
@@ -387,7 +388,7 @@ def leg_ends(way: Floats, gap: NDArray[np.bool_], leg: float = 1.0) -> NDArray[n
     begins = np.concatenate([[0], np.flatnonzero(gap) + 1])
     stretch = np.concatenate([[0], np.cumsum(gap)])
     gone = gone - gone[begins][stretch]
-    done = np.floor(gone + rounding)  # whole legs so far: no list of them, were they a billion
+    done = np.floor(gone + rounding)  # whole legs so far; never a list of them, which could be huge
     new = (np.diff(done) > 0.0) & ~gap
     if new.any():
         return np.union1d(begins, np.flatnonzero(new) + 1)
@@ -400,7 +401,7 @@ def leg_ends(way: Floats, gap: NDArray[np.bool_], leg: float = 1.0) -> NDArray[n
 
 
 def legs_worth(path: float, turned: float, leg: float, turn: float) -> float:
-    """How many legs a way is: path and turning, whatever their sense, add up."""
+    """Travel in legs: path and absolute turning add up."""
     return path / leg + turned / turn
 
 
@@ -416,14 +417,14 @@ def _poses(reference: Reference, rows: NDArray[np.intp]) -> Reference:
     gyro = reference.gyro
     if gyro is not None:
         gyro = gyro._replace(turned=gyro.turned[rows])
-    if reference.own_axes:  # each match says how good it is; a localiser tells how far off in all
+    if reference.own_axes:  # stated per scan match; a localiser states its absolute error
         for sigma in (reference.sigma_xy, reference.sigma_yaw):
             columns.append(None if sigma is None else sigma[rows])
     return Reference(*columns, own_axes=reference.own_axes, gyro=gyro)
 
 
 def _typical(sigma: Floats | None) -> float | None:
-    """Root mean square of a stated noise, or None where there is none."""
+    """Root mean square of a stated noise; None if there is none."""
     if sigma is None or not np.isfinite(sigma).any():
         return None
     return float(np.sqrt(np.nanmean(np.square(sigma))))

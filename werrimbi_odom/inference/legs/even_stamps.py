@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Stamps that say when a message came, and not when counters were read, or a lidar turned.
+"""Restore stamps that tell when a message arrived, not when counters were read or a lidar turned.
 
-A driver reads its counters by a timer; over a serial line or radio the messages then come two at a
-time, or late. Wheels turn evenly from one reading to the next, so the counts tell which it was: if
-they lie on a line by the number of their message, and not by its stamp, the stamps are put right.
-A lidar turns as evenly as a timer: of its scans the path that they give tells the same.
+A driver reads its counters by a timer. Over a serial line or radio, messages then arrive in pairs
+or late. Wheels turn evenly between readings, so the counts show which stamp is right: if counts are
+linear in the message number rather than in the stamp, stamps are replaced by the timer's. A lidar
+turns as evenly as a timer, and the path from its scans shows the same.
 """
 
 from __future__ import annotations
@@ -39,7 +39,7 @@ def evened(
     lost: NDArray[np.intp] | None = None,
     least: float = EVEN_LEAST,
 ) -> Floats:
-    """When the counters were read, if a timer read them; else the stamps as they are.
+    """Estimate when a timer read the counters; return the stamps unchanged if no timer did.
 
     Parameters
     ----------
@@ -48,15 +48,14 @@ def evened(
     left, right : ndarray, shape (n,)
         Cumulative counts.
     lost : ndarray, shape (n - 1,), optional
-        How many messages are missing between two; none where not given.
+        Number of missing messages between neighbours; none by default.
     least : float
-        Share of the time between two messages that stamps must be off to be put right.
+        Stamps are corrected only if the correction exceeds this share of the message interval.
 
     Returns
     -------
     ndarray, shape (n,)
-        Ascending [s]. What all stamps are late by together stays in it: that is a delay, and found
-        as one.
+        Ascending times [s]. A delay common to all stamps remains; it is estimated as such.
     """
     if time.size < EVEN_MESSAGES or not (np.diff(time) >= 0.0).all():
         return time
@@ -68,15 +67,15 @@ def evened(
     if stamps.size <= EVEN_WINDOW or not _by_timer(stamps, number, left[first], right[first]):
         return time
     even, period = _numbered(stamps, number)
-    tenth = 0.1 * period * number  # none is read before the one before it
+    tenth = 0.1 * period * number  # keeps readings in order
     read = (np.maximum.accumulate(even - tenth) + tenth)[row]
     return np.asarray(read) if np.std(read - time) > least * period else time
 
 
 def stamped_together(run: Run) -> bool:
-    """Whether a reference's stamps are late when the wheels' are, as where one packet brings both.
+    """Whether stamps of reference and wheels are late together, as when one packet brings both.
 
-    Then each is late against the other by nothing, and wheels put right alone would err.
+    Their relative delay is then zero, and correcting the wheels alone would introduce an error.
     """
     time = run.ticks.time
     late = time - evened(time, run.ticks.left, run.ticks.right)
@@ -91,10 +90,10 @@ def stamped_together(run: Run) -> bool:
 
 
 def evened_scans(reference: Reference) -> Reference:
-    """The same, with scans where their lidar turned, if their path is even by number alone.
+    """Put scan stamps where the lidar turned, if the scan-matched path is even in the scan number.
 
-    Of any other reference nothing is known of a timer, and its stamps stay; so they do where a
-    gyro's headings were laid upon the scans, at the stamps that these had.
+    For any other reference no timer is known, and its stamps stay. They also stay where gyro
+    headings were combined with the scans at the original stamps.
     """
     seen = reference.has_position & reference.has_yaw
     if not reference.own_axes or reference.gyro is not None or not seen.all():
@@ -110,13 +109,13 @@ def evened_scans(reference: Reference) -> Reference:
     if time.size < EVEN_MESSAGES:
         return reference
     even = evened(time, left, right, _lost(time, left, right))
-    # Beyond that they are not numbered rightly: too many are missing.
+    # A larger correction means the numbering is wrong: too many scans are missing.
     late = float(np.std(even - time)) > EVEN_MOST * float(np.median(np.diff(time)))
     return reference if even is time or late else replace(reference, time=even)
 
 
 def _lost(time: Floats, left: Floats, right: Floats) -> NDArray[np.intp]:
-    """Scans that are missing: across the hole it goes as far as in several steps beside it."""
+    """Count missing scans: holes in which the robot moves several times a neighbouring step."""
     interval = np.diff(time)
     step = 0.5 * (np.abs(np.diff(left)) + np.abs(np.diff(right)))
     wide = np.pad(step, 2, mode="edge")
@@ -128,9 +127,9 @@ def _lost(time: Floats, left: Floats, right: Floats) -> NDArray[np.intp]:
 
 
 def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:
-    """Which rows are the one before once more, as where a slow counter is written with each scan.
+    """Rows that repeat the one before, as where a slow counter is written with each scan.
 
-    Of a robot that stands two readings are alike as well; so it is asked of one that drives.
+    Readings of a standing robot are equal as well, so the test only uses rows in motion.
     """
     together = np.append(False, np.diff(time) == 0.0)
     moved = np.append(False, (np.diff(left) != 0.0) | (np.diff(right) != 0.0))
@@ -141,21 +140,21 @@ def _told_again(time: Floats, left: Counts, right: Counts) -> NDArray[np.bool_]:
 
 
 def _numbered(stamps: Floats, number: Floats) -> tuple[Floats, float]:
-    """When messages that a timer sends were sent, by their numbers [s], and its period."""
+    """Send times of messages that a timer sends, from their numbers [s], and the timer's period."""
     apart = number[EVEN_WINDOW:] - number[:-EVEN_WINDOW]
     period = float(np.median((stamps[EVEN_WINDOW:] - stamps[:-EVEN_WINDOW]) / apart))
     even = period * number
-    late = median_filter(stamps - even, EVEN_WINDOW, mode="reflect")  # a pause is a step of it
+    late = median_filter(stamps - even, EVEN_WINDOW, mode="reflect")  # a pause is a step in it
     off = np.clip(stamps - even - late, -period, period)
     return even + late + uniform_filter1d(off, EVEN_WINDOW, mode="reflect"), period
 
 
 def _by_timer(time: Floats, number: Floats, left: Counts, right: Counts) -> bool:
-    """Whether counts lie where the number of their message has them, and not where its stamp has.
+    """Whether counts are linear in the message number, and not in the stamp.
 
-    How far a count is off the line of its neighbours by number, over how far it should be if its
-    stamp were right, is 1 where stamps are right and 0 where a timer read it (least squares). A
-    robot that speeds up puts counts off the line as well, but not as the stamps go.
+    The deviation of a count from linear interpolation by number is regressed on the deviation
+    predicted if its stamp were right. The slope is 1 if stamps are right and 0 if a timer read the
+    counters. Acceleration adds deviations too, but these are not correlated with the stamps.
     """
     by_stamp, by_number = _before(time), _before(number)
     off, told = [], []
@@ -163,7 +162,7 @@ def _by_timer(time: Floats, number: Floats, left: Counts, right: Counts) -> bool
         whole, half = counts[2:] - counts[:-2], counts[1:-1] - counts[:-2]
         size = np.abs(whole)
         usual = np.median(size[size > 0.0]) if (size > 0.0).any() else 0.0
-        turns = (size > 0.0) & (size < 20.0 * usual)  # and no counter that wraps or leaps
+        turns = (size > 0.0) & (size < 20.0 * usual)  # excludes wraps and jumps of a counter
         turns &= np.isfinite(half)
         off.append((half - by_number * whole)[turns])
         told.append(((by_stamp - by_number) * whole)[turns])
@@ -177,7 +176,7 @@ def _by_timer(time: Floats, number: Floats, left: Counts, right: Counts) -> bool
 
 
 def _before(place: Floats) -> Floats:
-    """Of the way from each one's neighbour before it to that after it, the share up to it."""
+    """Share of the interval between both neighbours that lies before each element."""
     step = np.diff(place)
     both = step[:-1] + step[1:]
     share = np.full(both.size, 0.5)

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Stretches of a recording that no leg may span: where reference or ticks fell silent on the way.
+"""Gaps: stretches in which reference or ticks are silent while the robot moves. No leg spans one.
 
-A tracker that lost the robot, a bag that lost messages: over such a stretch a leg would be longer
-than it is said to be, and its error no jump of the reference, but that of a longer way.
+Causes are a tracker that lost the robot, or a bag that lost messages. A leg over such a stretch
+would be longer than it is said to be, and its error would look like a jump of the reference.
 """
 
 from __future__ import annotations
@@ -22,46 +22,46 @@ from werrimbi_odom.model.pose import Floats
 
 @dataclass(frozen=True, slots=True)
 class LeftOut:
-    """A stretch of a run that is no part of any comparison or fit."""
+    """A stretch of a run that is excluded from comparisons and fits."""
 
     run: Path
-    """As it was given."""
+    """Path as given by the user."""
     begin: float
-    """In the run's own clock [s]."""
+    """Time in the run's own clock [s]."""
     end: float
     why: Why
     words: str
-    """What happened then, as the end of a sentence: the reference is silent ..."""
+    """What happened, as a sentence without its end mark: the reference is silent ..."""
     started: float = 0.0
-    """First tick of the run [s]: what is told of one that is stamped by the time of day is told
-    from there."""
+    """First tick of the run [s]; reported times are relative to it where stamps are times of
+    day."""
 
 
 def are_gaps(
     duration: Floats, way: Floats, usual_duration: float, usual_way: float
 ) -> NDArray[np.bool_]:
-    """Which of some intervals are gaps.
+    """Classify intervals as gaps.
 
     Parameters
     ----------
     duration, usual_duration
-        Of the intervals, and of most in which there is travel [s].
+        Durations of the intervals, and the usual duration of those with travel [s].
     way, usual_way
-        What was gone in them, and in most of those, in legs.
+        Travel in the intervals, and the usual travel of those with any, in legs.
     """
     long = (duration > GAP_INTERVALS * usual_duration) & (way > GAP_WAYS * usual_way)
     return np.asarray(long & (way >= GAP_LEG))
 
 
 def gaps_in(time: Floats, way: Floats) -> NDArray[np.bool_]:
-    """Which intervals are gaps, shape (n - 1,).
+    """Find which intervals are gaps, shape (n - 1,).
 
     Parameters
     ----------
     time : ndarray, shape (n,)
         Stamps [s].
     way : ndarray, shape (n,)
-        What was gone up to each, in legs.
+        Cumulative travel at each stamp, in legs.
     """
     duration, gone = np.diff(time), np.diff(way)
     moving = gone > 0.0
@@ -72,7 +72,7 @@ def gaps_in(time: Floats, way: Floats) -> NDArray[np.bool_]:
 
 
 def touched(time: Floats, stretches: Sequence[tuple[float, float]]) -> NDArray[np.bool_]:
-    """Which intervals between stamps (n,) share more than an instant with a stretch, (n - 1,)."""
+    """Intervals between stamps (n,) that overlap a stretch by more than an instant, (n - 1,)."""
     found = np.zeros(max(time.size - 1, 0), dtype=np.bool_)
     for begin, end in stretches:
         first = max(int(np.searchsorted(time, begin, side="right")) - 1, 0)

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Counters that leap: to somewhere and back (a message that was read wrongly), or for good.
+"""Counter jumps: outliers that return (a corrupted message), and permanent steps.
 
-An encoder model takes any step for motion but a fall to zero, unless it is told how fast a wheel
-can be. A record shows that by itself: what a wheel does for some intervals it can do.
+An encoder model takes any step but a fall to zero for motion, unless it knows the wheel's top
+speed. The record itself shows it: a speed that a wheel keeps for several intervals is possible.
 """
 
 from __future__ import annotations
@@ -24,36 +24,35 @@ from werrimbi_odom.model.pose import Floats
 
 
 class Leap(NamedTuple):
-    """Steps of a record in which a counter leapt."""
+    """Steps of a record in which a counter jumped."""
 
     first: int
     last: int
-    """Its steps, the last one among them."""
+    """Its last step, inclusive."""
     turns: float
-    """The largest of them, in turns of the wheel."""
+    """Largest of these steps, in turns of the wheel."""
     left: bool
-    """Whether it was the left wheel's."""
+    """Whether the left wheel jumped."""
     back: bool
     """Whether the counter came back."""
 
 
 class Bridged(NamedTuple):
-    """Steps without leaps; n steps, of which some may be joined."""
+    """Steps with jumps removed; n steps, some of which may be merged."""
 
     kept: NDArray[np.bool_]
-    """Steps at whose ends there is still a reading, shape (n,)."""
+    """Steps that still end at a reading, shape (n,)."""
     left: Floats
-    """Travel in turns, of a step and of those before it that are not kept, shape (n,)."""
+    """Travel in turns of a step and the dropped steps before it, shape (n,)."""
     right: Floats
     leaps: tuple[Leap, ...]
 
 
 def bridged(time: Floats, left: Floats, right: Floats) -> Bridged:
-    """Steps of a record, leaps taken out.
+    """Remove jumps from the steps of a record.
 
-    A counter that came back has counted all the while: its readings in between are left out.
-    One that did not has lost what it should have counted: the wheel is taken to have gone on as
-    before and after.
+    A counter that came back kept counting: only the readings in between are dropped. One that did
+    not has lost its counts: the wheel is assumed to have moved as before and after.
 
     Parameters
     ----------
@@ -81,7 +80,7 @@ def bridged(time: Floats, left: Floats, right: Floats) -> Bridged:
 
 
 def leaps_in(time: Floats, left: Floats, right: Floats) -> tuple[Leap, ...]:
-    """Where counters leapt; see `bridged`."""
+    """Find where counters jumped; see `bridged`."""
     lasted = np.diff(time)
     turns = np.maximum(np.abs(left), np.abs(right))
     moving = turns > 0.0
@@ -98,7 +97,7 @@ def leaps_in(time: Floats, left: Floats, right: Floats) -> tuple[Leap, ...]:
     found = []
     for group in groups:
         if group.size > LEAP_LASTS:
-            continue  # a wheel that is so fast for so long is fast
+            continue  # a speed that lasts this long is real
         first, last = int(group[0]), int(group[-1])
         of_left = np.abs(left[group]).max() >= np.abs(right[group]).max()
         reach = fastest * float(lasted[group].sum())

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What of a drive is no driving: wheels that turn while the robot is held, or stand while it moves.
+"""Stretches without normal driving: wheels turn while the robot is held, or it moves without them.
 
-Told by wheels and reference alone, by how they go together in most of the drive (`agreement`): no
-robot file, right or wrong, makes a stretch of no driving, nor hides one.
+They are found from wheels and reference alone, as outliers of the relation that most of the drive
+follows (`agreement`). So no robot file, right or wrong, can create or hide such a stretch.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ from werrimbi_odom.model.encoder import EncoderLimits
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
-_GRID = 0.1  # on which held and carried are told apart [s]
+_GRID = 0.1  # grid on which held and carried are told apart [s]
 
 HELD = "the wheels turned and the robot did not: held, or against a wall"
 CARRIED = "the robot moved and its wheels did not: carried, or pushed"
@@ -63,33 +63,33 @@ BY_HAND = "the robot moved otherwise than its wheels: lifted, or turned by hand"
 
 @dataclass(frozen=True, slots=True)
 class _Seen:
-    """One thing that the reference measures, against the wheels; k windows."""
+    """One quantity measured by the reference, compared with the wheels; k windows."""
 
     agreement: Agreement
     beyond: Floats
-    """How far what is measured is off, in units of what is too far; (k,)."""
+    """Deviation of the measurement over its threshold; (k,)."""
     edge: NDArray[np.bool_]
-    """Windows that belong to what is beyond beside them, (k,)."""
+    """Windows that are outliers if next to one above the threshold, (k,)."""
     speaks: NDArray[np.bool_]
-    """Windows in which wheels and robot are seen to move together, (k,)."""
+    """Windows in which wheels and robot clearly move together, (k,)."""
     enough: float
-    """Turn [rad] or way [m] that must be in doubt."""
+    """Least total turn [rad] or path [m] that a stretch must put in doubt."""
 
     @property
     def time(self) -> Floats:
-        """Middles of the windows [s]."""
+        """Midpoints of the windows [s]."""
         return self.agreement.windows.time
 
     def at(self, values: Floats, time: Floats) -> Floats:
-        """Values of the windows at some times."""
+        """Interpolate values of the windows at some times."""
         known = np.isfinite(values)
         return np.interp(time, self.time[known], values[known])
 
 
 def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Run:
-    """The run with what of it is no driving, looked for once: parts of it keep what was found.
+    """Attach to a run its stretches without driving, found once and kept by its parts.
 
-    Before, scans are put where their lidar turned (`even_stamps`).
+    Scan stamps are corrected first (`even_stamps`).
     """
     if run.no_driving is not None or run.reference is None:
         return run
@@ -98,12 +98,12 @@ def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Ru
     try:
         counters = counters_of(run, robot, limits)
     except InputError:
-        return run  # whoever cuts it into legs says why
+        return run  # cutting into legs raises the error
     return replace(run, no_driving=no_driving(counters, seen, robot))
 
 
 def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[NoDriving, ...]:
-    """Stretches in which the robot was held or carried, in their order."""
+    """Find stretches in which the robot was held or carried, in order."""
     seen: list[_Seen] = []
     turns = windows_of(counters, reference, robot, ways=False)
     by_turns = None if turns is None else turns_agree(turns, robot.track)
@@ -119,7 +119,7 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
     found = sorted(_reaching(stretch, seen) for each in seen for stretch in _stretches(each))
     parts = [part for each in _joined(found, seen) for part in _by_kind(*each, seen)]
     parts = _with_rests(parts, counters, robot)
-    if turns is not None and by_turns is None:  # to and fro on a line, and carried in between
+    if turns is not None and by_turns is None:  # to and fro on a line, carried in between
         by_hand = _turned_by_hand(turns, robot.track)
         alone = (
             one
@@ -133,12 +133,12 @@ def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[
 
 
 def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> _Seen:
-    """What is too far off to be driving, and what no clock that wanders explains.
+    """Flag windows whose deviation neither driving nor clock jitter explains.
 
     Parameters
     ----------
     slowest : float
-        Turn or way in a window, below which nothing is said to move.
+        Turn or path per window below which nothing counts as moving.
     """
     found = _standing(found)
     windows, expected, gross = found.windows, found.expected, found.gross
@@ -151,10 +151,10 @@ def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> 
     rough = NO_DRIVING_ROUGH * float(np.median(found.off[keeps] / gross[keeps]))
     least = max(NO_DRIVING_NOISE * noise, slowest)
     beyond = off / np.maximum(max(NO_DRIVING_OFF, rough) * maximum_filter1d(gross, reach), least)
-    if turns:  # of a way even a gentle one is most of what both wheels could do
+    if turns:  # a gentle path is already most of what both wheels could do
         beyond = np.where(_stopped(found, low, high, least), np.maximum(beyond, 1.01), beyond)
-    # Noise must not make a stretch longer: where it hardly moves, a place wanders in two
-    # coordinates, on the way along it in one (medians, by sigma); and it seldom halves what is.
+    # Noise must not lengthen a stretch. At rest, position noise acts in two coordinates, in motion
+    # in one along the path (medians, by sigma); and it seldom halves a true displacement.
     at_rest = 1.0 if turns else np.sqrt(2.0 * np.log(2.0)) * MEDIAN_TO_SIGMA
     halved = np.abs(windows.measured) < 0.5 * np.abs(expected)
     unsure = least * np.where(halved, 0.5, np.where(np.abs(expected) > least, 1.0, at_rest))
@@ -164,10 +164,10 @@ def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> 
 
 
 def _standing(found: Agreement) -> Agreement:
-    """The same, of a robot whose wheels stand nothing being expected, or what their creeping makes.
+    """Set the prediction to zero, or to what the wheels' creep gives, where wheels stand.
 
-    A law that is learnt from straight driving says anything of a turn, and a driver that reads
-    speeds has its wheels creep while they stand; but a robot may also spin as slowly.
+    A law fitted to straight driving predicts arbitrary turns, and a driver that integrates speeds
+    lets the wheels creep at rest. But a robot may also spin that slowly.
     """
     windows = found.windows
     expected, gross = (
@@ -179,14 +179,14 @@ def _standing(found: Agreement) -> Agreement:
 
 
 def _stopped(found: Agreement, low: Floats, high: Floats, least: float) -> NDArray[np.bool_]:
-    """Windows of those in a row in which the robot should move, clearly, and does nothing; (k,).
+    """Windows in a row in which the robot should clearly move and does not; (k,).
 
     Parameters
     ----------
-    low, high
-        Of what is expected of a window and those beside it, (k,).
+    low, high : ndarray, shape (k,)
+        Range of the prediction over a window and its neighbours.
     least : float
-        What is clear.
+        Threshold for clear motion.
     """
     windows = found.windows
     expected = np.where(low * high > 0.0, np.minimum(np.abs(low), np.abs(high)), 0.0)
@@ -199,7 +199,7 @@ def _stopped(found: Agreement, low: Floats, high: Floats, least: float) -> NDArr
 
 
 def _turned_by_hand(windows: Windows, track: float) -> list[NoDriving]:
-    """Where the robot turns as no wheels can, in a drive that says nothing else of turns."""
+    """Stretches with turns that the wheels cannot produce, where the drive fits no law of turns."""
     slowest = NO_DRIVING_TURNS * windows.steps * windows.step
     could = (np.abs(windows.left) + np.abs(windows.right)) / track
     stands = windows.rolled <= windows.still
@@ -215,7 +215,7 @@ def _turned_by_hand(windows: Windows, track: float) -> list[NoDriving]:
         begin, end = float(windows.time[first]) - half, float(windows.time[last]) + half
         by_hand = CARRIED if stands[inside].mean() > 0.5 else BY_HAND
         if by_hand == BY_HAND and last_of_all - end <= NO_DRIVING_SILENT:
-            end = last_of_all  # who lifts a robot does not put it down to drive for a moment
+            end = last_of_all  # a lifted robot is not put down to drive for just a moment
         if found and begin - found[-1].end <= NO_DRIVING_JOINED:
             begin = found.pop().begin
         found.append(NoDriving(begin, end, "carried", by_hand))
@@ -223,12 +223,12 @@ def _turned_by_hand(windows: Windows, track: float) -> list[NoDriving]:
 
 
 def _stretches(seen: _Seen) -> list[tuple[float, float]]:
-    """Where it is beyond all driving for long enough, from and to [s]."""
+    """Stretches [s] whose deviation stays above what driving explains for long enough."""
     windows, off = seen.agreement.windows, seen.agreement.off
     more = np.abs(windows.measured) > np.abs(seen.agreement.expected)
     surely = seen.beyond > 1.0
     found = []
-    # A hand that slows a robot down does not do so evenly: what is off in between belongs to it.
+    # A hand slows a robot unevenly: smaller deviations in between belong to the stretch.
     for begin, end in _runs_of(surely | seen.edge):
         rows = begin + np.flatnonzero(surely[begin : end + 1])
         if rows.size < max(NO_DRIVING_FEWEST_FIRM, windows.steps + 1):
@@ -238,13 +238,14 @@ def _stretches(seen: _Seen) -> list[tuple[float, float]]:
         doubted = float(off[inside].sum()) / windows.steps
         could = float(seen.agreement.gross[inside].sum()) / windows.steps
         moved_more = more[inside].mean() > 0.5
-        # A lost track or a failed match leaps from one pose to the next: for a window, no longer.
+        # A lost track or failed match jumps from one pose to the next, for one window and no
+        # longer.
         leaps = moved_more and (
             last + 1 - first < 2 * windows.steps
             or float(off[inside].max()) > NO_DRIVING_AT_ONCE * doubted
         )
         short = rows.size < max(NO_DRIVING_FEWEST, windows.steps + NO_DRIVING_MORE)
-        if windows.without_leaps:  # a moment is enough for who sets it elsewhere, or stops it
+        if windows.without_leaps:  # then a short displacement or stop is real
             surely_so = doubted >= (NO_DRIVING_QUICK if moved_more else NO_DRIVING_FIRM) * could
             leaps, short = leaps and not surely_so, short and not surely_so
         if leaps or short or doubted < seen.enough:
@@ -254,9 +255,9 @@ def _stretches(seen: _Seen) -> list[tuple[float, float]]:
 
 
 def _reaching(stretch: tuple[float, float], seen: Sequence[_Seen]) -> tuple[float, float]:
-    """A stretch with the windows at its ends that are off too, whatever they measure.
+    """Extend a stretch by the adjacent outlier windows, of any measured quantity.
 
-    A robot that is turned while its wheels begin to turn is right for a moment, by chance.
+    A robot turned by hand while its wheels begin to turn can match them for a moment by chance.
     """
     off = np.sort(np.concatenate([each.time[each.edge] for each in seen]))
     apart = np.diff(off) > NO_DRIVING_WINDOW
@@ -270,7 +271,7 @@ def _reaching(stretch: tuple[float, float], seen: Sequence[_Seen]) -> tuple[floa
 def _joined(
     found: Sequence[tuple[float, float]], seen: Sequence[_Seen]
 ) -> list[tuple[float, float]]:
-    """Stretches with nothing between them, nor to the drive's ends, that speaks for driving."""
+    """Merge stretches, and with the ends of the drive, unless driving is seen between."""
     if not found:
         return []
     half = max(0.5 * each.agreement.windows.steps * each.agreement.windows.step for each in seen)
@@ -297,7 +298,7 @@ def _joined(
 
 
 def _by_kind(begin: float, end: float, seen: Sequence[_Seen]) -> list[NoDriving]:
-    """A stretch by what happened in it: held, carried, or one after the other."""
+    """Split a stretch by what happened in it: held, carried, or one after the other."""
     grid = np.linspace(begin, end, max(2, round((end - begin) / _GRID)))
     shares = np.stack([each.at(each.beyond, grid) for each in seen])
     which = np.argmax(shares, axis=0)
@@ -312,10 +313,10 @@ def _by_kind(begin: float, end: float, seen: Sequence[_Seen]) -> list[NoDriving]
     moved = (measured > expected).astype(np.float64)
     window = 2 * round(0.5 * NO_DRIVING_SPLIT / _GRID) + 1
     moved = median_filter(moved, window, mode="nearest")
-    if end - begin < NO_DRIVING_SPLIT:  # of one kind, by what is furthest off
+    if end - begin < NO_DRIVING_SPLIT:  # too short to split: one kind, by the weighted majority
         weight = shares.max(axis=0)
         moved[:] = float(np.average(measured > expected, weights=weight) > 0.5)
-    # Parts that are shorter belong to the longest: a hand is there a moment sooner or later.
+    # Short parts take the kind of the longest: a hand comes or goes a moment sooner or later.
     runs = [*_runs_of(moved > 0.5), *_runs_of(moved < 0.5)]
     longest = max(runs, key=lambda run: run[1] - run[0])
     for first, last in runs:
@@ -327,7 +328,7 @@ def _by_kind(begin: float, end: float, seen: Sequence[_Seen]) -> list[NoDriving]
     lag = seen[0].agreement.lag
     parts = []
     for one, other in itertools.pairwise(edges):
-        # The reference saw it later than the wheels turned: both are left out.
+        # The reference saw it later than the wheels turned; both times are excluded.
         span = (
             begin + min(lag, 0.0) if one == 0 else float(grid[one]),
             end + max(lag, 0.0) if other == grid.size else float(grid[other]),
@@ -341,7 +342,7 @@ def _by_kind(begin: float, end: float, seen: Sequence[_Seen]) -> list[NoDriving]
 
 
 def _with_rests(parts: Sequence[NoDriving], counters: Counters, robot: Robot) -> list[NoDriving]:
-    """Carries with the rest of the wheels about them: their motion begins and ends gently."""
+    """Extend carries over the adjacent rest of the wheels: the motion begins and ends gently."""
     travel = np.stack([counters.left * robot.left_tick, counters.right * robot.right_tick])
 
     def further(at: float, side: float, least: float) -> float:
@@ -361,10 +362,9 @@ def _with_rests(parts: Sequence[NoDriving], counters: Counters, robot: Robot) ->
 
 
 def _with_what_follows(parts: Sequence[NoDriving], counters: Counters) -> list[NoDriving]:
-    """Where positions alone were measured: all but the longest drive between stretches.
+    """Exclude all but the longest drive between stretches, where only positions are measured.
 
-    How the robot stood after it was held or carried, nobody says, and the drives between have to be
-    one.
+    The heading after the robot was held or carried is unknown, and only one drive can be used.
     """
     drives = list(
         zip(
@@ -382,7 +382,7 @@ def _with_what_follows(parts: Sequence[NoDriving], counters: Counters) -> list[N
 
 
 def _runs_of(mask: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First and last index of each run of true ones."""
+    """First and last index of each run of True values."""
     steps = np.diff(np.concatenate([[0], mask.astype(np.int8), [0]]))
     return list(
         zip(

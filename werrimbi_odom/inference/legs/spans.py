@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a robot did when: stood, drove, was held, was carried."""
+"""States of a robot over time: standing, driving, held, carried."""
 
 from __future__ import annotations
 
@@ -22,28 +22,28 @@ What = Literal["stood", "drove", "held", "carried"]
 
 
 class Span(NamedTuple):
-    """A stretch of a drive."""
+    """A stretch of a drive in one state."""
 
     begin: float
-    """In the run's own clock [s]."""
+    """Time in the run's own clock [s]."""
     end: float
     what: What
 
 
 class Driven(NamedTuple):
-    """How much was driven in all, what is no driving apart."""
+    """Total driving, without held and carried stretches."""
 
     spans: tuple[Span, ...]
     way: float
-    """By the wheels [m]."""
+    """Path by the wheels [m]."""
     turned: float
-    """By the wheels, whatever the sense [rad]."""
+    """Absolute turning by the wheels [rad]."""
     reversals: int
     """Changes between forwards and backwards."""
 
 
 def driven(counters: Counters, robot: Robot, no_driving: tuple[NoDriving, ...]) -> Driven:
-    """What a robot did when, by its wheels and by what is known to be no driving."""
+    """Segment a drive into states, by its wheels and the known stretches without driving."""
     first, last = float(counters.time[0]), float(counters.time[-1])
     grid = np.append(np.arange(first, last, _GRID), last)
     counted = wiring_of(robot.effects).wheels(*np.diff(counters.at(grid), axis=0).T)
@@ -74,5 +74,5 @@ def driven(counters: Counters, robot: Robot, no_driving: tuple[NoDriving, ...]) 
 
 
 def _changes(state: NDArray[Any]) -> list[int]:
-    """Where another state begins, the first and the end among them."""
+    """Indices at which the state changes, including the first and the end."""
     return [0, *(np.flatnonzero(state[1:] != state[:-1]) + 1).tolist(), state.size]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A drive in windows of time: what the wheels went in each, and what the reference saw."""
+"""A drive in time windows: wheel travel and reference motion in each."""
 
 from __future__ import annotations
 
@@ -28,41 +28,41 @@ from werrimbi_odom.inference.rules import (
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
 
-_GRID = 0.1  # where messages come as often [s]
-_WINDOWS = 1500  # of a long drive, from which is learnt
-_STILL = 0.1  # share of what is standing, in which not even a motor stirs
+_GRID = 0.1  # grid step, where messages come as often [s]
+_WINDOWS = 1500  # windows used for fitting, from a long drive
+_STILL = 0.1  # share of the standing limit within which not even the motors stir
 
 
 @dataclass(frozen=True, slots=True)
 class Windows:
-    """Windows of time, each begun a step of the grid after the one before; k of them."""
+    """Overlapping time windows, each one grid step after the one before; k of them."""
 
     step: float
-    """Of the grid [s]."""
+    """Grid step [s]."""
     steps: int
-    """Of the grid in a window."""
+    """Grid steps in a window."""
     time: Floats
-    """Middles of the windows, (k,) [s]."""
+    """Midpoints of the windows, (k,) [s]."""
     left: Floats
-    """Travel of what the robot file takes for the left wheel, (k,) [m]."""
+    """Travel of the left wheel according to the robot file, (k,) [m]."""
     right: Floats
     rolled: Floats
-    """Mean way of both wheels, whatever their sense, (k,) [m]."""
+    """Mean absolute travel of both wheels, (k,) [m]."""
     measured: Floats
-    """Turn [rad], or displacement [m]; NaN where nobody looked; (k,)."""
+    """Turn [rad] or displacement [m]; NaN where the reference is silent; (k,)."""
     chord: Floats
-    """Of the arc that is driven in each, over its length; (k,)."""
+    """Ratio of chord to arc length in each, (k,)."""
     without_leaps: bool = False
-    """Whether steps of the reference from one pose to the next are taken out of what is measured:
-    what is left takes several."""
+    """Whether jumps between successive reference poses are removed from the measurement, so that
+    what is left takes several steps."""
 
     @property
     def still(self) -> float:
-        """Way of the wheels in a window, below which they stand [m]."""
+        """Wheel travel per window below which the wheels stand [m]."""
         return standing_below(self.rolled)
 
     def later(self, lag: float) -> Windows:
-        """The same, when the reference is later than the wheels by `lag` [s]."""
+        """Shift the reference, which is later than the wheels by `lag` [s]."""
         shift = round(lag / self.step)
         if shift == 0:
             return self
@@ -74,25 +74,25 @@ class Windows:
         return replace(self, measured=moved)
 
     def some(self, rows: NDArray[np.intp]) -> Windows:
-        """A few of them."""
+        """Select windows."""
         names = ("time", "left", "right", "rolled", "measured", "chord")
         return replace(self, **{name: getattr(self, name)[rows] for name in names})
 
     def rolling(self) -> Windows:
-        """Those in which wheels turn and the reference is seen, of a long drive some."""
+        """Windows with turning wheels and a reference; a subset of them for a long drive."""
         rows = np.flatnonzero((self.rolled > self.still) & np.isfinite(self.measured))
         return self.some(rows[:: max(1, rows.size // _WINDOWS)])
 
     def at_rest(self) -> Floats:
-        """What is measured while the wheels stand."""
+        """Measurements while the wheels stand."""
         return self.measured[(self.rolled <= _STILL * self.still) & np.isfinite(self.measured)]
 
 
 def standing_below(rolled: Floats) -> float:
-    """Way of the wheels in equal times [m], below which they stand.
+    """Wheel travel in equal times below which the wheels stand [m].
 
-    A share of the usual way of those that roll, and not of those that tremble: angles that are
-    worked out do in their last digits, for as long as a robot waits.
+    It is a share of the usual travel of rolling wheels, not of trembling ones: computed wheel
+    angles jitter in their last digits while a robot waits.
     """
     ordered = np.sort(rolled[rolled > 0.0])
     if not ordered.size:
@@ -105,7 +105,7 @@ def standing_below(rolled: Floats) -> float:
 def windows_of(
     counters: Counters, reference: Reference, robot: Robot, *, ways: bool
 ) -> Windows | None:
-    """Turns or displacements in windows of time; None where the record is too sparse for them."""
+    """Turns or displacements in time windows; None where the record is too sparse."""
     known = reference.has_position if ways else reference.has_yaw
     time = reference.time[known]
     if time.size < NO_DRIVING_POSES:
@@ -154,10 +154,10 @@ def windows_of(
 
 
 def _without_leaps(seen: NDArray[np.complex128], by_wheels: Floats) -> NDArray[np.complex128]:
-    """Steps of a reference from pose to pose, leaps (a localiser that found itself) taken out.
+    """Remove jumps (a localiser that relocalised) from the steps between reference poses.
 
-    A leap is one step beyond all scatter, beyond those about it, and beyond what wheels did then.
-    Whoever moves a robot by hand takes longer than a step or three.
+    A jump is a single step that exceeds the noise, its neighbours and the wheels' motion. Moving a
+    robot by hand takes longer than one to three steps.
     """
     reach = 2 * JUMP_NEIGHBOURS + 1
     usual = median_filter(seen.real, reach) + 1j * median_filter(seen.imag, reach)

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A clock that is off by seconds: the lag at which wheels and reference have most in common.
+"""Clock offset of seconds between wheels and reference, by cross-correlation.
 
-No derivative finds it: a turn that is over before the reference begins it has nothing in common
-with it. The turn rate is compared as a linear function of both wheels' speeds, the squared speed as
-a quadratic one, so neither wiring nor scale of the robot file matter. Both over half a second:
-where one driver reads wheels and sensor in one loop, the stamps of both wander together, and what
-they have in common from one reading to the next is their lateness and not the robot's motion.
+A fit cannot find it: if a turn ends before the reference starts it, the derivative is zero. The
+turn rate is regressed on both wheels' speeds, the squared speed on their products, so neither
+wiring nor scale of the robot file matter. Both are taken over half a second. Where one driver reads
+wheels and sensor in one loop, their stamps jitter together, and at shorter times the correlation
+would be that of the jitter and not of the motion.
 """
 
 from __future__ import annotations
@@ -40,12 +40,14 @@ _STEPS = round(DELAY_WINDOW / _PERIOD)
 
 
 def lag_of(records: Sequence[Record]) -> tuple[float, float]:
-    """By how much the reference is late [s], and how many times more it leaves unexplained at none.
+    """Estimate the delay of the reference [s], and the gain in unexplained variance over no delay.
 
     Returns
     -------
-    (lag, gain)
-        (0, 1) where no other lag is clearly better.
+    lag : float
+        Delay [s]; 0 where none is clearly better.
+    gain : float
+        Ratio of the unexplained variance without delay to that with it; 1 for no delay.
     """
     most = round(DELAY_LONGEST / _PERIOD)
     sums = [_Sums(width, most) for width in (2, 3)]
@@ -83,7 +85,7 @@ def lag_of(records: Sequence[Record]) -> tuple[float, float]:
 
 
 class _Sums:
-    """Correlations of all runs together, at every lag."""
+    """Cross-correlations accumulated over all runs, at every lag."""
 
     def __init__(self, width: int, most: int) -> None:
         self.most = most
@@ -93,7 +95,7 @@ class _Sums:
         self.cross = np.zeros((width, 2 * most + 1))
 
     def add(self, wheels: Floats, measured: Floats) -> None:
-        """One run: (p, n) of the wheels, (n,) measured on the same grid, NaN where nothing was."""
+        """Add a run: (p, n) of the wheels, (n,) measured on the same grid, NaN where unmeasured."""
         known = np.isfinite(measured)
         if known.sum() < DELAY_SPANS * self.most:
             return
@@ -112,7 +114,7 @@ class _Sums:
             self.cross[row] += np.concatenate([both[-self.most :], both[: self.most + 1]])
 
     def unexplained(self) -> Floats:
-        """Share of the variance at each lag."""
+        """Unexplained share of the variance at each lag."""
         solved = np.linalg.lstsq(self.gram, self.cross, rcond=1e-9)[0]
         explained = np.sum(self.cross * solved, axis=0) / self.square
         return np.asarray(np.clip(1.0 - explained, DELAY_UNEXPLAINED, 1.0))
@@ -137,18 +139,18 @@ def _squared_steps(record: Record, grid: Floats) -> Floats | None:
 
 
 def _over(values: NDArray[_Numbers]) -> NDArray[_Numbers]:
-    """What comes to pass in each window, begun a step of the grid after the one before."""
+    """Change over each window; windows start one grid step apart."""
     return np.asarray(values[_STEPS:] - values[:-_STEPS])
 
 
 def _in_any(steps: NDArray[np.bool_]) -> NDArray[np.bool_]:
-    """Windows that hold any of some steps of the grid."""
+    """Windows that contain any of the given grid steps."""
     held = np.convolve(steps, np.ones(_STEPS), "valid")
     return np.asarray(held > 0.5)
 
 
 def _tamed(values: Floats) -> Floats:
-    """Outliers (a failed match) drawn in."""
+    """Winsorise outliers (failed matches)."""
     size = np.abs(values[np.isfinite(values)])
     if size.size == 0:
         return values

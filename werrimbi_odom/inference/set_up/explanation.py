@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""From fitted numbers to the simplest set-up that makes them.
+"""The simplest set-up that explains the fitted parameters.
 
-Signs of both wheels and the angle of the mount have several explanations each time, equal by
-algebra: exchanged wheels turn the robot the wrong way and drive it stern first, so they are both
-wheels reversed and a reference turned by 180 degrees; before a mirrored reference the roles are
-exchanged once more. The fewest mistakes and the smallest angle win; the others are twins.
+Signs of both wheels and the mounting angle always have several algebraically equivalent
+explanations. Exchanged wheels turn the robot the wrong way and drive it backwards, so they equal
+both wheels reversed with a reference turned by 180 degrees; with a mirrored reference the roles are
+exchanged once more. The fewest mistakes and the smallest angle win; the others are reported as
+twins (observationally equivalent).
 """
 
 from __future__ import annotations
@@ -20,43 +21,42 @@ from werrimbi_odom.inference.rules import ASKEW, ASKEW_BY, BOTH_REVERSED, TWIN_W
 
 @dataclass(frozen=True, slots=True)
 class Estimate:
-    """What was measured of the set-up, free of the robot file's wiring; file metres [m]."""
+    """Measured set-up, independent of the robot file's wiring; in the metres of the file [m]."""
 
     left: float
-    """Turn for travel of the recorded left wheel, positive when it turns the robot right
-    [rad/m]."""
+    """Turn per travel of the recorded left wheel, positive if it turns the robot right [rad/m]."""
     right: float
-    """Turn for travel of the recorded right wheel, positive when it turns the robot left
-    [rad/m]."""
+    """Turn per travel of the recorded right wheel, positive if it turns the robot left [rad/m]."""
     base: float | None
-    """Distance of the wheels, in the reference's metres [m]; None where yaw alone was measured."""
+    """Wheel base in the reference's metres [m]; None where only yaw was measured."""
     yaw: float | None
-    """Angle of the mount for wheels that drive as they turn [rad]; None where it does not show."""
+    """Mounting angle for wheels whose driving and turning signs agree [rad]; None where not
+    identifiable."""
     arm: complex = 0j
-    """Ahead + i left of the measured point, turned by -yaw [m]."""
+    """Lever arm, ahead + i left of the measured point, rotated by -yaw [m]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Wired:
-    """One way to wire counters and mount that makes the measured signs."""
+    """One combination of wiring and mounting that explains the measured signs."""
 
     swapped: bool
     mirrored: bool
     left_reversed: bool
     right_reversed: bool
     yaw: float
-    """Angle of the mount that is left [rad]; 0 where it does not show."""
+    """Remaining mounting angle [rad]; 0 where not identifiable."""
 
     @property
     def mistakes(self) -> float:
-        """How many: minus log10 of how often robots are wired so (`rules.set_up`)."""
+        """Cost of the mistakes: -log10 of their prior frequency (`rules.set_up`)."""
         both = self.left_reversed and self.right_reversed
         reversals = BOTH_REVERSED if both else float(self.left_reversed + self.right_reversed)
         askew = float(abs(self.yaw) > ASKEW) + ASKEW_BY * abs(self.yaw)
         return float(self.swapped + self.mirrored) + reversals + askew
 
     def names(self) -> tuple[str, ...]:
-        """Of the mistakes, the mount's angle included."""
+        """Names of the mistakes, including a mounting angle."""
         return tuple(self._names())
 
     def _names(self) -> Iterator[str]:
@@ -74,19 +74,19 @@ class Wired:
 
 @dataclass(frozen=True, slots=True)
 class Setting:
-    """A whole set-up: wiring, mount, and true over entered sizes."""
+    """Complete set-up: wiring, mounting, and ratios of true to entered sizes."""
 
     wired: Wired
     left: float
-    """Travel of the true left wheel over that by the robot file."""
+    """Ratio of the true left wheel's travel to that by the robot file."""
     right: float
     base: float
-    """Base over that of the robot file."""
+    """Ratio of the base to that of the robot file."""
     arm: complex = 0j
-    """Ahead + i left of the measured point [m]."""
+    """Lever arm, ahead + i left of the measured point [m]."""
 
     def numbers(self, track: float) -> tuple[float, float, complex, complex]:
-        """What regressions of the recorded wheels would give: left, right, half base, arm."""
+        """Regression coefficients that this set-up predicts: left, right, half base, arm."""
         wired, base = self.wired, self.base * track
         left = -self.left / base if wired.left_reversed else self.left / base
         right = -self.right / base if wired.right_reversed else self.right / base
@@ -101,11 +101,11 @@ AS_ENTERED = Setting(Wired(False, False, False, False, 0.0), 1.0, 1.0, 1.0)
 
 
 def wirings(estimate: Estimate) -> list[Wired]:
-    """All that make the measured signs, the simplest first."""
+    """All combinations that explain the measured signs, simplest first."""
     left_back, right_back = estimate.left < 0.0, estimate.right < 0.0
     yaw = estimate.yaw
     straight = Wired(False, False, left_back, right_back, _angle(yaw))
-    # The first of equals stays first: exchanged wheels before a mirrored reference.
+    # The sort is stable: of equal costs, exchanged wheels come before a mirrored reference.
     crossed = Wired(True, False, not right_back, not left_back, _angle(yaw, math.pi))
     seen = Wired(False, True, not left_back, not right_back, _angle(yaw, math.pi, -1.0))
     both = Wired(True, True, right_back, left_back, _angle(yaw, 0.0, -1.0))
@@ -113,7 +113,7 @@ def wirings(estimate: Estimate) -> list[Wired]:
 
 
 def setting_of(estimate: Estimate, wired: Wired, track: float) -> Setting:
-    """The set-up with this wiring; with yaw alone the base is taken to be right."""
+    """Set-up with this wiring; where only yaw is measured, the base is assumed right."""
     base = track if estimate.base is None else estimate.base
     left, right = abs(estimate.left) * base, abs(estimate.right) * base
     if wired.swapped:
@@ -122,7 +122,7 @@ def setting_of(estimate: Estimate, wired: Wired, track: float) -> Setting:
 
 
 def twins_of(name: str, ways: list[Wired]) -> tuple[str, ...]:
-    """Mistakes that stand where `name` stands in other wirings that are nearly as simple."""
+    """Mistakes that replace `name` in other combinations that are nearly as simple."""
     first = ways[0]
     found: list[str] = []
     for other in ways[1:]:

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Simple factors between what is true and what was entered, and the mistakes that make them."""
+"""Simple factors between true and entered values, and the mistakes that cause them."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ FACTORS: dict[str, float] = {
     "1000": 1000.0,
     "1/1000": 1e-3,
 }
-"""True over entered, by name."""
+"""Ratios of true to entered value, by name."""
 
 _SKID = (
     "it has four driven wheels, or tracks, which skid in turns and act as on a base 1.3 to 2.5 "
@@ -40,7 +40,7 @@ RADIUS: dict[str, str] = {
     "1000": "kilometres for metres, or counts of a turn in thousandths",
     "1/1000": "millimetres were entered for metres",
 }
-"""What makes both radii off by a factor."""
+"""Causes of a factor on both radii."""
 
 BASE: dict[str, str] = {
     "2": "half the base was entered (axle's middle to wheel)",
@@ -52,49 +52,49 @@ BASE: dict[str, str] = {
     "1000": "kilometres were entered for metres",
     "1/1000": "millimetres were entered for metres",
 }
-"""What makes the base off by a factor."""
+"""Causes of a factor on the base."""
 
 METRE: dict[str, str] = {
     "1000": "the reference's positions are in millimetres",
     "1/1000": "base and radius were both entered in millimetres, or the reference is in kilometres",
 }
-"""What makes base and radii off by one and the same factor."""
+"""Causes of a common factor on base and radii."""
 
 
 def simple_factor(value: float) -> str | None:
-    """Name of the simple factor that a positive value is near, by the nearest logarithm."""
+    """Name of the simple factor nearest to a positive value in log scale; None if none is near."""
     nearest = min(FACTORS, key=lambda name: abs(math.log(value / FACTORS[name])))
     return nearest if abs(math.log(value / FACTORS[nearest])) <= math.log(NEAR) else None
 
 
 def is_ordinary(value: float) -> bool:
-    """Whether a positive value is so near to 1 that calibration takes care of it."""
+    """Whether a positive factor is so near to 1 that calibration handles it."""
     return abs(math.log(value)) <= math.log(ORDINARY)
 
 
 def spoken(value: float) -> str:
-    """A factor as one says it."""
+    """Format a factor for reading."""
     return f"{value:.3g}" if value >= 1.0 else f"1/{1.0 / value:.3g}"
 
 
 def radius_words(value: float, factor: str | None) -> str:
-    """Both radii."""
+    """Sentence about a factor on both radii."""
     return _words("both wheels' radius", value, factor, RADIUS, "look at radius, gear and encoder")
 
 
 def skids(base: float) -> bool:
-    """Whether wheels that skid may turn a robot as if its base were so many times as wide."""
+    """Whether skidding wheels can explain such an effective base, relative to the true one."""
     return ORDINARY < base < MOST_OF_A_SKID
 
 
 def base_words(value: float, factor: str | None) -> str:
-    """The base."""
+    """Sentence about a factor on the base."""
     words = _words("the wheel base", value, factor, BASE, "measure it anew")
     return f"{words}; or {_SKID}" if skids(value) else words
 
 
 def skid_words(value: float) -> str:
-    """The base of a robot that is known to skid."""
+    """Sentence about the base of a robot that is known to skid."""
     return (
         f"its driven wheels skid in turns, so it turns as if its two sides were {value:.3g} times "
         "as far apart as the robot file says: such robots do, and nothing is entered wrongly"
@@ -102,7 +102,7 @@ def skid_words(value: float) -> str:
 
 
 def metre_words(value: float, factor: str | None) -> str:
-    """Radii and base by the same factor."""
+    """Sentence about a common factor on radii and base."""
     return _words(
         "radius and base alike",
         value,
@@ -113,7 +113,7 @@ def metre_words(value: float, factor: str | None) -> str:
 
 
 def side_words(side: str, value: float, factor: str | None) -> str:
-    """One wheel alone."""
+    """Sentence about a factor on one wheel."""
     return _words(
         f"the {side} wheel's travel alone",
         value,
@@ -124,7 +124,7 @@ def side_words(side: str, value: float, factor: str | None) -> str:
 
 
 def turning_words(value: float, factor: str | None) -> str:
-    """Radii over base, where yaw alone was measured."""
+    """Sentence about a factor on radii over base, where only yaw was measured."""
     skid = f"; or {_SKID}" if skids(1.0 / value) else ""
     return _words(
         "radius over base",

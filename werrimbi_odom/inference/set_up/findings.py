@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Set-up mistakes as findings: what is wrong, by which factor, and who makes such a mistake."""
+"""Findings of the set-up search: what is wrong, by which factor, and the likely mistake."""
 
 from __future__ import annotations
 
@@ -24,32 +24,32 @@ from werrimbi_odom.inference.set_up.factors import (
 )
 
 Misfit = Callable[[Setting], float]
-"""Typical error of a set-up, in units of the best one's."""
+"""Typical error of a set-up, relative to the best one."""
 
 
 @dataclass(frozen=True)
 class SetUpFinding:
-    """One thing that is set up wrongly."""
+    """One set-up mistake."""
 
     effect: str
-    """Name in the library; `IN_DEGREES` for a reference that no effect can mend."""
+    """Name in the library; `IN_DEGREES` for a reference that no effect can correct."""
     values: Mapping[str, float]
-    """The effect's parameters, all that the robot file already held of it included; empty for
-    mistakes, which are made or not."""
+    """Parameters of the effect, combined with those that the robot file already has; empty for
+    mistakes without parameters."""
     factor: str | None
     """Name of the simple factor that the value is near, or None."""
     words: str
-    """One plain sentence: what is wrong, and the mistake that makes it."""
+    """One sentence: what is wrong, and the mistake that causes it."""
     twins: tuple[str, ...] = ()
-    """Effects that explain these records as well."""
+    """Effects that explain these records equally well."""
     gain: float = math.inf
-    """How many times larger the typical error is without it."""
+    """Ratio of the typical error without it to that with it."""
     without: Setting | None = field(default=None, compare=False, repr=False)
-    """The set-up found, less this."""
+    """The set-up found, without this finding."""
 
 
 IN_DEGREES = "reference_yaw_in_degrees"
-"""The one finding that is no effect: the reference is to be recorded, or converted, anew."""
+"""The one finding that is no effect: the reference must be recorded again or converted."""
 
 WIRING_WORDS = {
     "wheels_swapped": "left and right counters are exchanged: left turns come out as right turns",
@@ -61,16 +61,18 @@ WIRING_WORDS = {
 def findings_of(
     setting: Setting, ways: list[Wired], misfit: Misfit, *, yaw_alone: bool = False
 ) -> list[SetUpFinding]:
-    """All that is wrong and makes the errors much larger, the most important first.
+    """All mistakes that clearly increase the errors, in order of importance.
 
     Parameters
     ----------
+    setting : Setting
+        The best set-up.
     ways : list of Wired
-        All wirings that explain the signs, `setting`'s own first.
+        All combinations that explain the signs, that of `setting` first.
     misfit : callable
-        Of a setting; only ratios count.
+        Typical error of a set-up; only ratios matter.
     yaw_alone : bool
-        The reference measures no position: only radii over base are known.
+        The reference measures no position: only radii over base are identifiable.
     """
     best = misfit(setting)
     found = []
@@ -136,7 +138,7 @@ def _sizes(setting: Setting, yaw_alone: bool) -> Iterator[SetUpFinding]:
         if not is_ordinary(common):
             words = turning_words(common, factor)
             name, twin = "wheel_radius_scale", "track_width"
-            if skids(1.0 / common):  # the base leads: distances are right as they are
+            if skids(1.0 / common):  # blame the base: distances are right
                 name, twin, values = twin, name, {"multiplier": 1.0 / common}
                 factor = simple_factor(1.0 / common)
             yield SetUpFinding(name, values, factor, words, (twin,), 1.0, smaller)
@@ -159,10 +161,10 @@ def _sizes(setting: Setting, yaw_alone: bool) -> Iterator[SetUpFinding]:
 
 
 def as_skid(finding: SetUpFinding) -> SetUpFinding:
-    """What is said of a base that is too wide where the robot is known to skid as it turns."""
+    """Replace a finding of a wide base by `skid_steer`, for a robot that is known to skid."""
     base = finding.values.get("multiplier", 1.0)
     if finding.effect == "wheel_radius_scale" and "track_width" in finding.twins:
-        base = 1.0 / base  # of headings alone: distances are then right as they are
+        base = 1.0 / base  # headings only: distances are right
     elif finding.effect != "track_width":
         return finding
     skid = find("skid_steer")
@@ -175,7 +177,7 @@ def as_skid(finding: SetUpFinding) -> SetUpFinding:
 
 
 def _odd_side(left: float, right: float) -> tuple[str, float]:
-    """The wheel that is off alone, and the size of the other one."""
+    """The wheel that is wrong, and the factor of the other one."""
     known = {"right": left, "left": right}
     side = min(known, key=lambda name: abs(math.log(known[name])))
     for name, other in known.items():
@@ -185,7 +187,7 @@ def _odd_side(left: float, right: float) -> tuple[str, float]:
 
 
 def arm_finding(setting: Setting, misfit: Misfit, base: float) -> list[SetUpFinding]:
-    """A lever arm longer than the base: no inexact mount, but another place than was entered."""
+    """A lever arm longer than the base: not an inexact mount, but another place than entered."""
     arm = setting.arm
     if not base < abs(arm) or max(abs(arm.real), abs(arm.imag)) > LONGEST_ARM:
         return []

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The search where poses were measured: two regressions tell everything."""
+"""Set-up search where poses were measured: two linear regressions."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Regressed:
 
     @property
     def is_sure(self) -> bool:
-        """Whether both wheels and the base are told."""
+        """Whether both wheels and the base are determined."""
         turn, move = self.turning, self.moving
         return (
             abs(turn.left) > SURE_SIZE * turn.left_std
@@ -52,7 +52,7 @@ class Regressed:
         )
 
     def misfit(self, setting: Setting, track: float) -> float:
-        """Typical error of a cut, in units of the scatter of the best fit."""
+        """Typical error of a cut, in units of the best fit's dispersion."""
         move, turn = errors(self.cuts, *setting.numbers(track))
         known = np.isfinite(move) & np.isfinite(turn)
         square = np.abs(move / self.moving.scatter) ** 2
@@ -60,7 +60,7 @@ class Regressed:
         return float(np.exp(0.5 * np.mean(np.log1p(square[known]))))
 
     def share(self) -> float:
-        """Scatter left, of what there is to explain: small where both fits are good."""
+        """Relative residual dispersion: small where both fits are good."""
         moved = float(np.nanmedian(np.abs(self.cuts.move)))
         turned = float(np.nanmedian(np.abs(self.cuts.turn)))
         return math.hypot(
@@ -69,7 +69,7 @@ class Regressed:
 
 
 def regressed(records: Sequence[Record], robot: Robot) -> Regressed | None:
-    """Both regressions; None where the drives do not tell."""
+    """Both regressions; None where the drives do not determine them."""
     cuts = cut(records, robot, "pose")
     if cuts.count < FEWEST_CUTS:
         return None
@@ -79,12 +79,12 @@ def regressed(records: Sequence[Record], robot: Robot) -> Regressed | None:
 
 
 def degrees_gain(records: Sequence[Record], robot: Robot, measured: Measure) -> float:
-    """How many times better the reference's yaw fits as degrees; 1 where it does not."""
+    """Improvement of the fit if the reference's yaw is in degrees; 1 if it is in radians."""
     yaw = np.concatenate([each.yaw[np.isfinite(each.yaw)] for each in records])
     if measured == "position" or yaw.size == 0 or np.ptp(yaw) < DEGREES_RANGE:
         return 1.0
     if measured == "heading":
-        # Where it was wrapped, it was wrapped at a whole turn.
+        # Wrapped angles jump by a whole turn.
         jumps = np.concatenate([np.abs(np.diff(each.yaw)) for each in records])
         degrees, radians = (
             int(np.sum((jumps > low) & (jumps < high)))
@@ -102,7 +102,7 @@ def degrees_gain(records: Sequence[Record], robot: Robot, measured: Measure) -> 
 def search_poses(
     records: Sequence[Record], robot: Robot
 ) -> tuple[list[SetUpFinding], Setting | None]:
-    """What is wrong, and the sizes that were measured; None where they were not."""
+    """Findings, and the measured sizes; None where these are not determined."""
     fit = regressed(records, robot)
     if fit is None or not fit.is_sure:
         return [], None

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The search where positions alone were measured: the heading comes from the wheels.
+"""Set-up search where only positions were measured: headings come from the wheels.
 
-The drives are cut into windows of some metres, each with a heading of its own at its start (closed
-form, as in Procrustes' problem). What is left of a window tells whether the wheels turn the robot
-as they should. The wheels' turning is searched over its whole range, then refined.
+Drives are cut into windows of some metres, each with its own start heading (closed form, as in the
+orthogonal Procrustes problem). The residual of the windows tells whether the wheels turn the robot
+correctly. Turn per travel is searched on a grid over its whole range, then refined.
 """
 
 from __future__ import annotations
@@ -42,17 +42,18 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True, slots=True)
 class Windows:
-    """Windows of consecutive cuts, as cuts from each window's start; w windows."""
+    """Windows of consecutive cuts, as displacements from each window's start; w windows."""
 
     cuts: Cuts
-    """Of w * WINDOW stretches, the first one cut long, the last one a window."""
+    """Stretches, w * WINDOW of them: the first of each window is one cut long, the last the whole
+    window."""
     floor: float
-    """Error below which one fit is as good as another [m]."""
+    """Error below which fits count as equal [m]."""
 
     def misfit(
         self, left: float, right: float, half_base: float | None = None, arm: complex = 0j
     ) -> float:
-        """Typical error of a window [m], its own heading fitted, and the scale where not given."""
+        """Typical error of a window [m], with fitted headings, and fitted scale if not given."""
         gone, swing, move = self._shapes(left, right)
         if half_base is None:
             half_base = _scale(gone, move) if arm == 0j else self._mount(gone, swing, move, arm)[0]
@@ -61,11 +62,11 @@ class Windows:
         return float(np.exp(np.mean(np.log(rms + self.floor))))
 
     def mount(self, left: float, right: float, arm: complex = 0j) -> tuple[float, complex]:
-        """Half the base and the lever arm that fit best [m]."""
+        """Least-squares half base and lever arm [m]."""
         return self._mount(*self._shapes(left, right), arm)
 
     def half_base(self, left: float, right: float) -> float:
-        """Half the base that fits best without a lever arm [m]."""
+        """Least-squares half base without a lever arm [m]."""
         gone, _, move = self._shapes(left, right)
         return _scale(gone, move)
 
@@ -81,7 +82,7 @@ class Windows:
     def _mount(
         self, gone: Complexes, swing: Complexes, move: Complexes, arm: complex
     ) -> tuple[float, complex]:
-        """Headings and mount in turn, each in closed form; windows that fit badly count less."""
+        """Alternate between headings and mounting, both in closed form; bad windows weigh less."""
         half_base = complex(_scale(gone, move))
         columns = np.stack([gone.ravel(), swing.ravel()], axis=-1)
         for _ in range(8):
@@ -91,7 +92,7 @@ class Windows:
             weights = np.repeat(weight, WINDOW)[:, None]
             straight = (facing.conj() * move).ravel()[:, None]
             solved = np.linalg.lstsq(weights * columns, weights * straight, rcond=1e-6)[0][:, 0]
-            # What half the base has of an angle belongs to the headings.
+            # A phase of half the base belongs to the headings.
             axis = np.exp(-1j * np.angle(solved[0]))
             half_base, arm = solved[0] * axis, complex(solved[1] * axis)
         return float(half_base.real), arm
@@ -102,13 +103,13 @@ def _rms(off: Complexes) -> Floats:
 
 
 def _facing(model: Complexes, move: Complexes) -> Complexes:
-    """Heading of each window, shape (w, 1)."""
+    """Start heading of each window as a unit complex number, shape (w, 1)."""
     match = np.sum(model.conj() * move, axis=1, keepdims=True)
     return np.asarray(np.exp(1j * np.angle(match)))
 
 
 def _scale(gone: Complexes, move: Complexes) -> float:
-    """Median over windows, so that a jump of the reference does no harm."""
+    """Median scale over windows, robust against jumps of the reference."""
     match = np.abs(np.sum(gone.conj() * move, axis=1))
     size = np.sum(np.abs(gone) ** 2, axis=1)
     moved = size > 0.0
@@ -116,7 +117,7 @@ def _scale(gone: Complexes, move: Complexes) -> float:
 
 
 def windows_of(cuts: Cuts, most: int = FINE_WINDOWS) -> Windows | None:
-    """Windows spread over all drives; None where there is not one."""
+    """Windows spread over all drives; None where there is none."""
     starts = np.arange(0, cuts.count - WINDOW + 1, WINDOW // 2)
     starts = starts[cuts.stretch[starts] == cuts.stretch[starts + WINDOW - 1]]
     if starts.size == 0:
@@ -134,7 +135,7 @@ def windows_of(cuts: Cuts, most: int = FINE_WINDOWS) -> Windows | None:
 
 
 def _compact(cuts: Cuts) -> Cuts:
-    """Only the steps that some stretch needs."""
+    """Keep only the steps that some stretch uses."""
     needed = np.zeros(cuts.left.size + 1, dtype=np.intp)
     np.add.at(needed, cuts.begin, 1)
     last: NDArray[np.intp] = cuts.end.reshape(-1, WINDOW)[:, -1]
@@ -159,7 +160,7 @@ def _compact(cuts: Cuts) -> Cuts:
 def search_positions(
     records: Sequence[Record], robot: Robot
 ) -> tuple[list[SetUpFinding], Setting | None]:
-    """What is wrong, and the sizes that were measured."""
+    """Findings, and the measured sizes."""
     cuts = cut(records, robot, "position", fewest=POSITION_CUTS)
     windows, some = windows_of(cuts), windows_of(cuts, COARSE_WINDOWS)
     if windows is None or some is None:
@@ -178,7 +179,7 @@ def search_positions(
     with_arm = _with_arm(windows, best[1], best[2])
     if with_arm[0] * GIVEN_AS_GOOD < best[0]:
         _, left, right, half_base, arm = with_arm
-    else:  # circles alone do not tell an arm from a base
+    else:  # on circles only, lever arm and base are confounded
         _, left, right = best
         half_base, arm = windows.half_base(left, right), 0j
     if half_base <= 0.0:
@@ -201,7 +202,7 @@ def search_positions(
 def _with_arm(
     windows: Windows, left: float, right: float
 ) -> tuple[float, float, float, float, complex]:
-    """Error, turning of both wheels, half the base and the lever arm that fit best with one."""
+    """Error, turn per travel of both wheels, half base and lever arm of the best fit."""
     arm, error = 0j, math.inf
     for _ in range(3):
         half_base, arm = windows.mount(left, right, arm)
@@ -210,7 +211,7 @@ def _with_arm(
 
 
 def _grid() -> list[tuple[float, float]]:
-    """Turning of both wheels over the robot file's, all signs, the whole range."""
+    """Trial factors on the turn per travel of both wheels: all signs, the whole range."""
     sizes = np.exp(np.arange(-31, 32) * 0.25)
     ratios = (1.0, 2.0, 0.5, 4.0, 0.25)
     signs = tuple(product((1.0, -1.0), repeat=2))
@@ -225,7 +226,7 @@ def _grid() -> list[tuple[float, float]]:
 def _refined(
     windows: Windows, left: float, right: float, arm: complex = 0j, *, step: float = 0.15
 ) -> tuple[float, float, float]:
-    """Descend from a start by ever smaller steps of common size and ratio."""
+    """Pattern search in log size and log ratio, with shrinking steps."""
     size, ratio = 0.0, 0.0
     best = windows.misfit(left, right, None, arm)
     while step > 0.002:

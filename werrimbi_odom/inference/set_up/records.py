@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Runs cut up for the search of set-up mistakes: nothing here rests on the robot file's scale.
+"""Runs cut up for the set-up search, independently of the robot file's scale.
 
-A cut is a leg of half a turn of the faster wheel, whatever length that is: the file's metres may be
-off by 1000, and so may the reference's. What the robot file already says of the reference (mirror,
-mount, delay) is undone first, so that all that is found later is what is still wrong.
+A cut is half a turn of the faster wheel, whatever its length: the file's metres may be off by 1000,
+and so may the reference's. What the robot file says of the reference (mirror, mounting, delay) is
+undone first, so that findings are what is still wrong.
 """
 
 from __future__ import annotations
@@ -39,53 +39,53 @@ Complexes = NDArray[np.complex128]
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """One run: travel of both wheels by the robot file, and what was measured; n steps, m rows."""
+    """One run: wheel travel by the robot file, and measurements; n steps, m rows."""
 
     time: Floats
     """Stamps of the messages, shape (n + 1,) [s]."""
     left: Floats
-    """Travel of what the file takes for the left wheel up to each, shape (n + 1,) [m]."""
+    """Cumulative travel of the file's left wheel, shape (n + 1,) [m]."""
     right: Floats
     seen: Floats
-    """When each row of the reference was seen, on the ticks' clock, shape (m,) [s]."""
+    """Time of each reference row on the ticks' clock, shape (m,) [s]."""
     place: Complexes
     """Measured x + iy, shape (m,); NaN where not measured [m]."""
     yaw: Floats
     """Measured heading, shape (m,); NaN where not measured [rad]."""
     not_driven: tuple[tuple[float, float], ...] = ()
-    """Stretches in which the robot was held or carried, from and to [s]."""
+    """Stretches in which the robot was held or carried: begin and end [s]."""
 
     def delayed(self, delay: float) -> Record:
-        """The same, when the reference is later by `delay` [s] than was believed."""
+        """Shift the reference, which is later by `delay` [s] than assumed."""
         return replace(self, seen=self.seen - delay)
 
     def in_degrees(self) -> Record:
-        """The same, when what is recorded as yaw are degrees."""
+        """Convert the recorded yaw from degrees."""
         return replace(self, yaw=np.radians(self.yaw))
 
 
 @dataclass(frozen=True, slots=True)
 class Cuts:
-    """All runs on common nodes, one behind the other; k cuts.
+    """All runs on common nodes, concatenated; k cuts.
 
-    Nodes are all messages and the ends of cuts; a run begins with a step of no travel.
+    Nodes are all messages and the ends of cuts; a run begins with a step of zero travel.
     """
 
     left: Floats
     """Travel in each step [m], shape (n,)."""
     right: Floats
     begin: NDArray[np.intp]
-    """Steps before the cut's first, shape (k,)."""
+    """Number of steps before the cut's first, shape (k,)."""
     end: NDArray[np.intp]
     duration: Floats
-    """Of each cut [s]."""
+    """Duration of each cut [s]."""
     turn: Floats
-    """Measured change of heading, wrapped row by row [rad]; NaN where not measured."""
+    """Measured heading change, wrapped per row [rad]; NaN where not measured."""
     move: Complexes
-    """Measured displacement, in the frame of the measured heading at the cut's start where there
-    is one, else of the reference [m]."""
+    """Measured displacement, in the frame of the measured heading at the cut's start if there is
+    one, else of the reference [m]."""
     stretch: NDArray[np.intp]
-    """Number of the stretch that each cut belongs to: a run, or what lies between its gaps."""
+    """Index of the stretch of each cut: a run, or the part between its gaps."""
 
     @property
     def count(self) -> int:
@@ -93,17 +93,17 @@ class Cuts:
         return self.begin.size
 
     def summed(self, steps: Floats) -> Floats:
-        """Sum of the steps in each cut."""
+        """Sum the steps over each cut."""
         total = np.concatenate([[0.0], np.cumsum(steps)])
         return np.asarray(total[self.end] - total[self.begin])
 
 
 def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | None:
-    """A run as far as it can be used; None where there is no reference, or no travel."""
+    """Usable part of a run; None where there is no reference or no travel."""
     reference, ticks = run.reference, run.ticks
     if reference is None:
         return None
-    # A highest speed in metres is no help while the metre itself is in doubt.
+    # A speed limit in metres is of no use while the scale is in doubt.
     lenient = replace(limits or EncoderLimits(), max_wheel_speed=0.0)
     steps = wheel_steps(robot, ticks.time, ticks.left, ticks.right, lenient)
     if steps.first_row < 0 or steps.time.size < 2:
@@ -130,7 +130,7 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | 
         for applied in of_wheels:
             seen = watched(drive)
             after = after_wheel_effects((applied,), raw, seen)
-            # What looks at the place cannot be undone while nobody knows where the robot is.
+            # An effect that depends on position cannot be undone while the position is unknown.
             raw = raw if seen.asked & PLACE else after
     view = view_of(robot.effects)
     sign = -1.0 if view.mirrored else 1.0
@@ -151,7 +151,7 @@ def record_of(run: Run, robot: Robot, limits: EncoderLimits | None) -> Record | 
 
 
 def measured_by(records: Sequence[Record]) -> Measure | None:
-    """The best that the reference gives: poses where enough rows have all of one."""
+    """What the reference measures: poses if enough rows have both."""
     place = sum(int(np.isfinite(each.place).sum()) for each in records)
     yaw = sum(int(np.isfinite(each.yaw).sum()) for each in records)
     both = sum(int((np.isfinite(each.place) & np.isfinite(each.yaw)).sum()) for each in records)
@@ -163,7 +163,7 @@ def measured_by(records: Sequence[Record]) -> Measure | None:
 
 
 def effective_track(robot: Robot) -> float:
-    """Base that the robot file, its effects included, takes for true [m]."""
+    """Wheel base by the robot file, including its effects [m]."""
     return robot.wheel_separation * sizes_of(robot).base
 
 
@@ -172,9 +172,15 @@ def cut(records: Sequence[Record], robot: Robot, measured: Measure, *, fewest: i
 
     Parameters
     ----------
+    records : sequence of Record
+        Runs to cut.
+    robot : Robot
+        The robot as its file has it.
+    measured : Measure
+        What the reference measures.
     fewest : int
-        Where half turns make fewer cuts than this, cuts are shorter; a cut is at least one interval
-        of the reference.
+        Cuts are shortened until there are this many; a cut is at least one interval of the
+        reference.
     """
     usable = [_usable(each, measured) for each in records]
     total = sum(float(_progress(each)[-1]) for each in usable if each.seen.size > 1)
@@ -198,7 +204,7 @@ def cut(records: Sequence[Record], robot: Robot, measured: Measure, *, fewest: i
 
 
 def _usable(record: Record, measured: Measure) -> Record:
-    """Rows that hold what is asked for, while the ticks were recorded."""
+    """Rows with the needed values, within the ticks' time span."""
     known = np.ones(record.seen.shape, dtype=np.bool_)
     if measured != "heading":
         known &= np.isfinite(record.place)
@@ -210,18 +216,18 @@ def _usable(record: Record, measured: Measure) -> Record:
 
 
 def _progress(record: Record) -> Floats:
-    """Travel of the faster wheel up to each row of the reference [m]."""
+    """Cumulative travel of the faster wheel at each reference row [m]."""
     gone = np.interp(record.seen, record.time, _way(record))
     return np.asarray(gone - gone[0])
 
 
 def _way(record: Record) -> Floats:
-    """Travel of the faster wheel up to each message [m]."""
+    """Cumulative travel of the faster wheel at each message [m]."""
     return summed(np.maximum(np.abs(np.diff(record.left)), np.abs(np.diff(record.right))))
 
 
 def _gaps(record: Record, gone: Floats, length: float) -> NDArray[np.bool_]:
-    """Intervals of the reference that are no driving, or in which it or the ticks are silent."""
+    """Reference intervals without driving, or with silence of reference or ticks."""
     inside = (record.time >= record.seen[0]) & (record.time <= record.seen[-1])
     time = record.time[inside]
     ticks = np.flatnonzero(gaps_in(time, _way(record)[inside] / length))
@@ -244,7 +250,7 @@ def _cut_run(
     turn = np.diff(heading)
     move = np.diff(record.place[chosen])
     if np.isfinite(turn).all():
-        # The reference's own axis and point, as far as the file knows them, are undone.
+        # Undo the reference's extrinsics as known to the file.
         move = move * np.exp(1j * (yaw - record.yaw[chosen[:-1]]))
         move = move - (np.exp(1j * turn) - 1.0) * point
     before = np.concatenate([[0], np.cumsum(gap)])[chosen]

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Both wheels, base, mount and lever arm in closed form, whatever their size or sign.
+"""Both wheels, base, mounting angle and lever arm in closed form, for any size and sign.
 
 After Censi, Franchi, Marchionni, Oriolo, "Simultaneous calibration of odometry and sensor
-parameters for mobile robots", IEEE T-RO 2013: the turn of a cut is linear in the travel of both
-wheels, and once that is known its displacement is linear in the base, turned by the mount's angle,
-and in the lever arm.
+parameters for mobile robots", IEEE T-RO 2013. The turn of a cut is linear in the travel of both
+wheels. Given that, its displacement is linear in the base, rotated by the mounting angle, and in
+the lever arm.
 
     turn = right * R - left * L
     move = (B / 2) exp(-i yaw) S + exp(-i yaw) p (exp(i turn) - 1),
@@ -25,46 +25,48 @@ from werrimbi_odom.model.motion import sinc
 from werrimbi_odom.model.pose import Floats, wrap_all
 
 _LARGE = 4.685
-"""Tukey's biweight: 95 % as good as least squares where there are no outliers."""
+"""Tukey's biweight constant: 95 % efficiency for normal errors."""
 
 
 @dataclass(frozen=True, slots=True)
 class Turning:
-    """How the measured heading follows the wheels."""
+    """Regression of the measured turn on the wheels."""
 
     left: float
-    """Of the file's left wheel [rad/m], of the sign with which it turns the robot right."""
+    """Turn per travel of the file's left wheel [rad/m], positive if it turns the robot right."""
     right: float
-    """Of the file's right wheel [rad/m], of the sign with which it turns the robot left."""
+    """Turn per travel of the file's right wheel [rad/m], positive if it turns the robot left."""
     left_std: float
     right_std: float
     scatter: float
-    """Of a cut [rad], outliers aside."""
+    """Robust residual dispersion of a cut [rad]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Moving:
-    """How the measured displacement follows the wheels."""
+    """Regression of the measured displacement on the wheels."""
 
     half_base: complex
     """(B / 2) exp(-i yaw) [m]."""
     arm: complex
-    """exp(-i yaw) (ahead + i left) [m]; 0 where the drives do not show it."""
+    """exp(-i yaw) (ahead + i left) [m]; 0 where not identifiable."""
     half_base_std: float
     scatter: float
-    """Of a cut [m], outliers aside."""
+    """Robust residual dispersion of a cut [m]."""
 
 
 def turning(cuts: Cuts, *, with_bias: bool = False, squares: bool = False) -> Turning | None:
-    """Regress measured turns on the travel of both wheels; None where they do not tell.
+    """Regress measured turns on the travel of both wheels; None where not determined.
 
     Parameters
     ----------
+    cuts : Cuts
+        Cuts of all runs.
     with_bias : bool
-        Let the heading also creep with time, as a gyro's does.
+        Also fit a constant rate, such as a gyro's bias.
     squares : bool
-        By least squares, outliers and all. Where a robot drives straight for nearly all of a drive
-        its few turns are the outliers, and all that tells the wheels apart.
+        Use plain least squares. If a robot drives straight nearly all the time, its few turns look
+        like outliers, yet only they tell the wheels apart.
     """
     columns = [cuts.summed(cuts.right), -cuts.summed(cuts.left)]
     if with_bias:
@@ -79,7 +81,7 @@ def turning(cuts: Cuts, *, with_bias: bool = False, squares: bool = False) -> Tu
 
 
 def moving(cuts: Cuts, left: float, right: float) -> Moving | None:
-    """Regress measured displacements on what the wheels do, their turning known."""
+    """Regress measured displacements on the wheels' motion, given their turn per travel."""
     gone, turn = swept(cuts, left, right)
     swing = np.exp(1j * turn) - 1.0
     both = robust(np.stack([gone, swing], axis=-1), cuts.move)
@@ -89,13 +91,13 @@ def moving(cuts: Cuts, left: float, right: float) -> Moving | None:
     if both is not None and both[1][0] < ARM_TOLD * abs(both[0][0]):
         value, std, scatter = both
         return Moving(complex(value[0]), complex(value[1]), float(std[0]), scatter)
-    # A circle is a circle about any point: base and lever arm are then one.
+    # On circles only, base and lever arm are confounded.
     value, std, scatter = alone
     return Moving(complex(value[0]), 0j, float(std[0]), scatter)
 
 
 def swept(cuts: Cuts, left: float, right: float) -> tuple[Complexes, Floats]:
-    """S of the module's formula for each cut, and its turn; both for the given turning."""
+    """S of the module's formula for each cut, and its turn, for the given turn per travel."""
     along, turn = left * cuts.left + right * cuts.right, right * cuts.right - left * cuts.left
     heading = np.concatenate([[0.0], np.cumsum(turn)])
     chord = along * sinc(0.5 * turn) * np.exp(1j * (heading[:-1] + 0.5 * turn))
@@ -105,14 +107,14 @@ def swept(cuts: Cuts, left: float, right: float) -> tuple[Complexes, Floats]:
 
 
 def errors(cuts: Cuts, left: float, right: float, half_base: complex, arm: complex) -> Complexes:
-    """Measured less expected displacement, and turn: shape (2, k); the turn as a real number."""
+    """Measured less predicted displacement and turn, shape (2, k); the turn is real."""
     gone, turn = swept(cuts, left, right)
     move = cuts.move - half_base * gone - arm * (np.exp(1j * turn) - 1.0)
     return np.stack([move, wrap_all(cuts.turn - turn).astype(complex)])
 
 
 def least_squares(columns: Floats, values: Floats) -> tuple[Floats, Floats, float] | None:
-    """Linear regression of all rows alike; as `robust` otherwise."""
+    """Ordinary least squares; returns the same as `robust`."""
     known = np.isfinite(values) & np.isfinite(columns).all(axis=-1)
     rows, aims = columns[known], values[known]
     count, width = rows.shape
@@ -127,12 +129,12 @@ def least_squares(columns: Floats, values: Floats) -> tuple[Floats, Floats, floa
 def robust(
     columns: Complexes | Floats, values: Complexes | Floats
 ) -> tuple[Complexes | Floats, Floats, float] | None:
-    """Linear regression, least sum of absolute errors first, then Tukey's biweight.
+    """Linear regression by least absolute deviations, then Tukey's biweight.
 
     Returns
     -------
-    (coefficients (p,), standard deviations (p,), scatter) or None
-        None where the columns do not tell the coefficients.
+    (coefficients (p,), standard deviations (p,), dispersion) or None
+        None where the columns are rank deficient.
     """
     known = np.isfinite(values) & np.isfinite(columns).all(axis=-1)
     rows, aims = columns[known], values[known]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The robot with what was found put in, near enough for fits to begin."""
+"""Put set-up findings into the robot, close enough for fits to start from."""
 
 from __future__ import annotations
 
@@ -21,20 +21,24 @@ from werrimbi_odom.model.robot import Robot
 def with_findings(
     robot: Robot, findings: Sequence[SetUpFinding], setting: Setting | None
 ) -> tuple[Robot, tuple[SetUpFinding, ...]]:
-    """The robot with the findings' effects before its own, and the findings with their values.
+    """Robot with the findings' effects before its own, and the findings with their final values.
 
-    An effect that the robot already holds is changed where it stands, so a finding's values are the
-    ones of the whole. What is left of the sizes, some percent, goes into the multipliers.
+    An effect that the robot already has is changed in place, so a finding's values are the combined
+    ones. The remaining few percent of the sizes go into the multipliers.
 
     Parameters
     ----------
+    robot : Robot
+        The robot as its file has it.
+    findings : sequence of SetUpFinding
+        What is wrong.
     setting : Setting, optional
-        Where sizes were measured.
+        The set-up, where sizes were measured.
     """
     exchanged = any(finding.effect == "wheels_swapped" for finding in findings)
     wiring = wiring_of(robot.effects)
     if exchanged and wiring.left_sign != wiring.right_sign:
-        # The file's own reversed counter goes with its plug to the other side.
+        # A counter that the file reverses moves to the other side with its plug.
         for name in ("left_wheel_reversed", "right_wheel_reversed"):
             robot, _ = _with(robot, name, {})
     before, told = robot, []
@@ -69,12 +73,12 @@ def _with(robot: Robot, name: str, values: Mapping[str, float]) -> tuple[Robot, 
 
 
 def _calibrated(robot: Robot, before: Robot, setting: Setting) -> Robot:
-    """What the findings leave of the measured sizes, put into the multipliers."""
+    """Put what the findings leave of the measured sizes into the multipliers."""
     found = sizes_of(robot).over(sizes_of(before))
     base, left, right = Sizes(setting.base, setting.left, setting.right).over(found)
     common = math.sqrt(left * right)
     if abs(found.right / found.left - 1.0) > 1e-9 and not is_ordinary(common):
-        # The ratio keeps the mean of the radii; here one of them was right and is to stay.
+        # The ratio keeps the mean radius; here one radius was right and must stay.
         robot, _ = _with(robot, "wheel_radius_scale", {"multiplier": common})
         left, right = left / common, right / common
     if not (is_ordinary(left) and is_ordinary(right) and is_ordinary(base)):
@@ -88,9 +92,9 @@ def _calibrated(robot: Robot, before: Robot, setting: Setting) -> Robot:
 
 
 def mount_of(robot: Robot) -> View:
-    """How the reference looks at the robot, with what of the body is the same to it.
+    """Extrinsics of the reference, including body effects that are equivalent to them.
 
-    A robot that crabs is one whose marker is askew.
+    A robot that moves at an angle, for example, looks like one with a rotated marker.
     """
     view = view_of(robot.effects)
     mounts = {effect.name: effect for effect in LIBRARY if effect.stage == "reference"}

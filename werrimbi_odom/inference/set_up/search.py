@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The search for set-up mistakes, before anything else is looked for.
+"""Search for set-up mistakes, which comes before any other estimation.
 
-They are the commonest cause of bad odometry, and so large that no derivative at the null value
-finds them: counters exchanged or of the wrong sign, factors of 2, 4, pi, 57.3 or 1000, a laser
-mounted at 90 degrees, a clock that is off by seconds. See docs/set_up.md.
+They are the commonest cause of bad odometry, and too large for linearisation at the null value:
+counters exchanged or of the wrong sign, factors of 2, 4, pi, 57.3 or 1000, a laser mounted at 90
+degrees, a clock that is off by seconds. See docs/set_up.md.
 """
 
 from __future__ import annotations
@@ -56,24 +56,24 @@ IN_MILLIMETRES = (
 
 @dataclass(frozen=True)
 class SetUp:
-    """What is set up wrongly, and the robot with it put right."""
+    """Set-up mistakes, and the corrected robot."""
 
     findings: tuple[SetUpFinding, ...]
-    """The most important first; empty where all is set up right."""
+    """In order of importance; empty if the set-up is right."""
     robot: Robot
-    """The given robot with the findings' effects, and sizes near enough for fits to begin.
+    """The given robot with the findings' effects, and sizes close enough for fits to start from.
 
-    Where one wheel alone is off, a `wheel_radius_scale` goes with the ratio, which keeps the mean
-    of the radii."""
+    If only one wheel is wrong, the ratio comes with a `wheel_radius_scale`, since the ratio alone
+    keeps the mean radius."""
 
     @property
     def wrong(self) -> tuple[SetUpFinding, ...]:
-        """The findings that are mistakes: that driven wheels skid in turns is none."""
+        """Findings that are mistakes; skidding wheels are none."""
         return tuple(each for each in self.findings if each.effect != "skid_steer")
 
     @property
     def to_convert(self) -> str | None:
-        """What of the reference is in another unit, in words: no effect can mend that."""
+        """Sentence about a reference in the wrong unit, which no effect can correct."""
         for finding in self.findings:
             if finding.effect == IN_DEGREES:
                 return finding.words
@@ -85,12 +85,21 @@ class SetUp:
 def look_for_mistakes(
     runs: Sequence[Run], robot: Robot, options: EvaluationOptions = EvaluationOptions()
 ) -> SetUp:
-    """Search the whole range of what can be set up wrongly.
+    """Search the whole range of set-up mistakes.
 
     Parameters
     ----------
+    runs : sequence of Run
+        Recorded runs.
     robot : Robot
-        As the robot file has it; effects that it holds already are kept and undone first.
+        The robot as its file has it; its effects are kept, and undone for the search.
+    options : EvaluationOptions
+        Limits of the encoders.
+
+    Raises
+    ------
+    InputError
+        If a size would be beyond what its effect allows.
     """
     runs = [looked_at(run, robot, options.limits) for run in runs]
     records = [each for run in runs if (each := record_of(run, robot, options.limits)) is not None]
@@ -133,10 +142,10 @@ def look_for_mistakes(
 def _search_headings(
     records: Sequence[Record], robot: Robot
 ) -> tuple[list[SetUpFinding], Setting | None]:
-    """Signs, and radii over base, where yaw alone was measured, by a gyro perhaps.
+    """Signs, and radii over base, where only yaw was measured, perhaps by a gyro.
 
-    Mount, lever arm, a factor common to base and radii, and which way is forwards do not show;
-    sizes are not measured, so the second is always None.
+    Mounting, lever arm, a common factor on base and radii, and the forward direction are not
+    identifiable; sizes are not measured, so the second value is always None.
     """
     cuts = cut(records, robot, "heading")
     if cuts.count < FEWEST_CUTS:
@@ -159,15 +168,15 @@ def _search_headings(
         return float(np.exp(0.5 * np.mean(np.log1p((off / fit.scatter) ** 2))))
 
     found = findings_of(setting, ways, misfit, yaw_alone=True)
-    # A few short turns tell which way the wheels count, and no size: a delay makes them smaller.
+    # A few short turns determine signs but no sizes: a delay makes the turns look smaller.
     return [each for each in found if each.effect in WIRING_WORDS or not signs_alone], None
 
 
 def _creep(off: Floats, duration: Floats) -> float:
-    """A gyro's bias, as it would be seen with a set-up [rad/s].
+    """Gyro bias as estimated under a set-up [rad/s].
 
-    The median over all of the time: what stands tells it best, and a robot that drives straight at
-    one speed on a reversed wheel would else pass for one that spins before a gyro of that bias.
+    It is the median rate weighted by time. Standing tells it best; otherwise a robot that drives
+    straight at constant speed with a reversed wheel would pass for one that spins with that bias.
     """
     known = np.isfinite(off) & (duration > 0.0)
     rates, weights = off[known] / duration[known], duration[known]
@@ -180,7 +189,7 @@ def _creep(off: Floats, duration: Floats) -> float:
 
 
 def _is_sure(fit: Turning | None) -> bool:
-    """Whether it is beyond doubt which way each wheel turns the robot."""
+    """Whether the sign of each wheel's turn is significant."""
     if fit is None:
         return False
     left, right = abs(fit.left) / SURE_SIZE, abs(fit.right) / SURE_SIZE

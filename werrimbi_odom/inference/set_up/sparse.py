@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The search with two poses a drive, or few more: a dozen numbers tell mistakes apart, not sizes.
+"""Set-up search with two poses per drive, or few more: enough to tell mistakes apart, not sizes.
 
-Every set-up of at most one factor and one wiring predicts where each drive ends, with an error that
-grows with what was driven. Nothing is claimed but by a wide margin over all others.
+Every set-up with at most one factor and one wiring predicts where each drive ends, with an error
+that grows with the distance driven. A finding needs a wide likelihood margin over all others.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 STEPS = 4000
-"""In all drives together, some tenths of a second each."""
+"""Steps in all drives together, some tenths of a second each."""
 
 
 def is_sparse(records: Sequence[Record], robot: Robot, measured: Measure) -> bool:
@@ -53,7 +53,7 @@ def is_sparse(records: Sequence[Record], robot: Robot, measured: Measure) -> boo
 def search_sparse(
     records: Sequence[Record], robot: Robot, measured: Measure
 ) -> tuple[list[SetUpFinding], Setting | None]:
-    """What is wrong; sizes are not measured, so the second is always None."""
+    """Findings; sizes are not measured, so the second value is always None."""
     cuts = _thinned(cut(records, robot, measured))
     track = effective_track(robot)
     if cuts.count == 0 or measured == "heading":
@@ -68,7 +68,7 @@ def search_sparse(
     left, right, half_base, _ = setting.numbers(track)
     yaw = -float(np.angle(half_base)) if measured == "pose" else None
     ways = wirings(Estimate(left, right, 2.0 * abs(half_base), yaw))
-    # Before a mirrored reference the same signs are another prediction.
+    # With a mirrored reference the same signs predict something else.
     upright = [way for way in ways if not way.mirrored]
     estimate = Estimate(left, right, 2.0 * abs(half_base), yaw)
     same = [setting_of(estimate, way, track) for way in upright]
@@ -86,7 +86,7 @@ def search_sparse(
 
 
 def _thinned(cuts: Cuts) -> Cuts:
-    """Neighbouring steps taken together: so many set-ups are tried that fine steps cost time."""
+    """Merge neighbouring steps: with so many set-ups, fine steps cost time."""
     together = max(1, cuts.left.size // STEPS)
     nodes = np.union1d(np.arange(0, cuts.left.size, together), cuts.left.size)
     nodes = np.union1d(nodes, np.concatenate([cuts.begin, cuts.end])).astype(np.intp)
@@ -98,7 +98,7 @@ def _thinned(cuts: Cuts) -> Cuts:
 
 
 def _settings() -> Iterator[Setting]:
-    """All wirings, right ones first, each with at most one factor."""
+    """All wirings, correct ones first, each with at most one factor."""
     for half_turn in (0.0, math.pi):
         for swapped in (False, True):
             for back in ((False, False), (True, False), (False, True), (True, True)):
@@ -110,7 +110,7 @@ def _settings() -> Iterator[Setting]:
                     yaw=half_turn,
                 )
                 if half_turn and swapped:
-                    continue  # the same as neither, by algebra
+                    continue  # equals neither, by algebra
                 plain = replace(AS_ENTERED, wired=wired)
                 yield plain
                 for factor in FACTORS.values():
@@ -123,7 +123,7 @@ def _settings() -> Iterator[Setting]:
 
 
 def _alike(a: Setting, b: Setting, facing: bool) -> bool:
-    """Whether two set-ups predict the same."""
+    """Whether two set-ups have the same predictions."""
     one, other = a.numbers(1.0), b.numbers(1.0)
     same = bool(np.allclose(one[:2], other[:2]))
     if facing:
@@ -138,7 +138,7 @@ class _Drives:
     facing: bool
 
     def fits(self, setting: Setting) -> float:
-        """Log-likelihood of all drives, with errors that grow with what this set-up drove."""
+        """Log-likelihood of all drives, with errors that grow with the motion under this set-up."""
         left, right, half_base, arm = setting.numbers(self.track)
         cuts = self.cuts
         turned = cuts.summed(np.abs(right * cuts.right - left * cuts.left))
@@ -171,11 +171,11 @@ class _Drives:
 
 
 def _log_radius(measured: Floats, expected: Floats, sigma: Floats) -> Floats:
-    """Without headings only distances tell."""
+    """Log-likelihood of distances, for a reference without headings."""
     return np.asarray(-0.5 * ((measured - expected) / sigma) ** 2 - np.log(sigma))
 
 
 def _log_wrapped(off: Floats, sigma: Floats) -> Floats:
-    """Normal while it is narrow, all directions alike where it is wide."""
+    """Log-likelihood of an angle: normal if narrow, uniform if wide."""
     wide = np.minimum(sigma, math.pi / math.sqrt(3.0))
     return np.asarray(-0.5 * (off / wide) ** 2 - np.log(wide))
