@@ -216,6 +216,14 @@ def test_stamps_of_a_simulation_are_of_another_clock() -> None:
     assert "late" not in words
 
 
+@pytest.mark.parametrize(("uneven", "believed"), [(1.02, True), (1.5, False)])
+def test_headers_are_believed_where_receipt_is_no_evener(uneven: float, believed: bool) -> None:
+    random = np.random.default_rng(1)
+    received = 0.2 * np.arange(500.0) + random.normal(0.0, 0.02, 500)
+    stamped = 0.2 * np.arange(500.0) + uneven * (received - 0.2 * np.arange(500.0))
+    assert ("believe the headers" in _clock("/odom", _judged(stamped, received))) is believed
+
+
 def test_a_negative_multiplier_of_a_controller_is_a_reversed_wheel(tmp_path: Path) -> None:
     """So diff_drive_controller takes it; a robot file says it with an effect."""
     parameters = tmp_path / "controllers.yaml"

@@ -86,6 +86,12 @@ def test_a_map_that_never_corrects_leaves_the_odometry(tmp_path: Path, ros: Any)
     assert on_map.why.endswith("and map -> odom never changes")
 
 
+def test_a_filter_is_not_what_the_wheels_did(tmp_path: Path, ros: Any) -> None:
+    entries = [(topic, 1, ros.odometry(MS, 0.0, 0.0, 0.0)) for topic in ("/odom_kf", "/odom")]
+    held = contents(ros.write(tmp_path / "bag", entries))
+    assert [each.name for each in held.wheels] == ["/odom"]
+
+
 def test_speeds_alone_are_told_from_angles(tmp_path: Path, ros: Any) -> None:
     kind, message = ros.joints(1 * MS, WHEELS, [0.0, 0.0])
     message.velocity, message.position = message.position, message.velocity

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from dataclasses import replace
 from pathlib import Path
@@ -13,6 +14,7 @@ import pytest
 
 from test.white_noise_robot import WhiteNoiseRobot, drive, square, wandering
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
 from werrimbi_odom.inference.comparison.compare import Comparison, compare, judged
 from werrimbi_odom.inference.comparison.prepared import prepare
@@ -257,6 +259,26 @@ def test_a_wrong_model_is_no_jump_of_the_reference(runs: tuple[Run, ...]) -> Non
         replace(RIGHT, wheel_radius=0.0125),
     ):
         assert compare(runs, robot).main.all.outliers == 0
+
+
+def test_what_a_quarter_of_the_intervals_do_is_no_jump() -> None:
+    """A scan matcher that sees no turn in most intervals, and in others one that was not driven."""
+    random = np.random.default_rng(3)
+    steps = 300
+    time = np.arange(steps + 1.0)
+    ahead = 0.15 * time
+    counts = np.round(
+        ahead / (2.0 * math.pi * RIGHT.wheel_radius) * RIGHT.left_ticks_per_revolution
+    )
+    turned = np.where(random.random(steps) < 0.25, random.normal(0.0, 0.005, steps), 0.0)
+    yaw = np.concatenate([[0.0], np.cumsum(turned)])
+    x, y = (
+        np.concatenate([[0.0], np.cumsum(0.15 * along(yaw[:-1]) + random.normal(0, 0.01, steps))])
+        for along in (np.cos, np.sin)
+    )
+    run = Run("straight", Path("straight"), Ticks(time, counts, counts), Reference(time, x, y, yaw))
+    found = compare([run], RIGHT, EvaluationOptions(reference_kind="incremental"))
+    assert found.main.all.outliers == 0
 
 
 def test_before_and_after_are_over_the_same_legs(runs: tuple[Run, ...]) -> None:

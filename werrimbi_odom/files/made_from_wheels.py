@@ -19,7 +19,10 @@ vision visual vo vslam zed rovio okvis openvins scan reference qtm ground
 SENSORS = frozenset(_SENSORS.split())
 """Words of names whose poses come from a sensor that looks at the world."""
 
-FILTERS = ("filtered", "ekf", "ukf", "combined", "fused", "robot_localization")
+FILTERS = (
+    *("filtered", "ekf", "ukf", "kalman", "_kf", "/kf"),
+    *("combined", "fused", "robot_localization"),
+)
 """Words of names of filters' outputs, which fuse the wheels."""
 
 NO_MEASUREMENT = ("goal", "initialpose", "clicked", "target", "setpoint", "plan", "cmd", "command")

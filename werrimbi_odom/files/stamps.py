@@ -18,6 +18,8 @@ _BURST = 0.2
 _LATE = 0.1
 """By how much more than usual a message must be late to be counted [s]."""
 _FEWEST = 3
+_ALIKE = 1.1
+"""Times as uneven as the other clock, below which it is told to be as even."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -49,10 +51,10 @@ class Stamps:
 
     @property
     def believed(self) -> Literal["header", "received"]:
-        """The clock whose intervals are the evener."""
+        """The clock whose intervals are the evener; the headers where neither is by much."""
         if self.jitter is None:
             return "received"
-        return "header" if self.jitter <= self.received_jitter else "received"
+        return "header" if self.jitter <= _ALIKE * self.received_jitter else "received"
 
 
 def stamps_of(bag: Bag, topics: Sequence[str]) -> dict[str, Stamps]:

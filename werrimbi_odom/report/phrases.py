@@ -30,7 +30,9 @@ def left_out_words(parts: Sequence[LeftOut]) -> list[str]:
         where = f" of {part.run.name}" if len(runs) > 1 or len(silent) > _MOST else ""
         from_s, to_s = from_start(part.started, part.begin, part.end)
         end = ". Left out." if ":" in part.words else ": left out."
-        lines.append(f"From {from_s:.1f} s to {to_s:.1f} s{where} {part.words}{end}")
+        first, last = f"{from_s:.1f} s", f"{to_s:.1f} s"
+        when = f"At {first}" if first == last else f"From {first} to {last}"
+        lines.append(f"{when}{where} {part.words}{end}")
     rest = silent[_MOST:]
     if rest:
         seconds = sum(part.end - part.begin for part in rest)

@@ -16,6 +16,8 @@ from werrimbi_odom.inference.rules import (
     JUMP_LATE,
     JUMP_LEAST_OF_A_GYRO,
     JUMP_NEIGHBOURS,
+    JUMP_RARE,
+    JUMP_RARE_SIGMAS,
     JUMP_SCATTER,
     JUMP_SHARE,
     JUMP_SHARE_OF_A_GYRO,
@@ -45,11 +47,16 @@ def jumps_of(item: Residual, gap: NDArray[np.bool_]) -> Floats:
         # A gyro does not jump. A delay of more than one interval causes an error of all that the
         # robot turns in it, so a start looks like a jump until base and delay are right.
         share[2] = JUMP_SHARE_OF_A_GYRO
-    limit = np.maximum(JUMP_SCATTER * scatter, share * (driven + np.abs(usual)))
+    least = share * (driven + np.abs(usual))
     if not np.isfinite(item.measured).any():
-        limit[:, 2] = np.maximum(limit[:, 2], JUMP_LEAST_OF_A_GYRO)
-    limit[:, :2] = np.hypot(limit[:, :2], 1e-9)
-    wrong = (np.abs(left) > limit) & (np.abs(left) > 1e-9)
+        least[:, 2] = np.maximum(least[:, 2], JUMP_LEAST_OF_A_GYRO)
+    least = np.maximum(least, 1e-9)
+    # Where most intervals err by nothing, as the headings of a robot that goes straight, the median
+    # is no scatter: everything else is beyond it. What many of them do is no jump.
+    often = (np.abs(left) > np.maximum(JUMP_SCATTER * scatter, least)).mean(axis=0) > JUMP_RARE
+    many = np.quantile(np.abs(left), 1.0 - JUMP_RARE, axis=0) / JUMP_RARE_SIGMAS
+    scatter = np.where(often, np.maximum(many, scatter), scatter)
+    wrong = np.abs(left) > np.maximum(JUMP_SCATTER * scatter, least)
     return np.where(wrong, left, 0.0)
 
 

@@ -24,6 +24,13 @@ JUMP_SCATTER = 12.0
 Chosen: by Chebyshev's inequality no distribution whatever reaches it in more than 0.7 % of
 intervals, and `JUMP_SHARE` is asked beside it."""
 
+JUMP_RARE = 0.1
+"""Share of the intervals of a run that may be jumps; an error that more of them have is usual.
+Chosen: scan matchers that are used fail in 2 to 4 % (the recorded Khepera's)."""
+
+JUMP_RARE_SIGMAS = 1.645
+"""Standard deviations that a tenth of normal errors are beyond (`JUMP_RARE`, both sides)."""
+
 JUMP_SHARE = 0.5
 """Share of the motion about an interval that its error must be beyond to be a jump. A base or a
 radius that is off by half is a mistake of the set-up, which errs like that in every interval."""
