@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from array import array
 from collections import Counter
 from pathlib import Path
@@ -62,7 +63,7 @@ class MultiArrays(_TwoCounts):
     """Two counters in one message without a stamp."""
 
     def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:
-        bits = _width(robot_file, ARRAYS[source.kind])
+        bits = _width(robot_file, ARRAYS.get(source.kind, 0))
         super().__init__(f"{path}: {source.name}", bits)
         self._left_out: Counter[str] = Counter()
 
@@ -71,6 +72,15 @@ class MultiArrays(_TwoCounts):
         if len(message.content.data) != 2:
             self._left_out["not of two values, left and right"] += 1
             return
+        left, right = map(float, message.content.data)
+        if not (math.isfinite(left) and math.isfinite(right)):
+            self._left_out["with a value that is no number"] += 1
+            return
+        if not (left.is_integer() and right.is_integer()):
+            raise InputError(
+                f"{self._place}: {left:.6g} and {right:.6g} are no whole numbers, and so no "
+                "counters; angles and speeds of wheels are read from a JointState"
+            )
         self._add(message.received / 1e9, *map(int, message.content.data))
 
     def ticks(self) -> tuple[Ticks, list[str]]:

@@ -12,6 +12,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, topic_in_words
 from werrimbi_odom.files.bag_contents import (
     ARRAYS,
+    FLOATS,
     INT32,
     INT64,
     JOINT_STATE,
@@ -51,7 +52,7 @@ def choose_ticks(held: Contents, wish: str | None, robot_file: RobotFile) -> Whe
         When there is none, or several; the message lists them.
     """
     if wish is not None:
-        return _wished(held, wish)
+        return wished_ticks(held, wish)
     counted = [each for each in held.wheels if each.gives != "odometry"]
     kind = KINDS[str(robot_file.values["input_type"])]
     chosen = [each for each in counted if each.kind == kind] or counted
@@ -72,7 +73,14 @@ def choose_ticks(held: Contents, wish: str | None, robot_file: RobotFile) -> Whe
     )
 
 
-def _wished(held: Contents, wish: str) -> Wheels:
+def wished_ticks(held: Contents, wish: str) -> Wheels:
+    """What is wished for: a topic, or LEFT,RIGHT for two.
+
+    Raises
+    ------
+    InputError
+        When it holds no ticks; the message lists what does.
+    """
     wished = tuple("/" + name.strip().strip("/") for name in wish.split(","))
     found = [topic for name in wished for topic in held.topics if topic.name == name]
     single = len(wished) == len(found) == 1
@@ -84,6 +92,8 @@ def _wished(held: Contents, wish: str) -> Wheels:
         return Wheels(",".join(wished), found[0].kind, messages, "counts")
     if single and found[0].kind in PAIRS:
         raise InputError(f"{held.path}: {wish} is one wheel; --ticks-topic LEFT,RIGHT names both")
+    if single and found[0].kind in FLOATS:
+        return Wheels(wished[0], found[0].kind, found[0].messages, "counts")
     if single and found[0].kind == ODOMETRY:
         return Wheels(wished[0], ODOMETRY, found[0].messages, "odometry")
     raise InputError(f"{held.path}: there are no ticks in {wish}; {_listed(held.wheels)}")
@@ -117,7 +127,7 @@ def ticks_collector(path: Path, source: Wheels, robot_file: RobotFile) -> TicksC
     if source.kind == ODOMETRY:
         return OdometryTurnedBack(path, source.name, robot_file)
     robot_file.refuse_counts(f"{path}, {source.name}")
-    if source.kind in ARRAYS:
+    if source.kind in (*ARRAYS, *FLOATS):
         return MultiArrays(path, source, robot_file)
     if source.kind in DRIVERS:
         return CountersCollector(path, source, robot_file)

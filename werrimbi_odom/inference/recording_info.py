@@ -117,7 +117,9 @@ def measures_of(held: Held) -> Literal["poses", "positions", "yaw", "nothing"]:
 
 
 def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
-    """What a recording can show, and what not: ends of sentences."""
+    """What a recording can show, and what not: ends of sentences; nothing where it is no use."""
+    if held.problem:
+        return [], []
     measures = measures_of(held)
     if measures == "nothing" or held.driven is None:
         return [], ["anything: nothing measured the robot beside its wheels"]

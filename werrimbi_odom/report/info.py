@@ -18,6 +18,7 @@ from werrimbi_odom.report.document import Document, Paragraph, paragraphs
 from werrimbi_odom.report.info_wheels import (
     WITHOUT_WHEELS,
     no_wheels_words,
+    other_wheels_words,
     rate_words,
     wheels_words,
 )
@@ -45,6 +46,7 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
     if held.contents is not None:
         yield wheels_words(held)
         yield from no_wheels_words(held.joints)
+        yield from other_wheels_words(held)
         yield from _references(held)
         yield from _stamps(held)
     else:
@@ -63,7 +65,7 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
             f"back by {_ms(held.scans_restamped)} (rms)."
         )
     if held.problem:
-        yield f"It cannot be used as it is: {held.problem}."
+        yield f"It cannot be used as it is: {held.problem}{'' if held.problem[-1] == '?' else '.'}"
     if held.driven is not None:
         yield _driven(held, held.driven, found.sizes)
     yield from left_out_words(held.left_out)

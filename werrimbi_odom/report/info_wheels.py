@@ -6,6 +6,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from werrimbi_odom.files.bag import topic_in_words
+from werrimbi_odom.files.bag_contents import FLOATS
 from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
 from werrimbi_odom.inference.recording_info import Held
 from werrimbi_odom.report.numbers import listed
@@ -37,16 +39,36 @@ def wheels_words(held: Held) -> str:
 
 
 def _unread(held: Held) -> str:
-    """Topics that by their names may tell it, and that are of no type that is read."""
+    """Topics that by their names may tell it, and that are read where asked for or not at all."""
     assert held.contents is not None
     known = {each.name for each in held.contents.references}
     may = [
-        f"{each.name} ({each.kind})"
+        each
         for each in held.contents.topics
         if each.name not in known and any(word in each.name.lower() for word in _OF_WHEELS)
     ]
-    verb = "is" if len(may) == 1 else "are"
-    return f" By name {listed(may)} may, but {verb} of no type that is read." if may else ""
+    words = [
+        f" By name {topic_in_words(each)} may: if its two values count both wheels, --ticks-topic "
+        f"{each.name} reads them."
+        for each in may
+        if each.kind in FLOATS
+    ]
+    others = [topic_in_words(each) for each in may if each.kind not in FLOATS]
+    if others:
+        verb = "is" if len(others) == 1 else "are"
+        words.append(f" By name {listed(others)} may, but {verb} of no type that is read.")
+    return "".join(words)
+
+
+def other_wheels_words(held: Held) -> Iterator[str]:
+    """What else in the bag may tell of wheels: of another robot, or of this one once more."""
+    assert held.contents is not None
+    taken = held.wheels.name if held.wheels is not None else ""
+    others = [each.name for each in held.contents.wheels if each.gives != "odometry"]
+    others = [name for name in others if name != taken]
+    if others and taken:
+        told = f"Not looked at, but may tell of wheels: {listed(others)}"
+        yield f"{told}; --ticks-topic takes {'that' if len(others) == 1 else 'one'}."
 
 
 def no_wheels_words(joints: WheelJoints) -> Iterator[str]:
