@@ -54,7 +54,6 @@ from werrimbi_odom.inference.set_up.factors import is_ordinary
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
-
 RATIO = "unequal_wheel_radii.ratio"
 
 
