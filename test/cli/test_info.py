@@ -181,6 +181,57 @@ def test_without_a_reference_it_says_so(tmp_path: Path, capsys: pytest.CaptureFi
     assert "Record again with something that measures the robot" in printed
 
 
+def one_drive(*spaces: str, wheels_late: int = 0) -> list[tuple[str, int, object]]:
+    """Poses and wheels that roll ahead for 30 s, of as many robots as there are namespaces."""
+    ros = Messages()
+    entries: list[tuple[str, int, object]] = []
+    for number in range(300):
+        at = DAY * 10**9 + number * 10**8
+        for space in spaces:
+            wheels = ros.joints(at + wheels_late * 10**9, JOINTS, [0.1 * number] * 2)
+            entries.append((f"{space}/joint_states", at, wheels))
+            entries.append((f"{space}/pose", at, ros.pose(at, 0.005 * number, 0.0, 0.0)))
+    return entries
+
+
+def test_of_two_robots_each_is_judged_by_its_own_reference(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bag = Messages().write(tmp_path / "two", one_drive("/one", "/two"))
+    for mine, other in (("one", "two"), ("two", "one")):
+        assert main(["info", str(bag), "--ticks-topic", f"/{mine}/joint_states"]) == 0
+        printed = " ".join(capsys.readouterr().out.split())
+        assert f"Wheels: /{mine}/joint_states" in printed
+        assert f"not looked at, but may tell of wheels: /{other}/joint_states" in printed.lower()
+        assert f"Reference /{mine}/pose: poses at 10 Hz" in printed
+        assert printed.count("It is taken") == 1
+        assert printed.index(f"/{mine}/pose: poses") < printed.index("It is taken")
+
+
+def test_clocks_apart_are_told_with_both_spans(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    bag = Messages().write(tmp_path / "apart", one_drive("", wheels_late=5 - DAY))
+    assert main(["info", str(bag)]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "the reference's stamps are 1.7e+09 s later than those of the wheels" in printed
+    assert f"the reference (t_s {DAY} to {DAY + 29.9:.14g}) lies wholly after the ticks" in printed
+    assert "nothing measured the robot" not in printed
+
+
+def test_an_array_of_floats_is_told_with_how_it_is_read(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    ros = Messages()
+    entries = [("/wheel_ticks", n * 10**8, ros.floats(10.0 * n, 10.0 * n)) for n in range(1, 100)]
+    bag = ros.write(tmp_path / "floats", entries)
+    assert main(["info", str(bag)]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "if its two values count both wheels, --ticks-topic /wheel_ticks reads them" in printed
+    assert main(["info", str(bag), "--ticks-topic", "/wheel_ticks"]) == 0
+    assert "Wheels: /wheel_ticks, counters at 10 Hz" in capsys.readouterr().out
+
+
 def test_a_run_folder_is_looked_at_too(capsys: pytest.CaptureFixture[str]) -> None:
     square = Path(wo.__file__).parent / "recordings" / "square"
     assert main(["info", str(square), "--robot", str(square / "robot.yaml")]) == 0

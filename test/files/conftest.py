@@ -75,6 +75,11 @@ class Messages:
         layout = self.make("std_msgs/msg/MultiArrayLayout", [], 0)
         return kind, self.make(kind, layout, np.array(values, dtype=f"int{bits}"))
 
+    def floats(self, *values: float) -> tuple[str, Any]:
+        kind = "std_msgs/msg/Float64MultiArray"
+        layout = self.make("std_msgs/msg/MultiArrayLayout", [], 0)
+        return kind, self.make(kind, layout, np.array(values))
+
     def encoder(self, nanoseconds: int, count: int) -> tuple[str, Any]:
         kind = "duckietown_msgs/msg/WheelEncoderStamped"
         return kind, self.make(kind, self.header(nanoseconds), count, 135, 1)
@@ -199,12 +204,13 @@ class Messages:
 
         storage = {"mcap": StoragePlugin.MCAP, "sqlite3": StoragePlugin.SQLITE3}[plugin]
         with Writer(folder, version=9, storage_plugin=storage) as writer:
-            connections: dict[str, Any] = {}
+            connections: dict[tuple[str, str], Any] = {}
             for topic, received, (kind, message) in entries:
-                if topic not in connections:
-                    connections[topic] = writer.add_connection(topic, kind, typestore=self.store)
+                of = (topic, kind)
+                if of not in connections:
+                    connections[of] = writer.add_connection(topic, kind, typestore=self.store)
                 data = self.store.serialize_cdr(message, kind)
-                writer.write(connections[topic], received, data)
+                writer.write(connections[of], received, data)
         return folder
 
 

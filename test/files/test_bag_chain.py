@@ -114,6 +114,7 @@ def test_fixes_of_satellites_are_metres(tmp_path: Path, ros: Any, robot: Any) ->
     np.testing.assert_allclose(run.reference.y, [0, along * arc, 0, np.nan], atol=2e-3)
     assert not run.reference.has_yaw.any()
     np.testing.assert_allclose(run.reference.sigma_xy, [0.2, 0.2, 0.2, 0.2])
+    assert run.reference.kind == "local_map", "what they err by lasts, and is no robot's"
 
 
 def test_without_pyproj_the_remedy_is_named(

@@ -193,6 +193,34 @@ def test_narrower_arrays_wrap_at_their_width(
     assert run.ticks.right.tolist() == [1, 2, 3]
 
 
+def test_counters_as_floats_are_read_where_they_are_asked_for(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    """Most arrays of two floats are commands, so nobody takes them unasked."""
+    entries = [("/ticks", n * MS, ros.floats(100.0 * n, -3.0 * n)) for n in (1, 2, 3)]
+    bag = ros.write(tmp_path / "bag", entries)
+    with pytest.raises(InputError, match=r"no topic holds ticks .* it has /ticks \(std_msgs/msg/F"):
+        read_run(bag, robot())
+    run = read_run(bag, robot(), ticks_topic="/ticks")
+    assert run.ticks.left.tolist() == [100, 200, 300]
+    assert run.ticks.right.tolist() == [-3, -6, -9]
+
+
+def test_floats_that_are_no_counters_are_refused(tmp_path: Path, ros: Any, robot: Any) -> None:
+    bag = ros.write(tmp_path / "bag", [("/speeds", 1 * MS, ros.floats(0.25, 1.5))])
+    with pytest.raises(InputError, match=r"/speeds: 0.25 and 1.5 are no whole numbers, and so no"):
+        read_run(bag, robot(), ticks_topic="/speeds")
+
+
+def test_a_topic_with_messages_of_two_types_is_told_with_both(
+    tmp_path: Path, ros: Any, robot: Any
+) -> None:
+    entries = [*joint_drive(ros), ("/joint_states", 50 * MS, ros.counts(1, 2))]
+    told = r"it has /joint_states \(sensor_msgs/msg/JointState and std_msgs/msg/Int64MultiArray\)"
+    with pytest.raises(InputError, match=told):
+        read_run(ros.write(tmp_path / "bag", entries), robot())
+
+
 def test_encoders_of_a_duckiebot_are_paired_by_their_stamps(
     tmp_path: Path, ros: Any, robot: Any
 ) -> None:

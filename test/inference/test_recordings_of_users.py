@@ -12,7 +12,7 @@ import pytest
 
 from test.inference.driven import run_of, runs_of
 from test.model.drives import ROBOT, read
-from werrimbi_odom.effects import LIBRARY
+from werrimbi_odom.effects import LIBRARY, find
 from werrimbi_odom.effects.collection import load_file
 from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Reference, Run, Ticks
@@ -21,6 +21,8 @@ from werrimbi_odom.inference.comparison.leg_errors import statistics
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, diagnose
 from werrimbi_odom.inference.diagnosis.estimated_values import values_of
 from werrimbi_odom.inference.diagnosis.evidence import Amount, Dependence
+from werrimbi_odom.inference.diagnosis.search import first_fit, search_round
+from werrimbi_odom.inference.diagnosis.selection import RATIO
 from werrimbi_odom.inference.diagnosis.variables import Variable, curve_knots, variables_of
 from werrimbi_odom.inference.drafting.draft import draft_effect
 from werrimbi_odom.inference.fitting.concatenated_runs import concatenated
@@ -66,6 +68,17 @@ def test_four_driven_wheels_are_no_mistake_of_entering(base: float, headings: bo
 def test_no_wheels_skid_as_much(base: float) -> None:
     (finding,) = look_for_mistakes(runs_of(as_turning(ROBOT, base), [1, 2]), ROBOT).findings
     assert "four driven wheels" not in finding.words
+
+
+@pytest.mark.parametrize(("ratio", "possible"), [(1.15, True), (1.4, False)])
+def test_no_effect_is_believed_beside_wheels_of_two_sizes(ratio: float, possible: bool) -> None:
+    """A robot that slides past its gyro was named a soft tyre, and one wheel 45 % smaller."""
+    soft = replace(ROBOT, effects=(find("tyre_squash").using(coefficient=0.05),))
+    truth = replace(soft, right_wheel_radius_multiplier=ratio)
+    laid = concatenated(match_finely(runs_of(truth, [1, 2], 60), ROBOT, 1.0, None))
+    this = search_round(laid, first_fit(laid, ROBOT), [find("tyre_squash")], ROBOT)
+    assert [fit.names[-1] for fit in this.tried] == ["tyre_squash"]
+    assert (RATIO in this.tried[0].at_bound) is not possible
 
 
 @pytest.mark.parametrize("away", [2.0, 3.3])

@@ -131,7 +131,7 @@ def _of_bag(
     from werrimbi_odom.files.bag_contents import contents_of
     from werrimbi_odom.files.first_robot import of_urdf, with_driver
     from werrimbi_odom.files.stamps import stamps_of
-    from werrimbi_odom.files.wheel_joints import chosen_wheels, joints_told_apart
+    from werrimbi_odom.files.wheel_joints import chosen_wheels, joints_told_apart, of_another_robot
     from werrimbi_odom.inference.recording_info import Held
 
     with opened_bag(bag) as opened:
@@ -147,7 +147,9 @@ def _of_bag(
             known = (first.left, first.right)
             joints = joints_told_apart(tuple(joints.turned), joints.turned, known)
             first = replace(first, left=joints.left, right=joints.right)
-        reference = _best(contents.references, reference_topic)
+        others = of_another_robot(contents, wheels)
+        ours = [each for each in contents.references if each.name not in others]
+        reference = _best(ours, reference_topic)
         listed = [wheels, *contents.references]
         topics = {name for each in listed if each for name in _topics(each)}
         stamps = stamps_of(opened, sorted(topics))
@@ -217,6 +219,7 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
     """When it stood, drove, was held and carried, and what will be left out."""
     import numpy as np
 
+    from werrimbi_odom.files.run_checks import refuse_unjudgeable
     from werrimbi_odom.inference.legs.counters import counters_of
     from werrimbi_odom.inference.legs.cutting import record_of
     from werrimbi_odom.inference.legs.no_driving import looked_at
@@ -226,6 +229,8 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
     robot_file = source or robot_file_of(first)
     robot, limits = robot_file.robot, robot_file.limits
     try:
+        if held.run.reference is not None:
+            refuse_unjudgeable(held.run)
         run = looked_at(held.run, robot, limits)
         counters = counters_of(run, robot, limits)
         found = driven(counters, robot, run.no_driving or ())

@@ -110,8 +110,8 @@ def add_recording_arguments(
         choices=("absolute", "incremental", "local_map"),
         help="absolute: each pose has noise of its own (motion capture); incremental: it adds up "
         "along the way (each scan matched with the last one); local_map: it also wanders slowly, "
-        "about a map (a localiser, SLAM, scans matched with a map). If not given: incremental for "
-        "a gyro, local_map for a localiser (map -> odom -> base_link, AMCL), else absolute",
+        "about a map (a localiser, SLAM, satellites). If not given: incremental for a gyro, "
+        "local_map for a localiser (map -> odom -> base_link, AMCL) and satellites, else absolute",
     )
     for part, unit, what in (
         ("xy", "M", "noise of the reference in x and in y [m], if known"),
@@ -167,7 +167,7 @@ def read_recordings(arguments: argparse.Namespace) -> Recordings:
     )
     if arguments.reference_kind is None and wanders:
         circles.append(
-            "the reference is a localiser, whose errors wander: that is reckoned with "
+            "the reference is a localiser (or satellites), whose errors wander: reckoned with "
             "(--reference-kind local_map; absolute: they are new at each pose)"
         )
     remark(found.source, *words_about((*found.runs, *found.holdout)), *circles)

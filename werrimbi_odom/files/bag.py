@@ -17,6 +17,7 @@ from werrimbi_odom.files.unfinished_bag import Raw, absolute, raw_messages
 
 ROS1 = ".bag"
 SUFFIXES = (".mcap", ".db3", ROS1)
+_BEGIN = (b"\x89MCAP0", b"SQLite format 3", b"#ROSBAG V")
 
 
 class Topic(NamedTuple):
@@ -24,7 +25,7 @@ class Topic(NamedTuple):
 
     name: str
     kind: str
-    """Message type, as in `sensor_msgs/msg/JointState`."""
+    """Message type, as in `sensor_msgs/msg/JointState`; of several, all of them, and nobody's."""
     messages: int
 
 
@@ -140,16 +141,14 @@ def opened_bag(path: Path) -> Iterator[Bag]:
 
 
 def _topics(found: Iterable[tuple[str, str, int]]) -> tuple[Topic, ...]:
-    """Topics with messages; those with messages of several types are nobody's."""
-    kinds: dict[str, set[str]] = {}
+    """Topics with messages."""
+    kinds: dict[str, dict[str, None]] = {}
     counts: Counter[str] = Counter()
     for name, kind, messages in found:
         if messages:
-            kinds.setdefault(name, set()).add(kind)
+            kinds.setdefault(name, {})[kind] = None
             counts[name] += messages
-    return tuple(
-        Topic(name, kind, counts[name]) for name, (kind, *more) in kinds.items() if not more
-    )
+    return tuple(Topic(name, " and ".join(each), counts[name]) for name, each in kinds.items())
 
 
 def _scanned(path: Path, ros1: bool) -> Bag | None:
@@ -222,10 +221,11 @@ def _refuse_repeated(folder: Path) -> None:
 def _unreadable(path: Path, error: Exception) -> InputError:
     if isinstance(error, InputError):
         return error
-    return InputError(
-        f"{path} cannot be read as a bag: {_in_a_line(error)} (a recording cut off in mid-file: "
-        "`mcap recover`, or `ros2 bag reindex`)"
-    )
+    hint = "a recording cut off in mid-file: `mcap recover`, or `ros2 bag reindex`"
+    with suppress(OSError), path.open("rb") as file:  # a folder is none
+        if not file.read(16).startswith(_BEGIN):
+            hint = "it does not begin as an MCAP, SQLite or ROS 1 bag does"
+    return InputError(f"{path} cannot be read as a bag: {_in_a_line(error)} ({hint})")
 
 
 def _in_a_line(error: Exception) -> str:

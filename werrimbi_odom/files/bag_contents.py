@@ -41,6 +41,8 @@ PAIRS = {
 MULTI_ARRAY = "std_msgs/msg/Int64MultiArray"
 ARRAYS = {MULTI_ARRAY: 0, "std_msgs/msg/Int32MultiArray": 32, "std_msgs/msg/Int16MultiArray": 16}
 """The same of both wheels, as values without names."""
+FLOATS = ("std_msgs/msg/Float64MultiArray", "std_msgs/msg/Float32MultiArray")
+"""They may hold counters too, but mostly commands: read where they are asked for."""
 POSES = {
     ODOMETRY: "poses",
     "geometry_msgs/msg/PoseStamped": "poses",

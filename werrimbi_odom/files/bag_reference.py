@@ -90,6 +90,8 @@ class ReferenceCollector:
         kind: ReferenceKind | None = "incremental" if self._source.kind == IMU else None
         if self._source.kind == LOCALISED and parent == "map":
             kind = "local_map"  # AMCL, SLAM: what they err by wanders
+        if self._source.kind == FIX:
+            kind = "local_map"  # air and echoes: what satellites err by lasts for a minute
         return Reference(time, x, y, yaw, *sigmas, kind=kind), told
 
     def _frames(self) -> tuple[str, str]:

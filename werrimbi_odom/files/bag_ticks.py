@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import math
 from array import array
 from collections import Counter
 from collections.abc import Sequence
@@ -17,6 +18,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, left_out_words, stamp_of, topic_in_words
 from werrimbi_odom.files.bag_contents import (
     ARRAYS,
+    FLOATS,
     INT32,
     INT64,
     JOINT_STATE,
@@ -56,7 +58,7 @@ def choose_ticks(held: Contents, wish: str | None, robot_file: RobotFile) -> Whe
         When there is none, or several; the message lists them.
     """
     if wish is not None:
-        return _wished(held, wish)
+        return wished_ticks(held, wish)
     counted = [each for each in held.wheels if each.gives != "odometry"]
     kind = KINDS[str(robot_file.values["input_type"])]
     chosen = [each for each in counted if each.kind == kind] or counted
@@ -77,7 +79,14 @@ def choose_ticks(held: Contents, wish: str | None, robot_file: RobotFile) -> Whe
     )
 
 
-def _wished(held: Contents, wish: str) -> Wheels:
+def wished_ticks(held: Contents, wish: str) -> Wheels:
+    """What is wished for: a topic, or LEFT,RIGHT for two.
+
+    Raises
+    ------
+    InputError
+        When it holds no ticks; the message lists what does.
+    """
     wished = tuple("/" + name.strip().strip("/") for name in wish.split(","))
     found = [topic for name in wished for topic in held.topics if topic.name == name]
     single = len(wished) == len(found) == 1
@@ -89,6 +98,8 @@ def _wished(held: Contents, wish: str) -> Wheels:
         return Wheels(",".join(wished), found[0].kind, messages, "counts")
     if single and found[0].kind in PAIRS:
         raise InputError(f"{held.path}: {wish} is one wheel; --ticks-topic LEFT,RIGHT names both")
+    if single and found[0].kind in FLOATS:
+        return Wheels(wished[0], found[0].kind, found[0].messages, "counts")
     if single and found[0].kind == ODOMETRY:
         return Wheels(wished[0], ODOMETRY, found[0].messages, "odometry")
     raise InputError(f"{held.path}: there are no ticks in {wish}; {_listed(held.wheels)}")
@@ -122,7 +133,7 @@ def ticks_collector(path: Path, source: Wheels, robot_file: RobotFile) -> TicksC
     if source.kind == ODOMETRY:
         return OdometryTurnedBack(path, source.name, robot_file)
     robot_file.refuse_counts(f"{path}, {source.name}")
-    if source.kind in ARRAYS:
+    if source.kind in (*ARRAYS, *FLOATS):
         return MultiArrays(path, source, robot_file)
     if source.kind in DRIVERS:
         return CountersCollector(path, source, robot_file)
@@ -171,7 +182,7 @@ class MultiArrays(_TwoCounts):
     """Two counters in one message without a stamp."""
 
     def __init__(self, path: Path, source: Wheels, robot_file: RobotFile) -> None:
-        bits = _width(robot_file, ARRAYS[source.kind])
+        bits = _width(robot_file, ARRAYS.get(source.kind, 0))
         super().__init__(f"{path}: {source.name}", bits)
         self._left_out: Counter[str] = Counter()
 
@@ -180,6 +191,15 @@ class MultiArrays(_TwoCounts):
         if len(message.content.data) != 2:
             self._left_out["not of two values, left and right"] += 1
             return
+        left, right = map(float, message.content.data)
+        if not (math.isfinite(left) and math.isfinite(right)):
+            self._left_out["with a value that is no number"] += 1
+            return
+        if not (left.is_integer() and right.is_integer()):
+            raise InputError(
+                f"{self._place}: {left:.6g} and {right:.6g} are no whole numbers, and so no "
+                "counters; angles and speeds of wheels are read from a JointState"
+            )
         self._add(message.received / 1e9, *map(int, message.content.data))
 
     def ticks(self) -> tuple[Ticks, list[str]]:

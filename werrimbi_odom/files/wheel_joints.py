@@ -21,6 +21,7 @@ from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Bag, stamp_of
 from werrimbi_odom.files.bag_contents import JOINT_STATE, Contents, Wheels
 from werrimbi_odom.files.bag_joints import wheel_names
+from werrimbi_odom.files.bag_ticks import wished_ticks
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.model.pose import Floats
 
@@ -189,10 +190,16 @@ def _words(name: str) -> set[str]:
 def chosen_wheels(
     bag: Bag, contents: Contents, wish: str | None, source: RobotFile | None
 ) -> tuple[Wheels | None, WheelJoints]:
-    """What tells how the wheels turned, and the joints of it; the firmware's odometry last."""
+    """What tells how the wheels turned, and the joints of it; the firmware's odometry last.
+
+    Raises
+    ------
+    InputError
+        When there are no ticks in what is wished for.
+    """
     known = ((), ()) if source is None else tuple(wheel_names(source, side) for side in SIDES)
     able = sorted(contents.wheels, key=lambda each: each.gives == "odometry")
-    able = [each for each in able if each.name == wish] or able
+    able = able if wish is None else [wished_ticks(contents, wish)]
     found: list[tuple[Wheels, WheelJoints]] = []
     for each in able:
         joints = WheelJoints()
@@ -214,3 +221,16 @@ def _rank(found: tuple[Wheels, WheelJoints]) -> int:
     if wheels.joints and not joints.left:
         return 1 if joints.rolled else 3
     return 0
+
+
+def of_another_robot(contents: Contents, wheels: Wheels | None) -> set[str]:
+    """References in the namespace of wheels that are not those looked at."""
+    ours = _space(wheels.name) if wheels is not None else ""
+    spaces = {_space(each.name) for each in contents.wheels} - {ours, ""}
+    return {each.name for each in contents.references if _space(each.name) in spaces}
+
+
+def _space(topic: str) -> str:
+    """First name of a topic's namespace; "" where it has none."""
+    first, _, rest = topic.strip("/").partition("/")
+    return first if rest else ""

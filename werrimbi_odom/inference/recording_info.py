@@ -117,7 +117,9 @@ def measures_of(held: Held) -> Literal["poses", "positions", "yaw", "nothing"]:
 
 
 def can_tell(held: Held, sizes: bool) -> tuple[list[str], list[str]]:
-    """What a recording can and cannot show, as ends of sentences."""
+    """What a recording can and cannot show, as ends of sentences; nothing if it is unusable."""
+    if held.problem:
+        return [], []
     measures = measures_of(held)
     if measures == "nothing" or held.driven is None:
         return [], ["anything: nothing measured the robot beside its wheels"]

@@ -8,7 +8,8 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
-from werrimbi_odom.files.bag_contents import SCAN
+from werrimbi_odom.files.bag import topic_in_words
+from werrimbi_odom.files.bag_contents import FLOATS, SCAN
 from werrimbi_odom.files.reference_choice import other_scans
 from werrimbi_odom.files.stamps import Stamps
 from werrimbi_odom.files.wheel_joints import WheelJoints, is_no_wheel
@@ -32,6 +33,7 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
     if held.contents is not None:
         yield wheels_words(held)
         yield from no_wheels_words(held.joints)
+        yield from other_wheels_words(held)
         yield from _references(held)
         yield from _stamps(held)
     else:
@@ -50,7 +52,7 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
             f"back by {_ms(held.scans_restamped)} (rms)."
         )
     if held.problem:
-        yield f"It cannot be used as it is: {held.problem}."
+        yield f"It cannot be used as it is: {held.problem}{'' if held.problem[-1] == '?' else '.'}"
     if held.driven is not None:
         yield _driven(held, held.driven, found.sizes)
     yield from left_out_words(held.left_out)
@@ -202,16 +204,36 @@ def wheels_words(held: Held) -> str:
 
 
 def _unread(held: Held) -> str:
-    """Topics that by their names may tell it, and that are of no type that is read."""
+    """Topics that by their names may tell it, and that are read where asked for or not at all."""
     assert held.contents is not None
     known = {each.name for each in held.contents.references}
     may = [
-        f"{each.name} ({each.kind})"
+        each
         for each in held.contents.topics
         if each.name not in known and any(word in each.name.lower() for word in _OF_WHEELS)
     ]
-    verb = "is" if len(may) == 1 else "are"
-    return f" By name {listed(may)} may, but {verb} of no type that is read." if may else ""
+    words = [
+        f" By name {topic_in_words(each)} may: if its two values count both wheels, --ticks-topic "
+        f"{each.name} reads them."
+        for each in may
+        if each.kind in FLOATS
+    ]
+    others = [topic_in_words(each) for each in may if each.kind not in FLOATS]
+    if others:
+        verb = "is" if len(others) == 1 else "are"
+        words.append(f" By name {listed(others)} may, but {verb} of no type that is read.")
+    return "".join(words)
+
+
+def other_wheels_words(held: Held) -> Iterator[str]:
+    """What else in the bag may tell of wheels: of another robot, or of this one once more."""
+    assert held.contents is not None
+    taken = held.wheels.name if held.wheels is not None else ""
+    others = [each.name for each in held.contents.wheels if each.gives != "odometry"]
+    others = [name for name in others if name != taken]
+    if others and taken:
+        told = f"Not looked at, but may tell of wheels: {listed(others)}"
+        yield f"{told}; --ticks-topic takes {'that' if len(others) == 1 else 'one'}."
 
 
 def no_wheels_words(joints: WheelJoints) -> Iterator[str]:

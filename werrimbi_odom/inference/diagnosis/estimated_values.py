@@ -14,7 +14,7 @@ from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import base_told, sizes_of, std_as_effect
 from werrimbi_odom.inference.diagnosis.diagnosis import SURE, VERY_SURE, Diagnosis, Ranked, chance
 from werrimbi_odom.inference.diagnosis.post_selection import spread_over_choices
-from werrimbi_odom.inference.diagnosis.selection import Fitted
+from werrimbi_odom.inference.diagnosis.selection import RATIO, Fitted
 from werrimbi_odom.inference.diagnosis.sizes import sizes_at, sizes_needed
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS, is_determined
@@ -219,11 +219,17 @@ def at_bounds(diagnosis: Diagnosis) -> dict[str, tuple[str, float, str]]:
             name = fit.names[-1]
             helps = fit.total < this.before.total and chance(fit, this.before, this.number) < SURE
             wild = [number for number in fit.at_bound if number.startswith(f"{name}.")]
-            if helps and wild and name not in diagnosis.found:
+            if not helps or name in diagnosis.found:
+                continue
+            if wild:
                 parameter = wild[0].rpartition(".")[2]
                 applied = fit.point.model.robot.effects[-1]
                 unit = applied.effect.parameters[parameter].unit
                 found.setdefault(name, (parameter, applied.values[parameter], unit))
+            elif RATIO in fit.at_bound:
+                sizes = sizes_of(fit.point.model.robot).over(sizes_of(diagnosis.given))
+                ratio = sizes.as_effects["unequal_wheel_radii"]
+                found.setdefault(name, (RATIO, ratio, ""))
     return found
 
 

@@ -18,7 +18,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from werrimbi_odom.inference.calibration_sizes import calibration_deviation, std_as_effect
+from werrimbi_odom.inference.calibration_sizes import (
+    calibration_deviation,
+    sizes_of,
+    std_as_effect,
+)
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.inference.fitting.concatenated_runs import Concatenated
 from werrimbi_odom.inference.fitting.design import Design, Point, stacked
@@ -46,8 +50,11 @@ from werrimbi_odom.inference.rules import (
     RIVAL,
     SIGNIFICANT,
 )
+from werrimbi_odom.inference.set_up.factors import is_ordinary
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+
+RATIO = "unequal_wheel_radii.ratio"
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +83,8 @@ class Fitted:
     needless: float
     """What it costs to put them back."""
     at_bound: tuple[str, ...]
-    """Free parameters that ran against what physics allows."""
+    """Free parameters that ran against what physics allows; `RATIO` where two wheels of one robot
+    are farther apart than any are."""
     importance: dict[str, float]
     """By effect, how much the cost would rise without it."""
     covariance: Floats
@@ -114,6 +122,16 @@ class Fitted:
     def total(self) -> float:
         """Cost, price and what the needless multipliers were worth."""
         return self.cost + self.needless + self.price * self.scatter
+
+
+def unequal_beyond_physics(robot: Robot, given: Robot) -> bool:
+    """Whether a model needs wheels that differ as no two of one robot do.
+
+    Who reaches for it explains something else: a robot that slides past its gyro turns as little as
+    one with a wheel of half the size, and then any law of the wheels lowers the error.
+    """
+    ratio = sizes_of(robot).over(sizes_of(given)).as_effects["unequal_wheel_radii"]
+    return not is_ordinary(ratio)
 
 
 def price_of_one(runs: Concatenated) -> float:
@@ -186,7 +204,10 @@ def fitted(
         scatter,
         spare_of(runs, design),
         rise,
-        tuple(number.name for number in result.at_bound if number.name not in MULTIPLIERS),
+        (
+            *(number.name for number in result.at_bound if number.name not in MULTIPLIERS),
+            *([RATIO] if unequal_beyond_physics(result.robot, given) else []),
+        ),
         importance,
         covariance,
         wide,
