@@ -143,8 +143,12 @@ def std_as_effect(name: str, robot: Robot, covariance: Floats) -> float:
 
     Parameters
     ----------
+    name : str
+        Name of the calibration effect.
+    robot : Robot
+        Robot with the fitted multipliers.
     covariance : ndarray, shape (3, 3)
-        Covariance of the multipliers of `robot`, in the order of `MULTIPLIERS`.
+        Their covariance, in the order of `MULTIPLIERS`.
     """
     row = np.array(LOGARITHMS[name]) / [getattr(robot, multiplier) for multiplier in MULTIPLIERS]
     return float(np.sqrt(max(row @ covariance @ row, 0.0)))

@@ -68,6 +68,8 @@ def fisher_above(value: float, above: float, below: float) -> float:
 
     Parameters
     ----------
+    value : float
+        Value of the statistic.
     above, below : float
         Degrees of freedom of the numerator and the denominator. They are infinite for a known
         variance; with an infinite denominator the statistic is chi-squared.

@@ -51,7 +51,7 @@ class LegFigures:
     scatter_nees: float
     """NEES after removing the systematic part."""
     noise: NoiseFactor
-    """Likeliest factor on the variance of the wheel noise, by this dispersion."""
+    """Maximum-likelihood factor on the variance of the wheel noise, from this dispersion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -138,6 +138,8 @@ def compare(
         file are estimated in each run.
     options : EvaluationOptions
         Leg length and what is known of the reference.
+    show : callable
+        Progress callback.
 
     Raises
     ------

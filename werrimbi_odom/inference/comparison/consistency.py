@@ -3,8 +3,8 @@
 """Consistency of a covariance (Bar-Shalom): one rule for all commands and the node.
 
 The normalised estimation error squared (NEES) is error' Σ⁻¹ error over its degrees of freedom. Its
-expectation is one if the covariance is consistent. The tolerance is `HONEST_WITHIN`, plus what is
-by chance for that many legs.
+expectation is one if the covariance is consistent. It may deviate by the factor `HONEST_WITHIN`, or
+by what is due to chance with so few legs, whichever is more.
 """
 
 from __future__ import annotations

@@ -84,7 +84,7 @@ def in_runs(prepared: Prepared, robot: Robot | Model) -> Model:
     """Model of a robot for these runs, the same for all commands.
 
     Per-run values that the robot lacks are estimated in each run; those of a `Model` are kept.
-    Nuisance parameters of the references are always estimated anew.
+    Nuisance parameters of the references are always estimated again.
     """
     if isinstance(robot, Model):
         plain = robot.without_nuisances()

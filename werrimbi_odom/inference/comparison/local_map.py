@@ -44,7 +44,7 @@ class Wandering:
 
 
 def wandering_of(records: Sequence[Record], robot: Robot, options: EvaluationOptions) -> Wandering:
-    """Maximum-likelihood noise of a reference, beside a robot with free calibration.
+    """Maximum-likelihood noise of a reference, with the robot's calibration free.
 
     So a wrong base or radius is not taken for a random walk of the reference.
     """

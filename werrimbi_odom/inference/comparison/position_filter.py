@@ -92,6 +92,7 @@ def _filtered(
     headings: Floats,
     gap: NDArray[np.bool_],
 ) -> tuple[PositionErrors, Floats]:
+    """Filter once with an inflated covariance; also return squared Mahalanobis distances."""
     count = relative.shape[0]
     found = PositionErrors(
         np.full((count, 3), np.nan),

@@ -261,6 +261,7 @@ _SPANS = (1, 2, 4)
 
 
 def _position_differences(item: Residual) -> Differences:
+    """Third differences of the position error, for several spans."""
     found: Differences = {}
     path = np.abs(item.relative[:, :2]).sum(axis=1)
     for span in _SPANS:
@@ -286,6 +287,7 @@ def _position_differences(item: Residual) -> Differences:
 
 
 def _heading_differences(item: Residual) -> Differences:
+    """Third differences of the heading error, for several spans."""
     found: Differences = {}
     off = np.concatenate([[0.0], np.cumsum(item.intervals[:, 2])])
     turned = np.abs(item.relative[:, 2])
@@ -346,6 +348,7 @@ def _steps(item: Residual) -> Floats:
 
 
 def _growing(columns: Floats) -> float | None:
+    """Variance of the errors of single intervals; None if there are too few."""
     known = columns[np.isfinite(columns).all(axis=1)]
     if known.shape[0] < DIFFERENCES:
         return None

@@ -105,6 +105,7 @@ def systematic_parts(legs: LegErrors) -> tuple[tuple[Systematic, ...], Floats]:
 def _laid_on(
     legs: LegErrors, rows: np.ndarray, channel: int, kind: str, names: tuple[str, ...]
 ) -> tuple[list[Systematic], Floats]:
+    """Regress one channel's errors of some legs on the given variables."""
     variables = {
         "travel": legs.along,
         "turn": legs.turn,
@@ -217,6 +218,7 @@ def _by_wheels(
 
 
 def _likeliest(cost: Floats) -> NoiseFactor:
+    """Factor of least cost, with its likelihood interval."""
     best = int(np.argmin(cost))
     near = _FACTORS[cost <= cost[best] + _SAME]
     low = 0.0 if near[0] == _FACTORS[0] else float(near[0])

@@ -71,11 +71,11 @@ class Verdict:
     gross: bool = False
     """Whether errors are as large as those of a set-up mistake."""
     too_short: float = 0.0
-    """Position noise for which the legs are too short to tell anything [m]; else 0."""
+    """Noise of positions for which the legs are too short to show anything [m]; else 0."""
     few: float = 0.0
     """Share of the squared errors in the worst twentieth of the legs."""
     few_and_bad: tuple[str, ...] = ()
-    """Motion types with few legs, of which only larger errors than predicted can be said."""
+    """Motion types with larger errors than predicted, but too few legs to say more."""
     off: tuple[str, ...] = ()
     """Motion types whose NEES is too large after removing the systematic part."""
     lengths: tuple[AtLength, ...] = ()
@@ -160,6 +160,7 @@ def _too_short(comparison: Comparison) -> float:
 
 
 def _gross(main: OfLength, systematic: tuple[Systematic, ...]) -> bool:
+    """Whether errors are as large as those of a set-up mistake."""
     shares = {("along", "travel"), ("sideways", "travel"), ("heading", "turn")}
     figures = main.all.figures
     if not figures.nees > WRONG_NEES:
@@ -178,6 +179,7 @@ def _gross(main: OfLength, systematic: tuple[Systematic, ...]) -> bool:
 
 
 def _held_by_few(comparison: Comparison) -> float:
+    """Share of the squared errors in the worst twentieth of the legs."""
     legs = comparison.legs.errors.chosen(~comparison.legs.outlier)
     deviation = np.sort(legs.deviation)
     count = max(deviation.size // WORST_OF, 1)

@@ -38,7 +38,7 @@ BESIDE_POSITIONS = ("reference_heading_delay",)
 """Effects that relate headings to positions; for headings alone they equal another effect."""
 
 OF_THE_MEASUREMENT = ("reference_scale",)
-"""Effects equivalent to scaling all three multipliers together: never tried beside these."""
+"""Effects equivalent to scaling all three multipliers together: never tried with these free."""
 
 
 @dataclass(frozen=True, slots=True)

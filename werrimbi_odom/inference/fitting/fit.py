@@ -201,6 +201,7 @@ def without_jumps(runs: Concatenated, point: Point) -> Point:
 
 
 def _jumps(runs: Concatenated, point: Point) -> tuple[NDArray[np.bool_], ...]:
+    """Legs of each run whose whitened innovations are outliers."""
     nothing = tuple(np.zeros(size, dtype=np.bool_) for size in np.diff(runs.legs))
     if runs.headings_alone:
         return nothing  # a gyro does not jump: outliers are legs with turns

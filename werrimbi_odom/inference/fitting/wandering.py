@@ -99,7 +99,7 @@ def filtered_wandering(legs: Legs, wander: Wander) -> Unexpected:
     doubted = reading[:, leg] + UNMEASURED * (~known[:, None, :] * np.eye(3))
     lost = ANEW * (known & wander.gap[leg, None])
     over = wander.gap & ~np.append(wander.gap[1:], False)  # a gap is one leg per pose in it
-    throws = np.array([True, True, laid is None])  # a gyro keeps its heading through a jump
+    throws = np.array([True, True, laid is None])  # a gyro does not jump
     anew = ANEW * (jumped[:, None] & known & throws) + _LOST * over[leg, None]
     kept, added = wander.kept_of_each()[:, leg], wander.added()[:, leg]
 

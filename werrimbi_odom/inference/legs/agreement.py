@@ -172,12 +172,13 @@ def _lags(step: float) -> list[float]:
 
 
 def _turn(windows: Windows, laws: Floats) -> tuple[Floats, Floats]:
-    """Predicted and largest possible turn of each window under some laws (2, n), each (k, n)."""
+    """Predicted turn of each window under some laws (2, n), and its upper bound; (k, n) each."""
     shown = np.stack([windows.left, windows.right], axis=1) @ laws
     return shown, windows.rolled[:, None] * np.abs(laws).sum(axis=0)
 
 
 def _turn_law(windows: Windows, base: float) -> Floats:
+    """Turn law with the most inliers, or the robot file's if it has enough."""
     terms = np.stack([windows.left, windows.right], axis=1)
     picked = np.random.default_rng(len(terms)).integers(0, len(terms), (_TRIES, 2))
     square = terms[picked]
@@ -196,6 +197,7 @@ def _turn_law(windows: Windows, base: float) -> Floats:
 
 
 def _refined(windows: Windows, law: Floats, terms: Floats) -> Floats:
+    """Least-squares refit of a turn law to its inliers."""
     for _ in range(_REFINED):
         shown, gross = _turn(windows, law[:, None])
         keeps = (np.abs(windows.measured - shown[:, 0]) <= AGREE_WITHIN * gross[:, 0]) & (

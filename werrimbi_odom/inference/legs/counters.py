@@ -129,6 +129,7 @@ def _counted(run: Run, robot: Robot, limits: EncoderLimits | None, least: float)
 def _told(
     leaps: Sequence[Leap], time: Floats, robot: Robot
 ) -> tuple[tuple[float, float, str], ...]:
+    """Describe counter jumps: begin and end [s], and a sentence."""
     found = []
     for leap in leaps:
         tick, per_turn = (

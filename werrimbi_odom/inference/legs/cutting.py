@@ -155,6 +155,8 @@ def match(
 
     Parameters
     ----------
+    run : Run
+        Recorded run.
     robot : Robot
         Robot whose travel decides where legs end; later fits do not move them.
     leg : float
@@ -254,8 +256,10 @@ def record_of(
 
     Parameters
     ----------
+    run, robot, limits
+        As for `match`.
     leg, turn : float
-        Travel that makes a leg [m, rad]; see `match`.
+        Travel that makes a leg [m, rad]; gaps are measured in legs.
 
     Raises
     ------

@@ -30,7 +30,7 @@ class Estimate:
     base: float | None
     """Wheel base in the reference's metres [m]; None where only yaw was measured."""
     yaw: float | None
-    """Mounting angle for wheels whose driving and turning signs agree [rad]; None where not
+    """Mounting angle if each wheel's sign is that of its turning [rad]; None where not
     identifiable."""
     arm: complex = 0j
     """Lever arm, ahead + i left of the measured point, rotated by -yaw [m]."""
