@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Many robots at once: each is diagnosed by itself, here or on a cluster, into one table.
+"""Many robots at once: each diagnosed by itself, here or on a cluster, told in one table.
 
-Reading order: `robot_task` (the diagnosis of one robot, which always ends), `members` (the
-robots of a folder), `process_pool` (on this machine), `parcel`, `code_version` and
-`cluster` (on Dask).
+Reading order: `one` (a robot's diagnosis, whatever happens),
+`members` (the robots of a folder), `spread` (on the processors of this machine), `parcel`, `code`
+and `cluster` (on a Dask cluster).
 """
