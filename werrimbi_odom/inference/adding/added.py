@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A model with more effects, and what speaks for each and against."""
+"""A model with added effects, and the evidence for and against each of them."""
 
 from __future__ import annotations
 
@@ -36,22 +36,22 @@ class Side:
     """One set of drives, judged with three models."""
 
     before: Legs
-    """With the robot as given."""
+    """Legs with the robot as given."""
     calibrated: Legs
-    """With everything fitted but the effects."""
+    """Legs with everything fitted but the effects."""
     after: Legs
 
     def figures(self, which: str) -> LegStatistics:
-        """Over legs on which the reference did not jump, the median over all."""
+        """Statistics of the legs without jumps of the reference; the median is of all legs."""
         return statistics_of(getattr(self, which))
 
     @property
     def unit(self) -> Unit:
-        """Radians where headings alone were measured, and errors are those of the heading."""
+        """Radians where only headings were measured."""
         return "m" if np.isfinite(self.after.errors.error[:, 0]).any() else "rad"
 
     def error(self, which: str) -> float:
-        """Root mean square error over legs, of positions, or where there are none of headings."""
+        """Root mean square error of legs: of positions, or of headings without positions."""
         return error_of(getattr(self, which), self.unit)
 
     @property
@@ -61,10 +61,10 @@ class Side:
 
     @property
     def promised(self) -> float:
-        """The error that the covariance of the final model promises, in the same unit.
+        """Root mean square error that the covariance of the final model predicts, in the same unit.
 
-        Without the few legs that begin with a heading that nobody knows yet. It is the noise's
-        alone where the model explains the drives (`Added.noise_alone`).
+        Without the few legs that begin with an unknown heading. It is the error by noise alone if
+        the model explains the drives (`Added.noise_alone`).
         """
         errors = self.after.errors.chosen(~self.after.outlier)
         if self.unit == "rad":
@@ -80,54 +80,54 @@ class Side:
 
 @dataclass(frozen=True, kw_only=True)
 class Added:
-    """A model with more effects, fitted together, and what speaks for each."""
+    """A model with added effects, fitted together, and the evidence for each."""
 
     effects: tuple[Effect, ...]
-    """As they were asked for."""
+    """In the order of the request."""
     fitted: Mapping[str, Mapping[str, FittedParameter]]
-    """Parameters by effect."""
+    """Fitted parameters of each effect."""
     also: tuple[str, ...]
-    """Set-up mistakes that were put right with them."""
+    """Set-up mistakes that were corrected with them."""
     given: Robot
     robot: Robot
-    """To be written."""
+    """The robot to write."""
     multiplier_stds: Mapping[str, float | None]
-    """None where the multiplier stayed as the given file has it."""
+    """None where the multiplier is as in the given file."""
     train: Side
     holdout: Side
     without: Mapping[str, float]
     """Position error of the held-out drives without one of several effects [m]."""
     set_aside: tuple[str, ...]
-    """Names of the runs of which parts were put aside for judging; empty where some were given."""
+    """Names of the runs of which parts were held out; empty where held-out drives were given."""
     written_from_all: bool
-    """Whether the written values were fitted on all runs, those put aside too."""
+    """Whether the written values were fitted on all runs, including the held-out parts."""
     noises: Mapping[str, NoiseEstimate]
     explained: bool
-    """Whether the errors go with nothing more, and the wheels' noise is some: then it is written,
-    and what the covariance promises is noise."""
+    """Whether the errors depend on nothing more and the wheels' noise is plausible. Then the noise
+    is written, and the predicted covariance is that of noise."""
     remaining: tuple[Dependence, ...]
-    """What the errors still depend on beyond chance."""
+    """Significant dependences that remain."""
     misfit: Misfit | None
-    """The law that does not fit fully, where that is what is left."""
+    """The law of slightly wrong form, if that is what remains."""
     set_up: SetUp
     per_run: tuple[str, ...]
-    """Parameters that each run has anew; the file leaves them out."""
+    """Per-run parameters; the file leaves them out."""
     chances: Mapping[str, float | None]
-    """How often chance would make the fit as much better as an effect does, the others being there;
-    None for calibration and for mistakes, which are not tested so."""
+    """P-value of each effect's gain, with the others in the model; None for calibration and for
+    mistakes, which are not tested so."""
     objections: Mapping[str, str]
-    """By effect, why it should not be added; empty where nothing speaks against any."""
+    """Why an effect should not be added, by its name; empty if nothing speaks against any."""
     left_out: tuple[LeftOut, ...]
-    """Stretches of all runs that none of it is about."""
+    """Stretches of all runs that are excluded."""
     happened: Events
-    """What no law explains, for it happened at an instant; left out of the fits."""
+    """Abrupt errors, which no law explains; left out of the fits."""
     compared: Comparison
-    """The robot as it is written over the held-out drives, or all where none were given: what
-    `compare` of that file says."""
+    """Comparison of the written robot on the held-out drives, or on all if none were given: the
+    result of `compare` with that file."""
 
     @property
     def changes(self) -> dict[str, float]:
-        """Parameters of the robot file to be written: sizes, and noise where it is some."""
+        """Parameters of the robot file to write: sizes, and noise where it is determined."""
         names = [*MULTIPLIERS]
         if self.explained:
             names += [name for name in WHEEL_NOISES if self.noises[name].determined]
@@ -135,22 +135,22 @@ class Added:
 
     @property
     def verdict(self) -> Verdict:
-        """What `compare` says of the written file."""
+        """Verdict of `compare` on the written file."""
         return verdict_of(self.compared)
 
     @property
     def covariance(self) -> Consistency:
-        """Whether the written file's is honest, by `compare`."""
+        """Whether the covariance of the written file is consistent, by `compare`."""
         return self.verdict.covariance
 
     @property
     def name(self) -> str:
-        """Of the effects, as on the command line."""
+        """Names of the effects, as on the command line."""
         return ",".join(effect.name for effect in self.effects)
 
     @property
     def parameters(self) -> dict[str, FittedParameter]:
-        """All of them: by NAME where one effect was added, else by EFFECT.NAME."""
+        """All parameters: by NAME if one effect was added, else by EFFECT.NAME."""
         if len(self.effects) == 1:
             return dict(self.fitted[self.effects[0].name])
         return {
@@ -161,14 +161,14 @@ class Added:
 
     @property
     def objection(self) -> str | None:
-        """All that speaks against them, in a line."""
+        """All objections, in one line."""
         return "; ".join(self.objections.values()) or None
 
     @property
     def is_calibration(self) -> bool:
-        """Whether nothing but sizes was asked for."""
+        """Whether only sizes were asked for."""
         return all(effect.name in CALIBRATED for effect in self.effects)
 
     def noise_alone(self, side: Side) -> float:
-        """Position error that noise alone leaves [m]; NaN while something is still missing."""
+        """Position error by noise alone [m]; NaN while an effect is still missing."""
         return side.promised if self.explained else float("nan")

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""More effects in the model: fitted with all calibration, judged on drives held out.
+"""Add effects to a model: fitted together with all calibration, judged on held-out drives.
 
-An effect is taken when it lowers the held-out error beyond what calibration alone does, surely
-differs from null, and does not run against what physics allows. Else the reason is told, and only
-the user's own will puts it in.
+An effect is accepted if it lowers the held-out error by more than calibration alone does, differs
+significantly from null, and stays within its physical bounds. Otherwise the objection is reported,
+and only the user can put the effect in.
 """
 
 from __future__ import annotations
@@ -61,12 +61,12 @@ from werrimbi_odom.progress import Show, silent
 
 
 class _Together(NamedTuple):
-    """Effects fitted to drives, and who judges them."""
+    """Effects fitted to drives, and the judge of the fits."""
 
     judge: Judge
     set_up: SetUp
     also: tuple[str, ...]
-    """Set-up mistakes that are put right with them."""
+    """Set-up mistakes that are corrected with them."""
     drives: Drives
     fits: Fits
 
@@ -85,19 +85,31 @@ def add_effects(
 
     Parameters
     ----------
-    effects
-        None twice; calibration effects and set-up mistakes may be among them.
+    effects : sequence of Effect
+        Distinct effects; calibration effects and set-up mistakes may be among them.
+    runs : sequence of Run
+        Recorded drives with a reference.
+    robot : Robot
+        The model that the fit begins with.
+    options : EvaluationOptions
+        How drives are cut into legs and judged.
     given : Robot, optional
-        By whose travel legs are cut, and whose errors are those before; `robot` where there is none
-        other that the fit begins with.
-    holdout
-        Runs to judge on alone. None given: parts of `runs` are put aside for it.
+        Robot by whose travel legs are cut, and with whose errors the fit is compared; by default
+        `robot`.
+    holdout : sequence of Run
+        Runs for judging only. If empty, parts of `runs` are held out.
+    show : Show
+        Callback for progress.
+
+    Returns
+    -------
+    Added
 
     Raises
     ------
     InputError
-        When a run cannot be used, or is in other units; when a channel that an effect looks at was
-        not measured, or the drives do not show at all what one looks at.
+        When a run cannot be used, or is in other units; when a channel that an effect reads was not
+        measured, or the drives do not determine an effect at all.
     """
     held = {item.name for item in robot.effects}
     for effect in effects:
@@ -108,7 +120,7 @@ def add_effects(
                 "again"
             )
     if any(base_name(effect) is not None for effect in effects):
-        robot = replace(robot, wheels_a_side=max(robot.wheels_a_side, 2))  # so says who asks for it
+        robot = replace(robot, wheels_a_side=max(robot.wheels_a_side, 2))  # the request implies it
 
     def fit_them(
         runs: Sequence[Run], holdout: Sequence[Run], first: bool
@@ -177,7 +189,7 @@ def add_effects(
 
 
 def _calibrations_wanted(effects: Sequence[Effect], set_up: SetUp) -> set[str]:
-    """Sizes that are fitted whatever they are worth: asked for, or far off as the file has them."""
+    """Sizes that are fitted regardless of their gain: asked for, or far off in the file."""
     names = {effect.name for effect in effects} | {item.effect for item in set_up.findings}
     as_base = {effect.name for effect in effects if base_name(effect) is not None}
     return (names | ({"track_width"} if as_base else set())) & set(CALIBRATED)
@@ -193,7 +205,7 @@ def _refuse_unmeasured(effect: Effect, runs: Sequence[Run]) -> None:
 
 
 def _judged(judge: Judge, base: Fitted, fit: Fitted) -> tuple[Side, Side]:
-    """The legs of both sides; what each run has of its own is learnt in that run alone."""
+    """Legs of the fitted and the held-out drives; per-run parameters are fitted run by run."""
     plain = Model(judge.given, judge.nothing_of_own)
     train = Side(
         _legs(judge.train, in_runs(judge.train, plain)),
@@ -210,13 +222,13 @@ def _judged(judge: Judge, base: Fitted, fit: Fitted) -> tuple[Side, Side]:
 
 
 def _at_home(judge: Judge, without: Fitted, kept: Side) -> Sides:
-    """What becomes of the held-out error of a model when all effects are in."""
+    """Change of the held-out error from a model without one effect to that with all."""
     legs = _legs(judge.holdout, judge.at_home(_noisy(without)).model)
     return sides_of(legs, kept.after, kept.unit)
 
 
 def _noisy(fit: Fitted) -> Model:
-    """The fitted model with the wheels' noise that was fitted with it."""
+    """The fitted model with its fitted wheel noise."""
     model, variances = fit.point.model, fit.point.variances
     robot = replace(
         model.robot,
@@ -233,7 +245,7 @@ def _legs(prepared: Prepared, model: Model) -> Legs:
 def _noise(
     drives: Drives, fit: Fitted
 ) -> tuple[dict[str, NoiseEstimate], tuple[Dependence, ...], Misfit | None, bool]:
-    """Noise of the wheels, what the errors still depend on, as diagnose tells it; sane wheels."""
+    """Wheel noise, remaining dependences, misfit, and whether the noise is plausible."""
     noises = noises_of(drives, fit)
     found = dependences(drives.laid, fit.point, (*CALIBRATION, *fit.numbers))
     remaining = tuple(cell for cell in found if cell.p_value < VERY_SURE)
@@ -243,7 +255,7 @@ def _noise(
 
 
 def _told(noise: NoiseEstimate) -> NoiseEstimate:
-    """To as many digits as a file says."""
+    """Rounded to the digits of a file."""
     return replace(noise, value=float(f"{noise.value:.4g}"))
 
 
@@ -256,9 +268,9 @@ def _with_noise_of(robot: Robot, given: Robot) -> Robot:
 def _on_all(
     judge: Judge, drives: Drives, fit: Fitted, given: Robot, runs: Sequence[Run], sizes: Sizes
 ) -> tuple[Drives, Fitted]:
-    """The same model fitted on all runs, those put aside among them."""
+    """Fit the same model to all runs, including the held-out parts."""
     if len(runs) < 2:
-        return drives, fit  # of a single run the last part was put aside; the rest is what there is
+        return drives, fit  # of a single run the last part was held out; the fit keeps to the rest
     both = [
         drives,
         drives_of(judge.holdout, fit.point.model.robot, drives.options),

@@ -36,13 +36,13 @@ from werrimbi_odom.progress import Show
 
 @dataclass(frozen=True, slots=True)
 class Fits:
-    """A model with all effects, and what each of them is held against."""
+    """The fit with all effects, and the fits that it is compared with."""
 
     none: Fitted
-    """Everything fitted but the effects; the model itself where they are calibration alone."""
+    """Everything fitted but the effects; the same fit if these are calibration effects."""
     all: Fitted
     without: dict[str, Fitted]
-    """With all but one of several effects; empty where there is but one."""
+    """With all but one of several effects; empty for a single effect."""
 
 
 def fits_without_jumps(
@@ -53,10 +53,10 @@ def fits_without_jumps(
     also: tuple[str, ...],
     show: Show,
 ) -> tuple[Drives, Fits]:
-    """The fits, and the drives without legs on which their model cannot believe the reference.
+    """The fits, and the drives without the legs on which the reference jumped.
 
-    As in `diagnose`, jumps are found by the better model too where a reference's errors last: one
-    match that failed within the travel of its interval passes for noise of all the others.
+    As in `diagnose`, a better model finds more jumps where a reference has correlated errors: one
+    failed match within the travel of its interval passes for noise of all the others.
     """
     fits = fits_of(effects, drives, begun, given, also, show)
     if drives.options.reference_kind == "absolute":
@@ -79,18 +79,21 @@ def fits_of(
 ) -> Fits:
     """Models with none of the effects, with all, and with all but one.
 
-    Set-up mistakes begin together, where the search for them ended; then one effect comes after the
-    other, the one whose score promises most first, and all before it are fitted again with it.
+    Set-up mistakes start together, at the result of the set-up search. Then effects are added one
+    after the other, the one with the highest score first, and all earlier ones are fitted again
+    with it.
 
     Parameters
     ----------
-    begun, also
-        The robot where fits begin, and which of its effects are set-up mistakes just found.
+    begun : Robot
+        Robot at which fits start.
+    also : tuple of str
+        Those of its effects that are set-up mistakes just found.
 
     Raises
     ------
     InputError
-        When the drives do not show at all what an effect looks at.
+        When the drives do not determine an effect at all.
     """
     sought = [effect for effect in effects if effect.name not in CALIBRATED]
     if not sought:
@@ -147,7 +150,7 @@ def fits_of(
 
 
 def _without(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitted:
-    """The model less one of its effects, all else fitted again."""
+    """Fit the model without one of its effects."""
     model = fit.point.model
     mine = f"{effect.name}."
     effects = tuple(item for item in model.robot.effects if item.name != effect.name)
@@ -162,7 +165,7 @@ def _without(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitte
 
 
 def _well(drives: Drives, start: Start, given: Robot) -> Fitted:
-    """A fit from a start, phases led past half a turn where they ran against it."""
+    """A fit from a start; phases stuck at half a turn are moved across it."""
     fit = drives.fit(start.point, start.names, start.numbers, given)
     turned = without_phases_stuck(fit.point.model, fit.numbers)
     if turned is None:
@@ -172,9 +175,9 @@ def _well(drives: Drives, start: Start, given: Robot) -> Fitted:
 
 
 def _pruned(effect: Effect, drives: Drives, fit: Fitted, given: Robot) -> Fitted:
-    """The fit without parameters that are not worth the price of a number, one after the other.
+    """Backward elimination of parameters that do not pay the penalty.
 
-    A length or threshold that the drives do not hold at all is left as it usually is.
+    A length or threshold that the drives do not determine stays at its typical value.
     """
     limit = math.sqrt(fit.price_of_one)
     while True:

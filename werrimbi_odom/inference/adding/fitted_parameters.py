@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a fit says of an effect's parameters: values, how sure they are, what was left at null."""
+"""Parameters of an effect after a fit: values, standard deviations, and which stayed at null."""
 
 from __future__ import annotations
 
@@ -39,22 +39,22 @@ class FittedParameter:
 
     declared: Parameter
     value: float | None
-    """None where each run has its own."""
+    """None for a per-run parameter."""
     std: float | None
     """None where it was not fitted."""
     remark: Remark
-    """null: left at its null value, because the data show no other."""
+    """null: kept at its null value, because the data show no other."""
     of_runs: tuple[float, ...] = ()
-    """Values of the fitted runs, where each has its own."""
+    """Values of the fitted runs, for a per-run parameter."""
 
     @property
     def written(self) -> bool:
-        """Whether the file's value is one that the drives gave."""
+        """Whether the value in the file was estimated from the drives."""
         return self.std is not None
 
     @property
     def significant(self) -> bool:
-        """Whether it surely differs from null."""
+        """Whether it differs significantly from null."""
         if self.value is None or not self.std:
             return False
         return abs(self.value - self.declared.null) > SIGNIFICANT * self.std
@@ -90,7 +90,7 @@ def parameters_of(effect: Effect, fit: Fitted, given: Robot) -> dict[str, Fitted
 
 def _remark(value: float, std: float, number: FreeParameter, effect: Effect) -> Remark:
     name = number.name.rpartition(".")[2]
-    # What each drive could have anew is where on a wheel something is, and goes all the way round.
+    # A per-run parameter may be an angle round a wheel, which has no bounds.
     is_place = effect.parameters[name].per_run and effect.parameters[name].unit == "rad"
     if not is_determined(effect.parameters[name], value, std):
         return "undetermined"
@@ -98,21 +98,21 @@ def _remark(value: float, std: float, number: FreeParameter, effect: Effect) -> 
 
 
 def _at_bound(value: float, item: Parameter) -> bool:
-    """Whether a value ran against what is possible; at null it is simply absent."""
+    """Whether a value is at a bound other than null."""
     low, high = item.bounds
     near = 1e-6 * (high - low)
     return min(value - low, high - value) <= near and abs(value - item.null) > near
 
 
 def std_of(fit: Fitted, name: str) -> float:
-    """Standard deviation of a shared number of a fit."""
+    """Standard deviation of a shared parameter of a fit."""
     names = [number.name for number, _ in fit.design.columns]
     index = names.index(name)
     return float(np.sqrt(max(fit.covariance[index, index], 0.0)))
 
 
 def _calibrated(effect: Effect, fit: Fitted, given: Robot) -> FittedParameter:
-    """A calibration effect's number, relative to the given robot file."""
+    """A calibration effect's value, relative to the given robot file."""
     robot = fit.point.model.robot
     value = sizes_of(robot).over(sizes_of(given)).as_effects[effect.name]
     names = [number.name for number, _ in fit.design.columns]
@@ -125,7 +125,7 @@ def _calibrated(effect: Effect, fit: Fitted, given: Robot) -> FittedParameter:
 
 
 def _as_base(applied: AppliedEffect, item: Parameter, fit: Fitted, given: Robot) -> FittedParameter:
-    """The base by the name that an effect has for it."""
+    """The wheel base, as the parameter of an effect that stands for it."""
     value = base_told(applied, fit.point.model.robot, given)
     base = _calibrated(find("track_width"), fit, given)
     std = None if base.value is None or base.std is None else base.std / base.value * value
@@ -133,7 +133,7 @@ def _as_base(applied: AppliedEffect, item: Parameter, fit: Fitted, given: Robot)
 
 
 def undetermined(effect: Effect, found: Mapping[str, FittedParameter]) -> str | None:
-    """A length or threshold of a law of which the drives say nothing at all; or None."""
+    """A length or threshold of a law that the drives do not determine; or None."""
     return next(
         (
             name
@@ -145,9 +145,9 @@ def undetermined(effect: Effect, found: Mapping[str, FittedParameter]) -> str | 
 
 
 def to_write(model: Model, given: Robot) -> Robot:
-    """The robot for a file: sizes as multipliers, and what each run has of its own left unknown.
+    """The robot for a file: sizes as multipliers, per-run parameters left unknown.
 
-    A calibration effect that the given file holds stays as it stands there.
+    A calibration effect in the given file stays as it is there.
     """
     held = {item.name: item for item in given.effects if item.name in CALIBRATED}
     own = set(model.own[0]) if model.own else set()
@@ -184,7 +184,7 @@ def to_write(model: Model, given: Robot) -> Robot:
 
 
 def rounded(value: float) -> float:
-    """Nine digits: more than any drive determines, and a file that can be read."""
+    """Nine digits: more than any drive determines, and still readable."""
     return float(f"{value:.9g}")
 
 
@@ -199,10 +199,10 @@ def _forgotten(applied: AppliedEffect, own: set[str]) -> AppliedEffect:
 def weakest(
     effect: Effect, found: Mapping[str, FittedParameter], limit: float = SIGNIFICANT
 ) -> str | None:
-    """The parameter that the data show least of, if others remain without it; or None.
+    """The parameter that the data show least, if others remain without it; or None.
 
-    `limit` is in standard deviations. Of two that the drives hardly tell apart (a drift with the
-    distance, and one with the time) the weaker goes first, and the other one then stands alone.
+    `limit` is in standard deviations. Of two that the drives hardly tell apart (drift with distance
+    and drift with time) the weaker goes first, and the other then stands alone.
     """
     phases = effect.quadrature or ()
     free = {
@@ -221,7 +221,7 @@ def weakest(
 
 
 def without_phases_stuck(model: Model, numbers: Sequence[FreeParameter]) -> Model | None:
-    """The model with phases that ran against half a turn put to its other side; None: none did."""
+    """The model with phases stuck at half a turn moved across it; None if there are none."""
     stuck = False
     shared: dict[str, float] = {}
     own: list[dict[str, float]] = [{} for _ in model.own]

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Why an effect should not be added."""
+"""Objections to an effect: why it should not be added."""
 
 from __future__ import annotations
 
@@ -20,27 +20,28 @@ from werrimbi_odom.model.effect import Effect
 
 
 class Worth(NamedTuple):
-    """What an effect is worth beside all others that are added."""
+    """The evidence for an effect beside all others that are added."""
 
     kept: Sides
     """Held-out error with the given file, and with everything."""
     alone: Sides | None
-    """The same with everything but the effect, and with everything; None where nobody asks that: of
-    a mistake that was put right with others."""
+    """Held-out error with everything but the effect, and with everything; None if it is not tested:
+    for a mistake that was corrected with others."""
     asked_for: bool
-    """Whether the fitted drives want it, be it that those held out do not show it."""
+    """Whether the fitted drives need it by cross-validation, even if the held-out ones do not show
+    it."""
     chance: float | None
-    """None where it is not tested."""
+    """P-value; None if it is not tested."""
     held: bool
-    """Whether the file held it before."""
+    """Whether the file had it before."""
     others: tuple[str, ...]
-    """What else was asked for."""
+    """The other effects that were asked for."""
 
 
 def objection(
     effect: Effect, parameters: Mapping[str, FittedParameter], worth: Worth, set_up: SetUp
 ) -> str | None:
-    """Why the effect should not be added, in a line; None where nothing speaks against it."""
+    """Why the effect should not be added, in one line; None if nothing speaks against it."""
     name = effect.name
     after, unit = worth.kept.after, worth.kept.unit
     figures = f"{_told(worth.kept.before, unit)} before, {_told(after, unit)} after"
@@ -80,10 +81,10 @@ def objection(
 
 
 def _not_lower(sides: Sides, worth: Worth) -> str | None:
-    """What is held against an error that did not fall; None where nothing is.
+    """Objection to an error that did not fall; None if there is none.
 
-    A rise that chance makes says nothing of an effect that these drives hardly show: then the
-    fitted ones decide, by legs left out of their fits, as they do in a diagnosis.
+    A rise that is not significant is no evidence against an effect that these drives hardly excite.
+    Then the fitted drives decide, by cross-validation, as in a diagnosis.
     """
     if sides.rose:
         return ", and chance does not raise it so"

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the fit of one more effect begins: near the answer, however far from null that lies.
+"""Start values for the fit of one more effect: near the answer, however far that is from null.
 
-Set-up mistakes and factors begin where the search for them ends. All other effects begin at the
-values that their score suggests, once for each shape that is worth a fit.
+Set-up mistakes and factors start at the result of the set-up search. All other effects start at the
+values that their score suggests, once for each of the best trial shapes.
 """
 
 from __future__ import annotations
@@ -48,12 +48,12 @@ class Drives:
 
     laid: Concatenated
     skipped: tuple[NDArray[np.bool_], ...]
-    """Legs on which the reference jumped, and those at the edges of the records."""
+    """Legs on which the reference jumped, and legs at the ends of the records."""
     options: EvaluationOptions
-    """With what the records state of the reference's noise."""
+    """With the stated noise of the reference."""
 
     def begin(self, robot: Robot) -> tuple[Point, tuple[FreeParameter, ...]]:
-        """A robot as it is, with what each run has of its own learnt; and what may be turned."""
+        """The robot with per-run parameters estimated, and its free parameters."""
         point = replace(start_point(self.laid, robot, self.options), excluded=self.skipped)
         return with_own_values(self.laid, point)
 
@@ -72,15 +72,15 @@ class Drives:
 
 @dataclass(frozen=True, slots=True)
 class Start:
-    """A model to begin with, and the effect's own numbers."""
+    """Start of a fit: a model and its free parameters."""
 
     point: Point
     names: tuple[str, ...]
     """Effects beyond the given robot's."""
     numbers: tuple[FreeParameter, ...]
-    """Of all effects."""
+    """Free parameters of all effects."""
     gain: float = 0.0
-    """What its score promises, of an effect that begins where that points."""
+    """Gain by the score test, for an effect that starts at its suggested values."""
 
 
 def drives_of(prepared: Prepared, robot: Robot, options: EvaluationOptions) -> Drives:
@@ -95,20 +95,20 @@ def drives_of(prepared: Prepared, robot: Robot, options: EvaluationOptions) -> D
 
 
 def is_of_set_up(effect: Effect, set_up: SetUp) -> bool:
-    """Whether the search for set-up mistakes found the effect, or one that is the same to it."""
+    """Whether the set-up search found the effect, or an observational equivalent."""
     return any(effect.name in (item.effect, *item.twins) for item in set_up.findings)
 
 
 def with_set_up(
     effects: Sequence[Effect], robot: Robot, set_up: SetUp
 ) -> tuple[Robot, tuple[str, ...]]:
-    """The robot with what the search for set-up mistakes found, some of `effects` among it.
+    """The robot with the findings of the set-up search, if some of `effects` are among them.
 
     Returns
     -------
     robot, names
-        All findings are put in where one of the effects is one of them, because one mistake mended
-        alone may leave the robot worse than before (both counters reversed). Else none but factors
+        If one of the effects is a finding, all findings are put in, because one mistake corrected
+        alone may leave the robot worse than before (both counters reversed). Otherwise only factors
         of the sizes, which belong to the calibration.
     """
     found = {item.effect for item in set_up.findings} - {IN_DEGREES}
@@ -131,7 +131,7 @@ def with_set_up(
 def starts(
     drives: Drives, before: Fitted, effect: Effect, numbers: Sequence[FreeParameter]
 ) -> tuple[Start, ...]:
-    """Where fits of an effect begin: at its score's values, for the best of its shapes."""
+    """Starts for fits of an effect: at the values of its score, for the best of its shapes."""
     found = scored(drives, before, [effect], numbers)
     return tuple(start_at(before, score, numbers) for score in _best_shapes(found))
 
@@ -139,7 +139,7 @@ def starts(
 def scored(
     drives: Drives, before: Fitted, effects: Sequence[Effect], numbers: Sequence[FreeParameter]
 ) -> tuple[Score, ...]:
-    """What effects would explain beside a model, to first order: each shape of each effect."""
+    """Score tests of effects beside a model: each shape of each effect."""
     runs = drives.laid
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
     tried = candidates(effects, (), channels, len(runs.runs), asked=True)
@@ -147,14 +147,14 @@ def scored(
 
 
 def start_at(before: Fitted, score: Score, numbers: Sequence[FreeParameter]) -> Start:
-    """A fit that begins where a score points."""
+    """A start at the values that a score suggests."""
     own = parameters_of_candidate(score.candidate)
     point = replace(before.point, model=put_in(before.point.model, score))
     return Start(point, (*before.names, score.candidate.name), (*numbers, *own), score.gain)
 
 
 def _best_shapes(found: Sequence[Score]) -> list[Score]:
-    """The best shapes; of each kind, with a phase for each run and with one for all, the best."""
+    """The best shapes, both with a phase for each run and with one for all."""
     ordered = sorted(found, key=lambda score: -score.gain)
     chosen: list[Score] = []
     for per_run in (True, False):
@@ -163,20 +163,20 @@ def _best_shapes(found: Sequence[Score]) -> list[Score]:
 
 
 def start_of_held(drives: Drives, robot: Robot, names: tuple[str, ...]) -> Start:
-    """A fit that begins with the values that the robot holds."""
+    """A start at the values of the robot."""
     point, numbers = drives.begin(robot)
     return Start(point, names, numbers)
 
 
 def mistake_put_in(robot: Robot, effect: Effect) -> Robot:
-    """The robot with a set-up mistake undone; it comes before all other effects."""
+    """The robot with a set-up mistake corrected; it comes before all other effects."""
     return replace(robot, effects=(AppliedEffect(effect), *robot.effects))
 
 
 def parameters_held(
     robot: Robot, numbers: Sequence[FreeParameter], effect: Effect
 ) -> tuple[FreeParameter, ...]:
-    """Free parameters of a robot's effects, with those of `effect` where it is held."""
+    """Add the free parameters of `effect`, if the robot has it."""
     names = {number.name for number in numbers}
     more = (
         parameters_to_fit(effect) if any(item.name == effect.name for item in robot.effects) else ()

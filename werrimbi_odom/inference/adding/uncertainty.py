@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""How well the numbers of a model with more effects are known: its noise, and every deviation."""
+"""Uncertainty of a model with added effects: its noise, and all standard deviations."""
 
 from __future__ import annotations
 
@@ -43,10 +43,11 @@ def noises_of(drives: Drives, fit: Fitted) -> dict[str, NoiseEstimate]:
 
 
 def as_written(drives: Drives, fit: Fitted, given: Robot) -> Fitted:
-    """The fit with its sizes as multipliers, and the noise that suits them.
+    """The fit with its sizes as multipliers, and the noise fitted to that.
 
-    A size that a search put in as an effect turns the robot, and leaves the covariance to the
-    file's: the wheels' noise with a base in millimetres is another one than with that base mended.
+    A size that a search put in as an effect corrects the motion, but the covariance still uses the
+    file's size. So the wheel noise with a base in millimetres differs from that with a corrected
+    base.
     """
     model = fit.point.model
     robot = with_sizes_in_multipliers(model.robot, given)
@@ -66,11 +67,12 @@ def with_spread(
     sizes: Sizes,
     noises: Mapping[str, NoiseEstimate],
 ) -> Fitted:
-    """The fit with deviations of what is told that count all that was chosen by the same drives.
+    """The fit with standard deviations that allow for all choices made on the same drives.
 
-    Which sizes differ from the file's and which parameters effects need (`spread_over_choices`),
-    and the noise (`Precision.widening`). The edge of a threshold is no finer than its law
-    (`grain_of`), and lengths are known by their logarithm, as all scales are.
+    These are which sizes differ from the file's, which parameters effects need
+    (`spread_over_choices`), and the noise (`Precision.widening`). A threshold is no more precise
+    than its law (`grain_of`). Lengths have the uncertainty of their logarithm, as scale parameters
+    do.
     """
     laws = [law for effect in effects if len(law := _optional(effect)) > 1]
     columns = fit.design.columns
@@ -85,7 +87,7 @@ def with_spread(
         ]
         design = stacked(drives.laid, fit.point, [*_local(fit), *more])
     free = np.linalg.matrix_rank(fit.moves[[number.name in MULTIPLIERS for number, _ in columns]])
-    if free != sizes.free:  # they could not be put back (`with_sizes`)
+    if free != sizes.free:  # the other sizes could not be reset (`with_sizes`)
         *_, sizes = choices()
     spread = spread_over_choices(fit, given, wanted, sizes, laws, design)
     told = [index for index, (_, run) in enumerate(columns) if run < 0 and fit.moves[index].any()]
@@ -110,7 +112,7 @@ def with_spread(
 
 
 def _optional(effect: Effect) -> Law:
-    """Parameters that an effect may do without: no shapes, no phases, none of each run."""
+    """Optional parameters of an effect: neither shapes, phases nor per-run parameters."""
     phases = effect.quadrature or ()
     return {
         f"{effect.name}.{name}": item.null
@@ -120,7 +122,7 @@ def _optional(effect: Effect) -> Law:
 
 
 def _local(fit: Fitted) -> list[FreeParameter]:
-    """Columns of the fit's design, but start headings."""
+    """Parameters of the fit's design, except start headings."""
     numbers = (*fit.numbers, *fit.point.model.nuisance_parameters)
     return [*CALIBRATION, *own_of(numbers), *shared_of(fit.numbers)]
 

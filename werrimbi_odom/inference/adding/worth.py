@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What each of the effects that were fitted together is worth, and what speaks against it."""
+"""The evidence for each effect of a joint fit, and the objections to it."""
 
 from __future__ import annotations
 
@@ -32,10 +32,10 @@ class Question:
     drives: Drives
     fits: Fits
     final: Fitted
-    """With all of them, sizes that are not needed put back."""
+    """The fit with all of them, with unneeded sizes reset."""
     given: Robot
     also: tuple[str, ...]
-    """Set-up mistakes that are put right together."""
+    """Set-up mistakes that are corrected together."""
     kept: Side
     """The held-out drives."""
     alone: Mapping[str, Sides]
@@ -44,12 +44,12 @@ class Question:
 
     @property
     def chances(self) -> dict[str, float | None]:
-        """Of as much of a better fit; None for what is not judged by its fit alone."""
+        """P-value of each effect's gain; None for what is not judged by its fit alone."""
         return {effect.name: self._chance(effect) for effect in self.effects}
 
     @property
     def objections(self) -> dict[str, str]:
-        """By effect, why it should not be added; empty where nothing speaks against any."""
+        """Why an effect should not be added, by its name; empty if nothing speaks against any."""
         against = {effect.name: self._objection(effect) for effect in self.effects}
         return {name: words for name, words in against.items() if words is not None}
 
@@ -73,9 +73,9 @@ class Question:
         return chance(self.fits.all, self._without(effect), 1)
 
     def _asked_for(self, effect: Effect, found: Mapping[str, FittedParameter]) -> bool:
-        """Whether the fitted drives want it, by legs left out of the fits as in a diagnosis.
+        """Whether the fitted drives need the effect, by cross-validation as in a diagnosis.
 
-        A size, which is in every fit, by how far it is from what the file says.
+        A size is in every fit, so for it the test is its deviation from the file's value.
         """
         if effect.name not in CALIBRATED:
             return holds_when_cross_validated(

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Changes between the drives of one diagnosis: beside everything that it found, and no effect.
+"""Changes between the drives of one diagnosis, beside everything that it found.
 
-A change is told if the drives need it (`search`), if the parts of the drives before it agree with
-each other and those after it do (`homogeneity`), if no other effect explains as much, and if it
-stands beside what the errors go with. Held-out drives have no part in it.
+A change is reported if it passes four tests: the drives need it (`search`); the parts of the drives
+before it agree with each other, as do those after it (`homogeneity`); no other effect explains as
+much; and it remains significant beside other dependences of the errors. Held-out drives have no
+part in it.
 """
 
 from __future__ import annotations
@@ -49,19 +50,19 @@ from werrimbi_odom.model.pose import Floats
 
 @dataclass(frozen=True, slots=True)
 class Moved:
-    """A number that is another one from a drive on, or in one drive alone."""
+    """A parameter that changes at a drive, or differs in one drive alone."""
 
     what: str
-    """Name of the number: a multiplier, or effect.parameter."""
+    """Name of the parameter: a multiplier, or effect.parameter."""
     group: str
-    """What was changed with it, see `Group.what`."""
+    """The group that changed, see `Group.what`."""
     kind: Kind
     last_before: str
-    """The last drive that was surely before it."""
+    """The last drive that was surely before the change."""
     from_run: str
     """The likeliest drive at which it begins."""
     surely_from: str
-    """The first drive that surely has it."""
+    """The first drive that is surely after it."""
     before: float
     after: float
     before_std: float
@@ -72,40 +73,40 @@ class Moved:
 
 @dataclass(frozen=True, slots=True)
 class Evidence:
-    """What the legs of all runs say of the numbers, each row an innovation."""
+    """Linearised innovations of all runs with their Jacobian; each row is an innovation."""
 
     numbers: tuple[FreeParameter, ...]
-    """Those that may change, the first of the columns."""
+    """The parameters that may change, the first of the columns."""
     names: tuple[str, ...]
-    """Of all s columns."""
+    """Names of all s columns."""
     values: Floats
-    """(s,)"""
+    """Values of the columns, (s,)."""
     white: Floats
-    """(n,)"""
+    """Whitened innovations, (n,)."""
     shared: Floats
-    """(n, s)"""
+    """Derivatives in the shared parameters, (n, s)."""
     own: Floats
-    """(n, k)"""
+    """Derivatives in the per-run parameters, (n, k)."""
     run: NDArray[np.intp]
     """Drive of each row."""
 
     def drives(self, time: Floats) -> Drives:
-        """The same by drive."""
+        """The same as information by drive."""
         return drives_told(
             self.names, self.values, self.white, self.shared, self.own, self.run, time
         )
 
     def columns(self, step: Step, place: NDArray[np.intp]) -> Floats:
-        """What a change does to the innovations, (n, d); `place`: of each drive in their order."""
+        """Derivative of the innovations in a change, (n, d); `place`: rank of each drive."""
         size = step.shape.over(np.arange(place.size, dtype=np.float64))[place]
         return np.asarray(size[self.run, None] * (self.shared @ step.group.directions))
 
 
 def changes_between(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[Moved, ...]:
-    """What differs between the fitted drives, in the order in which they were driven.
+    """Changes between the fitted drives, in the order in which they were driven.
 
-    Beside everything found; where that leaves no change, beside calibration alone: a change that
-    explains more than any effect does is none of its.
+    First with everything found in the model. If that leaves no change, with calibration alone: a
+    change that explains more than any effect does is not caused by one.
     """
     runs, final = diagnosis.runs, diagnosis.final
     if len(runs.runs) < 2:
@@ -123,12 +124,12 @@ def _beside(
     dependences: Sequence[Dependence],
     effects: Sequence[Effect],
 ) -> tuple[Moved, ...]:
-    """Changes beside a model, unless one more effect explains as much, or a dependence them.
+    """Changes beside a model, unless one more effect or a dependence explains them.
 
     Parameters
     ----------
-    dependences
-        What the errors of the model go with.
+    dependences : sequence of Dependence
+        Evidence map of the model.
     """
     runs = diagnosis.runs
     evidence = evidence_of(runs, fit.point, fit.design, fit.scatter)
@@ -161,21 +162,21 @@ def _beside(
 
 
 def driven_in_order(starts: Sequence[float]) -> NDArray[np.intp]:
-    """Drives by their stamps where these are dates; else as they were given."""
+    """Order of the drives by their stamps, if these are dates; else as they were given."""
     if all(start > DATED for start in starts):
         return np.argsort(np.array(starts), kind="stable")
     return np.arange(len(starts))
 
 
 def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float = 1.0) -> Evidence:
-    """The innovations at a point and their derivatives in all numbers.
+    """Innovations at a point, and their derivatives in all parameters.
 
     Parameters
     ----------
-    design
-        Of all that was fitted there.
+    design : Design
+        Design of all fitted parameters at the point.
     scatter : float
-        Factor by which squares are too large.
+        Dispersion: factor by which squared innovations are too large.
     """
     robot = point.model.robot
     held = {applied.name for applied in robot.effects}
@@ -212,12 +213,12 @@ def evidence_of(runs: Concatenated, point: Point, design: Design, scatter: float
 
 
 def _of_several(step: Step, drives: int, kind: ReferenceKind) -> bool:
-    """Whether more than one drive is on either side, where it must be.
+    """Whether more than one drive is on either side of a change, where that is required.
 
-    A reference that wanders, or adds up its errors, has a drive now and then in which it errs
-    otherwise than in all others: that is no robot that changed, and changed back. And a drive of
-    another kind (starts and stops among rounds) tells another size of an effect, as far as its law
-    is not quite nature's: an effect that changed is seen in drives of either side.
+    A reference with correlated or accumulating errors now and then errs differently in one drive.
+    That is no robot that changed and changed back. And a drive of another kind (starts and stops
+    among laps) gives another size of an effect, as far as the form of its law is not exact. So a
+    change of an effect must show in several drives on either side.
     """
     if kind == "absolute" and step.group.what in PARTS:
         return True
@@ -232,7 +233,7 @@ def _lasts(
     step: Step,
     place: NDArray[np.intp],
 ) -> bool:
-    """Whether the parts of the drives agree on a change, beside the others."""
+    """Homogeneity test of a change, with the others as nuisances."""
     others = [evidence.columns(other, place) for other in steps if other is not step]
     beside = nuisance(np.concatenate([evidence.shared, evidence.own, *others], axis=-1))
     column = evidence.columns(step, place)
@@ -249,11 +250,11 @@ def _stands_beside(
     place: NDArray[np.intp],
     cell: Dependence,
 ) -> bool:
-    """Whether changes are needed beside a dependence that explains more.
+    """Whether changes remain significant beside a dependence that explains more.
 
-    A robot whose marker was mounted anew between squares and spins errs with the time since the
-    start too, as squares and spins turn at other times; a tyre that warms is another one in each
-    drive, and nothing more than warm.
+    If a marker was mounted anew between squares and spins, the errors depend on the time since the
+    start as well, since squares and spins turn at other times. A tyre that warms up differs between
+    drives too, but only because it is warm.
     """
     columns = np.concatenate([evidence.columns(step, place) for step in steps], axis=-1)
     pattern = pattern_of(diagnosis.runs, fit.point, cell) / np.sqrt(fit.scatter)
@@ -264,7 +265,7 @@ def _stands_beside(
 
 
 def _worth_of_effects(diagnosis: Diagnosis, fit: Fitted, effects: Sequence[Effect]) -> float:
-    """What the best of the effects that a model does not hold is worth beside it."""
+    """Penalised gain of the best effect that is not in the model."""
     this = next((each for each in diagnosis.rounds if each.before is fit), None)
     if this is not None:
         return _worth_of(this.scores, fit)
@@ -283,12 +284,12 @@ def _worth_of(found: Sequence[Score] | Sequence[Dependence], fit: Fitted) -> flo
 def moves_of(
     found: Segmented, numbers: Sequence[FreeParameter], names: Sequence[str], runs: Sequence[str]
 ) -> tuple[Moved, ...]:
-    """Each number of each change, once for a drive.
+    """List each parameter of each change, once for a drive.
 
     Parameters
     ----------
-    runs
-        Names of the drives, in their order.
+    runs : sequence of str
+        Names of the drives, in order.
     """
     units = {number.name: number.unit for number in numbers}
     told: dict[tuple[str, int], Moved] = {}

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The history of a robot: its drives with their dates, and how its numbers went over them."""
+"""The history of a robot: its drives with their dates, and the course of its parameters."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from werrimbi_odom.inference.rules import COPIED_WITHIN
 from werrimbi_odom.model.robot import Robot
 
 DateFrom = Literal["stamp", "file", "order"]
-"""Of the first message; of the file system; none: as the drives were given."""
+"""Source of a date: first message, file system, or none (the order of the drives)."""
 
 
 @dataclass(frozen=True)
 class Unusable:
-    """A drive that tells nothing, and why."""
+    """A drive that cannot be used, with the reason."""
 
     run: Path
     why: str
@@ -27,20 +27,20 @@ class Unusable:
 
 @dataclass(frozen=True)
 class Dated:
-    """A drive that was looked at."""
+    """A drive with its date and its information."""
 
     run: Path
     told: DriveTold
     date: float
-    """[s since 1970]; the number of the drive where nobody knows."""
+    """Date [s since 1970]; the number of the drive if it is unknown."""
     date_from: DateFrom
     kept: bool = False
-    """Whether it was known before."""
+    """Whether it is from the cache."""
 
 
 @dataclass(frozen=True)
 class History:
-    """How a robot went."""
+    """The course of a robot's parameters over its drives."""
 
     robot: Robot
     drives: tuple[Dated, ...]
@@ -48,11 +48,11 @@ class History:
     course: Course
     unusable: tuple[Unusable, ...] = ()
     like: Robot | None = None
-    """What it is held against."""
+    """Robot to compare with."""
 
     @property
     def names(self) -> tuple[str, ...]:
-        """Of the drives; with their folders where several are called the same."""
+        """Names of the drives; with their folders if some names are equal."""
         names = [drive.run.name for drive in self.drives]
         if len(set(names)) == len(names):
             return tuple(names)
@@ -60,7 +60,7 @@ class History:
 
 
 def in_order(drives: Sequence[Dated]) -> tuple[Dated, ...]:
-    """By their dates; in the order given where files that were copied are all that tells one."""
+    """Sort by date; keep the given order if the dates are those of copied files."""
     dates = [drive.date for drive in drives]
     copied = any(drive.date_from != "stamp" for drive in drives)
     if dates and copied and max(dates) - min(dates) < COPIED_WITHIN:

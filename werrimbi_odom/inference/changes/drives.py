@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What each drive tells of some numbers: its information matrix and its score, and nothing more.
+"""Each drive summarised by its information matrix and score, for all questions about changes.
 
-To first order the likelihood of a drive is a parabola in the numbers. Its curvature and its slope
-answer every question about changes: an estimate for each drive, for any stretch of drives, with any
-number free to step at any drive. The drives themselves are not needed again.
+To first order the log-likelihood of a drive is quadratic in the parameters. Its curvature and slope
+suffice for an estimate by each drive, by any stretch of drives, and with any parameter free to step
+at any drive. The recordings themselves are not needed again.
 
-Source: sufficient statistics of the linear model; Frisch, Waugh and Lovell for what each drive has
-of its own (start headings, phases, a gyro's drift), which is taken off first.
+Source: sufficient statistics of the linear model. The per-run parameters of each drive (start
+headings, phases, a gyro's drift) are projected out first (Frisch, Waugh and Lovell).
 """
 
 from __future__ import annotations
@@ -23,16 +23,16 @@ from werrimbi_odom.model.pose import Floats
 
 @dataclass(frozen=True, slots=True)
 class Drives:
-    """What R drives tell of s numbers."""
+    """Information of R drives about s parameters."""
 
     names: tuple[str, ...]
-    """Of the numbers."""
+    """Names of the parameters."""
     information: Floats
-    """Inverse covariance of the numbers by each drive alone, (R, s, s)."""
+    """Information matrix of each drive, (R, s, s)."""
     weighted: Floats
-    """That information times the drive's own estimate, (R, s)."""
+    """The information times the drive's own estimate, (R, s)."""
     time: Floats
-    """When each drive was, (R,) [s]."""
+    """Time of each drive, (R,) [s]."""
 
     @property
     def count(self) -> int:
@@ -44,12 +44,12 @@ class Drives:
         return Drives(self.names, self.information[which], self.weighted[which], self.time[which])
 
     def with_scatter(self, scatter: Floats) -> Drives:
-        """The drives where each number also scatters from drive to drive.
+        """Add a random effect: scatter of each parameter from drive to drive.
 
         Parameters
         ----------
         scatter : ndarray, shape (s,)
-            Standard deviation of it.
+            Its standard deviation.
         """
         spread = np.diag(scatter**2)
         shrunk = np.linalg.inv(np.eye(scatter.size) + self.information @ spread)
@@ -71,21 +71,22 @@ def drives_told(
     run: NDArray[np.intp],
     time: Floats,
 ) -> Drives:
-    """The drives by the whitened innovations of their legs.
+    """Summarise the whitened innovations of each drive.
 
     Parameters
     ----------
     values : ndarray, shape (s,)
-        Where the numbers stand.
+        Values of the parameters.
     white : ndarray, shape (n,)
-        Innovations there.
+        Innovations at these values.
     shared : ndarray, shape (n, s)
-        Their derivatives in the numbers.
+        Their derivatives in the parameters.
     own : ndarray, shape (n, k)
-        The same in all that single drives have of their own.
+        Their derivatives in all per-run parameters, which are projected out.
     run : ndarray, shape (n,)
         Drive of each innovation.
     time : ndarray, shape (R,)
+        Time of each drive.
     """
     size = len(names)
     information = np.zeros((time.size, size, size))

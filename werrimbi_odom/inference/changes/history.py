@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Drives of months: what each tells of the robot's numbers, and how these went over the time.
+"""Drives over months: what each tells about the robot's parameters, and their course in time.
 
-Each drive is fitted by itself, once, at its own point; what it tells is kept as an information
-matrix, and a year is put together from those. Numbers scatter from drive to drive more than the
-drives' own noise lets them (warmth, load, another floor); how much, the differences of drives that
-follow each other say, whose median no change and no trend moves. What a single drive is told to be
-is pooled with those around it by that scatter (empirical Bayes).
+Each drive is fitted by itself, once, at its own point. Its result is kept as an information matrix,
+and a year is put together from these. Parameters scatter from drive to drive by more than the noise
+of a drive (warmth, load, another floor). That scatter is estimated from the median of successive
+differences, which changes and trends do not move. The estimate of a single drive is shrunk towards
+the level of the drives around it (partial pooling, empirical Bayes).
 
 Sources: Efron and Morris, J. Am. Stat. Assoc. 68, 1973 (pooling).
 """
@@ -53,46 +53,46 @@ _MEDIAN_CHI2_1 = 0.4549
 
 @dataclass(frozen=True, slots=True)
 class DriveTold:
-    """What one drive tells."""
+    """Information of one drive."""
 
     names: tuple[str, ...]
-    """Of s numbers."""
+    """Names of its s parameters."""
     information: Floats
-    """(s, s)"""
+    """Information matrix, (s, s)."""
     weighted: Floats
     """Information times estimate, (s,)."""
     begin: float
     """First stamp of the ticks [s]."""
     data: int
-    """Measured coordinates that count."""
+    """Number of measured coordinates in use."""
     way: float
-    """Driven [m]."""
+    """Travel [m]."""
 
 
 @dataclass(frozen=True)
 class Number:
-    """How one number went over R drives."""
+    """Course of one parameter over R drives."""
 
     name: str
     unit: str
     given: float
-    """In the robot file."""
+    """Value in the robot file."""
     own: Floats
-    """By each drive alone, (R,); NaN where it does not tell it."""
+    """Estimate by each drive alone, (R,); NaN if the drive does not determine it."""
     own_std: Floats
     pooled: Floats
-    """By each drive with those around it."""
+    """Estimate by each drive, pooled with the drives around it."""
     pooled_std: Floats
     level: Floats
-    """Between the changes."""
+    """Level between the changes."""
     level_std: Floats
     scatter: float
-    """Standard deviation from drive to drive, beyond the drives' own noise."""
+    """Standard deviation from drive to drive, beyond the noise of a drive."""
 
 
 @dataclass(frozen=True)
 class OffNow:
-    """A number of the calibration that is another one now than in the robot file."""
+    """A calibration parameter that now differs from the robot file."""
 
     name: str
     value: float
@@ -102,12 +102,12 @@ class OffNow:
 
 @dataclass(frozen=True)
 class Course:
-    """How the numbers of a robot went."""
+    """Course of the parameters of a robot."""
 
     numbers: tuple[Number, ...]
     changes: tuple[Moved, ...]
     off: tuple[OffNow, ...]
-    """What the robot file has otherwise than the last drives."""
+    """Parameters of the robot file that differ from the last drives."""
 
 
 def drive_told(run: Run, robot: Robot, options: EvaluationOptions) -> DriveTold:
@@ -130,14 +130,16 @@ def drive_told(run: Run, robot: Robot, options: EvaluationOptions) -> DriveTold:
 
 
 def course_of(told: Sequence[DriveTold], robot: Robot, time: Floats) -> Course:
-    """Put the drives together.
+    """Combine the drives into the course of the parameters.
 
     Parameters
     ----------
-    told
-        In the order of the drives.
+    told : sequence of DriveTold
+        Information of each drive, in order.
+    robot : Robot
+        The robot file.
     time : ndarray, shape (R,)
-        When they were, rising [s].
+        Times of the drives, rising [s].
     """
     numbers = _numbers(told, robot)
     names = tuple(number.name for number in numbers)
@@ -176,16 +178,16 @@ def course_of(told: Sequence[DriveTold], robot: Robot, time: Floats) -> Course:
 
 
 class Values(NamedTuple):
-    """Of s numbers in each of R drives."""
+    """Estimates of s parameters in each of R drives."""
 
     value: Floats
-    """(R, s)"""
+    """Shape (R, s)."""
     spread: Floats
-    """Their covariance, (R, s, s)."""
+    """Covariance, (R, s, s)."""
 
 
 def _numbers(told: Sequence[DriveTold], robot: Robot) -> tuple[FreeParameter, ...]:
-    """Those that any drive knows of."""
+    """Parameters that any drive knows of."""
     known = {name for each in told for name in each.names}
     held = {applied.name for applied in robot.effects}
     mounts = [find(name) for name in MOUNT if name not in held]
@@ -193,7 +195,7 @@ def _numbers(told: Sequence[DriveTold], robot: Robot) -> tuple[FreeParameter, ..
 
 
 def _laid(told: Sequence[DriveTold], names: Sequence[str], time: Floats) -> Drives:
-    """All drives on the same numbers; what a drive does not know of, it tells nothing of."""
+    """All drives on the same parameters, with no information about those a drive does not have."""
     information = np.zeros((len(told), len(names), len(names)))
     weighted = np.zeros((len(told), len(names)))
     for index, each in enumerate(told):
@@ -205,7 +207,7 @@ def _laid(told: Sequence[DriveTold], names: Sequence[str], time: Floats) -> Driv
 
 
 def _alone(drives: Drives, given: Floats, limits: Floats) -> Values:
-    """Each drive's own estimate; what it does not tell stays near the given, widely."""
+    """Estimate by each drive alone, with a weak prior at the given values."""
     before = np.diag(limits**-2.0)
     spread = np.asarray(np.linalg.inv(drives.information + before))
     values = np.asarray((spread @ (drives.weighted + before @ given)[..., None])[..., 0])
@@ -215,7 +217,7 @@ def _alone(drives: Drives, given: Floats, limits: Floats) -> Values:
 def _silenced(
     shown: Sequence[tuple[Floats, Floats]], limits: Sequence[float]
 ) -> list[tuple[Floats, Floats]]:
-    """Not a number where a drive tells less than is known beforehand."""
+    """NaN where a drive tells less than the prior."""
     heard = [std < 0.5 * limit for (_, std), limit in zip(shown, limits, strict=True)]
     return [
         (np.where(told, value, np.nan), np.where(told, std, np.nan))
@@ -243,10 +245,10 @@ def _scatter(values: Floats, std: Floats) -> float:
 
 
 def _beyond_scatter(drives: Drives, found: Segmented, own: Values, scatter: Floats) -> list[Group]:
-    """Groups of the changes that stand out of what the drives differ by otherwise: Fisher's F.
+    """Groups of the changes that exceed the scatter between drives, by Fisher's F.
 
-    The scatter is an estimate by some drives, and another one for each number; so what a number
-    differs by about its level counts, with as many degrees of freedom as there are drives to tell.
+    The scatter is estimated from few drives, separately for each parameter. So the test uses the
+    deviations of a parameter from its level, with the degrees of freedom of the drives.
     """
     lasting = []
     for step in found.steps:
@@ -271,7 +273,7 @@ def _constant(drives: Drives) -> Segmented:
 
 
 def _pooled(drives: Drives, found: Segmented, scatter: Floats) -> Values:
-    """Each drive's numbers, drawn towards the level by as much as it tells less than that does."""
+    """Estimate of each drive, shrunk towards the level by their relative information."""
     wide = np.diag(scatter**2)
     shrunk = np.linalg.inv(np.eye(scatter.size) + wide @ drives.information)
     level = found.levels[..., None]
@@ -298,7 +300,7 @@ def _titles(
 
 
 def _shown(names: Sequence[str], values: Values) -> list[tuple[Floats, Floats]]:
-    """Values and standard deviations of the numbers, and of the radii's ratio and mean."""
+    """Values and standard deviations of the parameters, and of the radii's ratio and mean."""
     std = np.sqrt(np.maximum(np.einsum("rii->ri", values.spread), 0.0))
     found = [(values.value[:, number], std[:, number]) for number in range(len(names))]
     where = [names.index(name) for name in MULTIPLIERS[1:]]
@@ -317,7 +319,7 @@ def _shown(names: Sequence[str], values: Values) -> list[tuple[Floats, Floats]]:
 def _off(
     names: Sequence[str], given: Floats, found: Segmented, heard: NDArray[np.bool_]
 ) -> tuple[OffNow, ...]:
-    """Sizes of the robot file that the last drives do not have, by more than is worth a word."""
+    """Sizes in the robot file that differ significantly, and noticeably, from the last drives."""
     values, spread = found.levels[-1], found.spread[-1]
     off = []
     for number, name in enumerate(names):

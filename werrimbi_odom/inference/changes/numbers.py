@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What may change on a robot, and what changes together because one thing was done to it."""
+"""Parameters that may change on a robot, in groups that change together by one cause."""
 
 from __future__ import annotations
 
@@ -23,45 +23,45 @@ from werrimbi_odom.model.robot import Robot
 
 YAW, ARM = "reference_yaw_offset", "reference_lever_arm"
 MOUNT = (YAW, ARM)
-"""Effects that say how the reference is mounted: it may be mounted anew whatever the file holds."""
+"""Effects of the reference's mount, which may be changed even if the file does not hold them."""
 
 PARTS = ("left_wheel", "right_wheel", "wheel_base", "both_wheels", "mount")
-"""Groups whose numbers are sizes of things, by no law of an effect."""
+"""Groups that are sizes of parts, not parameters of an effect's law."""
 
 
 @dataclass(frozen=True, slots=True)
 class Group:
-    """Numbers that change together: one cause on the robot."""
+    """Parameters that change together: one cause on the robot."""
 
     what: str
     """One of `PARTS`, or an effect."""
     numbers: tuple[str, ...]
-    """Names of those that move."""
+    """Names of the parameters that change."""
     directions: Floats
-    """Moves of all numbers for a unit of each free one, (s, d)."""
+    """Changes of all parameters for a unit of each free direction, (s, d)."""
 
     @property
     def degrees(self) -> int:
-        """How many numbers it takes."""
+        """Number of free directions."""
         return int(self.directions.shape[1])
 
 
 def numbers_of(robot: Robot, mounts: Sequence[Effect]) -> tuple[FreeParameter, ...]:
-    """All numbers of a robot that may change: calibration, mount, sizes of the effects it holds.
+    """All parameters of a robot that may change: calibration, mount, sizes of the effects it holds.
 
     Parameters
     ----------
-    mounts
-        The effects of `MOUNT` that the reference can show and the robot does not hold.
+    mounts : sequence of Effect
+        Effects of `MOUNT` that the reference can show and the robot does not hold.
     """
     held = [applied.effect for applied in robot.effects if not applied.effect.is_mistake]
     return (*CALIBRATION, *(number for effect in (*held, *mounts) for number in sizes_of(effect)))
 
 
 def sizes_of(effect: Effect) -> tuple[FreeParameter, ...]:
-    """Parameters of an effect that are sizes: no shape, and no phase of each run's own."""
+    """Parameters of an effect that are sizes: neither shape nor per-run parameters."""
     if effect.name in CALIBRATED:
-        return ()  # the calibration by another name
+        return ()  # equivalent to the calibration
     return tuple(
         number
         for number in parameters_to_fit(effect)
@@ -70,7 +70,7 @@ def sizes_of(effect: Effect) -> tuple[FreeParameter, ...]:
 
 
 def value_at(robot: Robot, name: str, nulls: Mapping[str, float]) -> float:
-    """A number of a robot; of an effect that it does not hold, the null value."""
+    """Value of a robot's parameter; the null value if the robot does not hold its effect."""
     try:
         return value_of(robot, name)
     except KeyError:
@@ -78,16 +78,16 @@ def value_at(robot: Robot, name: str, nulls: Mapping[str, float]) -> float:
 
 
 def groups_of(names: Sequence[str], values: Floats, size: int) -> tuple[Group, ...]:
-    """What may change for one reason, the simplest first.
+    """Groups of parameters that may change by one cause, the simplest first.
 
     Parameters
     ----------
-    names
-        Of the numbers that may change, the first of all.
+    names : sequence of str
+        Names of the parameters that may change, the first of all.
     values : ndarray, shape (s,)
-        Where they stand: both wheels change by the same share.
+        Their values: both wheels change by the same share.
     size : int
-        How many numbers there are in all, s.
+        Number of all parameters, s.
     """
     found = []
     columns = np.eye(size)

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which changes the drives need: one after the other, their drives found anew, the needless left.
+"""Selection of change points: forward selection, refinement of their drives, backward elimination.
 
-Every group of numbers may take every shape at every drive. The one that earns most beyond its price
-is taken, then the next beside it; at the end each is asked again beside all others.
+Every group of parameters may take every shape at every drive. The change with the highest penalised
+gain is selected, then the next beside it. In the end each is tested again beside all others.
 """
 
 from __future__ import annotations
@@ -29,36 +29,36 @@ from werrimbi_odom.inference.rules import MOST_CHANGES, RIVAL, SURE, WHICH_DRIVE
 from werrimbi_odom.model.pose import Floats
 
 _FEW = 5
-"""Changes up to which all are looked for anew as soon as there is one more; of more at the end."""
+"""Number of changes up to which all are refined after each new one; beyond it only at the end."""
 
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """A group that changes over the drives."""
+    """A change of a group over the drives."""
 
     group: Group
     shape: Shape
     gain: float = 0.0
-    """Fall of the squares that it alone brings, beside all others."""
+    """Fall of the squares by this change, beside all others."""
     degrees: int = 1
     p_value: float = 1.0
-    """How often chance would do as much, all that was tried counted."""
+    """P-value, corrected for all changes tried (Bonferroni)."""
     span: tuple[int, int] = (0, 0)
-    """The first and the last drive at which it may as well begin."""
+    """First and last drive at which it may begin, by the likelihood."""
 
 
 @dataclass(frozen=True)
 class Segmented:
-    """How the numbers went over the drives."""
+    """Course of the parameters over the drives, with their changes."""
 
     steps: tuple[Step, ...]
     """In the order of the drives."""
     levels: Floats
-    """Each number in each drive, but for what scatters from drive to drive; (R, s)."""
+    """Value of each parameter in each drive, without its scatter from drive to drive; (R, s)."""
     spread: Floats
-    """Covariance of them, (R, s, s)."""
+    """Covariance of the levels, (R, s, s)."""
     tried: int
-    """Changes that were looked at."""
+    """Number of changes tried."""
 
 
 def segmented(
@@ -72,12 +72,20 @@ def segmented(
 
     Parameters
     ----------
-    drives
+    drives : Drives
         In the order in which they were driven.
+    groups : sequence of Group
+        Groups of parameters that may change.
     price : float
-        What each free number must lower the squares by; the drive at which it changes is one too.
+        Penalty of each free parameter; the drive of the change counts as one.
+    kinds : sequence of Kind
+        Shapes of changes to try.
     most : int
-        Changes that are looked for.
+        Largest number of changes.
+
+    Returns
+    -------
+    Segmented
     """
     rows = rows_of(drives)
     tried = sum(len(first_drives(kind, drives.count)) for kind in kinds) * len(groups)
@@ -107,7 +115,7 @@ def segmented(
 
 
 def levels_of(rows: Rows, steps: Sequence[Step]) -> tuple[Floats, Floats]:
-    """Numbers in each drive (R, s) and their covariance (R, s, s), with these changes."""
+    """Parameters in each drive (R, s) and their covariance (R, s, s), with these changes."""
     columns = _columns(rows, steps)
     size = np.sqrt(np.sum(columns**2, axis=0))
     unit = np.where(size > 0.0, size, 1.0)
@@ -153,7 +161,7 @@ def _worth(step: Step, price: float) -> float:
 
 
 def _doubt(kind: Kind) -> float:
-    """What a trend must gain more than a step: of few drives the one looks like the other."""
+    """Extra penalty of a trend: with few drives a trend and a step look alike."""
     return RIVAL if kind == "trend" else 0.0
 
 
@@ -164,7 +172,7 @@ def _refined(
     steps: list[Step],
     price: float,
 ) -> list[Step]:
-    """The earlier changes looked for anew beside the others: the first was found without them."""
+    """Search each change again beside the others: the first was found without them."""
     if len(steps) < 2:
         return steps
     for number in range(len(steps)):
@@ -186,7 +194,7 @@ def _beside_others(rows: Rows, steps: Sequence[Step], number: int) -> Step:
 
 
 def _span(rows: Rows, steps: Sequence[Step], number: int) -> tuple[int, int]:
-    """Where the likelihood of a change is nearly as high as at its best drive."""
+    """Drives at which the likelihood of a change is nearly as high as at the best."""
     step = steps[number]
     beside = _beside(rows, [each for index, each in enumerate(steps) if index != number])
     rest = beside.residual(rows.seen.ravel())

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""How a number may go over the drives (a step, one drive alone, a trend), and what each explains.
+"""Shapes of a change over the drives (a step, one drive alone, a trend), and the gain of each.
 
-All change points of one kind are scored at once: what a step at drive k would explain is a sum over
-the drives from k on, so sums that run from the end give it for all k. A year of drives costs no
-more than a week's does by trying one after the other.
+All change points of one kind are scored at once. The gain of a step at drive k is a sum over the
+drives from k on, so cumulative sums from the end give it for all k. A year of drives then costs no
+more than a week does by trial of one after the other.
 """
 
 from __future__ import annotations
@@ -20,19 +20,19 @@ from werrimbi_odom.inference.rules import TREND_DRIVES
 from werrimbi_odom.model.pose import Floats
 
 Kind = Literal["step", "alone", "trend"]
-"""From a drive on; in one drive and no other; growing with the time from a drive on."""
+"""From a drive on; in one drive and no other; growing with time from a drive on."""
 
 
 @dataclass(frozen=True, slots=True)
 class Shape:
-    """How a number goes over the drives."""
+    """Shape of a change over the drives."""
 
     kind: Kind
     first: int
-    """The drive at which it begins."""
+    """Drive at which it begins."""
 
     def over(self, time: Floats) -> Floats:
-        """Its size in each drive, (R,); `time` in any unit."""
+        """Size in each drive, (R,); `time` in any unit."""
         number = np.arange(time.size)
         if self.kind == "step":
             return np.asarray(number >= self.first, dtype=np.float64)
@@ -44,7 +44,8 @@ class Shape:
 def first_drives(kind: Kind, count: int) -> range:
     """Drives at which a shape of a kind may begin.
 
-    The first drive alone, and the last, are a step; so none is the same as another one.
+    The first drive alone, and the last alone, equal a step, so they are left out and no two shapes
+    are the same.
     """
     if kind == "step":
         return range(1, count)
@@ -52,14 +53,14 @@ def first_drives(kind: Kind, count: int) -> range:
 
 
 class Rows(NamedTuple):
-    """Drives as rows of least squares: s rows each."""
+    """The information of drives as rows of a least-squares problem, s rows each."""
 
     root: Floats
-    """(R, s, s); its square is the information."""
+    """Square root of the information, (R, s, s)."""
     seen: Floats
-    """(R, s)"""
+    """Response, (R, s)."""
     time: Floats
-    """From 0 to 1, (R,)."""
+    """Time scaled from 0 to 1, (R,)."""
 
     def column(self, shape: Shape, directions: Floats) -> Floats:
         """Columns of a shape, (R s, d)."""
@@ -68,12 +69,12 @@ class Rows(NamedTuple):
 
     @property
     def constant(self) -> Floats:
-        """Columns of all numbers as they are in all drives, (R s, s)."""
+        """Columns of all parameters, constant over all drives, (R s, s)."""
         return self.root.reshape(self.seen.size, -1)
 
 
 def rows_of(drives: Drives) -> Rows:
-    """The least squares that have these information matrices."""
+    """The least-squares problem with these information matrices."""
     size = np.sqrt(np.einsum("rii->ri", drives.information))
     unit = np.where(size > SILENT, size, 1.0)
     values, axes = np.linalg.eigh(drives.information / (unit[:, :, None] * unit[:, None, :]))
@@ -91,7 +92,7 @@ def rows_of(drives: Drives) -> Rows:
 
 
 class Gains(NamedTuple):
-    """What the shapes of one kind would explain, by the drive at which they begin."""
+    """Gains of the shapes of one kind, by the drive at which they begin."""
 
     first: range
     gain: Floats
@@ -99,15 +100,16 @@ class Gains(NamedTuple):
 
 
 def gains(rows: Rows, beside: Nuisance, rest: Floats, directions: Floats, kind: Kind) -> Gains:
-    """Fall of the squares by each shape of a kind, all others refitted.
+    """Fall of the squares by each shape of a kind, with all others refitted.
 
     Parameters
     ----------
-    beside
-        What the model can turn already.
+    beside : Nuisance
+        Span of the parameters in the model.
     rest : ndarray, shape (R s,)
-        What it leaves.
+        Response with that span projected out.
     directions : ndarray, shape (s, d)
+        Directions of the change.
     """
     count = rows.time.size
     columns = rows.root @ directions
@@ -124,7 +126,7 @@ def gains(rows: Rows, beside: Nuisance, rest: Floats, directions: Floats, kind: 
 
 
 def _summed(each: Floats, time: Floats, kind: Kind) -> Floats:
-    """Sums over the drives of what each has, weighted as a shape that begins at k, for all k."""
+    """Sums over the drives, weighted by the shape that begins at drive k, for all k."""
     if kind == "alone":
         return each
     if kind == "step":
@@ -134,7 +136,7 @@ def _summed(each: Floats, time: Floats, kind: Kind) -> Floats:
 
 
 def _summed_square(each: Floats, time: Floats, kind: Kind) -> Floats:
-    """The same with the weights squared."""
+    """The same with the squares of the weights."""
     if kind != "trend":
         return _summed(each, time, kind)
     when = time[:, None, None]

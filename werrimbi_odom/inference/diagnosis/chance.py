@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""How often chance would make what is found: by the noise, and by how parts of drives disagree."""
+"""P-values of findings: by the noise, and by the disagreement between parts of the drives."""
 
 from __future__ import annotations
 
@@ -16,9 +16,9 @@ from werrimbi_odom.inference.rules import LASTING_PARTS
 
 
 def chance(fit: Fitted, before: Fitted, tried: int) -> float:
-    """How often chance would lower the cost as much, all that was tried counted.
+    """P-value of the cost reduction from `before` to `fit`, corrected for all candidates tried.
 
-    By a likelihood ratio; where the noise is what few data scatter by themselves, by Fisher's F.
+    A likelihood-ratio test; where few data determine the noise, by Fisher's F.
     """
     gain = (before.cost + before.needless - fit.cost - fit.needless) / fit.scatter
     numbers = max(round((fit.price - before.price) / fit.price_of_one), 1)
@@ -26,10 +26,10 @@ def chance(fit: Fitted, before: Fitted, tried: int) -> float:
 
 
 def chance_by_parts(runs: Concatenated, fit: Fitted, name: str, tried: int) -> float:
-    """How often chance would make an effect of a model, by the disagreement of the parts.
+    """P-value of an effect in the model, by the disagreement between the parts (homogeneity test).
 
-    All that was tried counts where parts disagree beyond chance: the likelihood ratio, which counts
-    it, means nothing there.
+    It is corrected for the number of candidates only where the parts disagree beyond chance.
+    Elsewhere the likelihood-ratio test, which has that correction, is valid by itself.
     """
     mine = [number.name.rpartition(".")[0] == name for number, _ in fit.design.columns]
     apart = bool(np.any(fit.widening[mine] > 1.0))
@@ -37,9 +37,10 @@ def chance_by_parts(runs: Concatenated, fit: Fitted, name: str, tried: int) -> f
 
 
 def chance_of_size(fit: Fitted, name: str) -> float:
-    """How often chance would make a calibration effect as important; by the parts where they part.
+    """P-value of a calibration effect's importance.
 
-    As many parts tell their scatter no better than they are many (Fisher's F).
+    Where the parts disagree, by Fisher's F with their degrees of freedom, as few parts estimate
+    their own scatter poorly.
     """
     parts = LASTING_PARTS - 1 if fit.doubts[name] > 1.0 else math.inf
     return fisher_above(fit.importance.get(name, 0.0), 1, parts)

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What a model would cost on legs that its fit has not seen: cross-validation over parts of drives.
+"""Cross-validation over parts of drives: the cost of a model on legs left out of its fit.
 
-Whether an effect is taken is decided on the drives that are fitted, and on nothing else: those held
-out report, and do not choose. Every drive is cut into parts, and these are dealt to the folds in
-turn, so that each fold holds some of every drive and the motion that shows an effect is in all of
-them. Near a fit the model is a line, so leaving a fold out needs linear algebra alone and no fit.
+Whether an effect is accepted is decided on the fitted drives alone. The held-out drives are for
+reporting only and never choose. Every drive is cut into parts, which are dealt to the folds in
+turn. So each fold holds some of every drive, and the motion that excites an effect is in all of
+them. The model is linearised at the fit, so leaving out a fold takes linear algebra and no new fit.
 
 Source: Stone, "Cross-validatory choice and assessment of statistical predictions", J. R. Stat. Soc.
 B 36 (1974).
@@ -26,11 +26,11 @@ _RANK = 1e-6
 def cross_validated_cost(runs: Concatenated, fit: Fitted) -> float:
     """Minus two log-likelihood of a fitted model on legs left out of its fit, one fold at a time.
 
-    What the other folds cannot determine at all (the phase of a run that lies in one fold) is
-    fitted to the fold itself, and each such number costs 2 (Akaike): one that the fit took from
-    the noise, one that it would take from new noise. So is a run's own number of which the fold
-    tells more than all others do: it would cost more than that where it is carried over, by the
-    noise alone (`FOLD_TELLS`).
+    Parameters that the other folds do not determine (the phase of a run that lies in one fold) are
+    fitted to the fold itself, at a penalty of 2 each (Akaike): one for what the fit took from the
+    noise, one for what it would take from new noise. The same holds for a per-run parameter about
+    which the fold has more information than all others together: carried over from them it would
+    cost more than 2 by the noise alone (`FOLD_TELLS`).
     """
     white, slopes = fit.design.flat()
     rows = np.repeat(fold_of_leg(runs), 3)
@@ -57,7 +57,7 @@ def cross_validated_cost(runs: Concatenated, fit: Fitted) -> float:
 
 
 def fold_of_leg(runs: Concatenated) -> NDArray[np.intp]:
-    """The fold of each leg, (m,): parts of every run, dealt in turn."""
+    """Fold of each leg, (m,): the parts of every run, dealt in turn."""
     first = runs.legs[runs.run_of_leg]
     count = np.diff(runs.legs)[runs.run_of_leg]
     part = (np.arange(runs.count) - first) * FOLDS * FOLD_PARTS // count
@@ -65,5 +65,5 @@ def fold_of_leg(runs: Concatenated) -> NDArray[np.intp]:
 
 
 def holds_when_cross_validated(runs: Concatenated, before: Fitted, after: Fitted) -> bool:
-    """Whether legs left out of the fits are likelier with the one model than with the other."""
+    """Whether the cross-validated likelihood is higher for `after` than for `before`."""
     return cross_validated_cost(runs, after) < cross_validated_cost(runs, before)

@@ -1,15 +1,15 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which physical effect is missing: set-up mistakes first, then one effect after the other.
+"""Which physical effect is missing: the set-up search first, then forward selection of effects.
 
-In each round all effects of the library and all cells of the evidence map are scored at once. Where
-a plain dependence on a measured variable explains far more than any effect can, the library does
-not hold what is missing, and no name is given. Otherwise the best few effects are fitted in full,
-and the best of them is taken if it earns its price on the fitted drives, cross-validated. Drives
-that are held out have no part in any of it: they report.
+Each round scores all effects of the library and all cells of the evidence map at once. If a plain
+dependence on a measured variable explains far more than any effect can, the library does not hold
+the missing effect, and none is named. Otherwise the best few effects are fitted in full. The best
+of them is accepted if its gain exceeds its penalty on the fitted drives, and in cross-validation.
+Held-out drives have no part in this: they are for reporting only.
 
-What jumps at an instant beside the model that is found is an event. Events that have nothing in
-common are left out, and everything is searched anew without them.
+An abrupt error that the final model does not explain is an event. Events without a common cause are
+left out, and the whole search is repeated without them.
 """
 
 from __future__ import annotations
@@ -70,14 +70,26 @@ def diagnose(
     holdout: Sequence[Run] = (),
     show: Show = silent,
 ) -> Diagnosis:
-    """Find out what a model is missing.
+    """Diagnose what a model is missing.
 
     Parameters
     ----------
-    effects
-        The library, and whatever the user brings.
-    holdout
-        Runs to judge on alone. None given: some of `runs` are put aside for it.
+    runs : sequence of Run
+        Recorded drives with a reference.
+    robot : Robot
+        The model to be diagnosed.
+    effects : sequence of Effect
+        Candidate effects: the library and the user's own.
+    options : EvaluationOptions
+        How drives are cut into legs and judged.
+    holdout : sequence of Run
+        Runs for judging only. If empty, a part of `runs` is held out.
+    show : Show
+        Callback for progress.
+
+    Returns
+    -------
+    Diagnosis
 
     Raises
     ------
@@ -106,7 +118,7 @@ def _searched(
     options: EvaluationOptions,
     show: Show,
 ) -> tuple[Diagnosis, Judge]:
-    """Everything that effects explain, and who judges it."""
+    """One complete search for missing effects, and the judge of its models."""
     show(0.0, "set-up")
     begun = begin(runs, holdout, robot, options)
     judge, set_up = begun.judge, begun.set_up
@@ -151,7 +163,7 @@ def _searched(
 
 
 def _best(this: Round, runs: Concatenated) -> Fitted | None:
-    """The cheapest model of a round, if chance does not explain it."""
+    """The cheapest model of a round, if it is significant."""
     fit = next((fit for fit in this.tried if not fit.at_bound), None)
     if fit is None:
         return None
@@ -162,10 +174,11 @@ def _best(this: Round, runs: Concatenated) -> Fitted | None:
 
 
 def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) -> Dependence | None:
-    """A dependence that explains more than a right law could leave to it: no effect is what it is.
+    """The dependence, if any, that explains more than a correct law could leave unexplained.
 
-    It competes with the best effect as a model of its own, by the same fall of the cost and the
-    same penalty for each of its numbers.
+    Then no effect of the library is the missing one. The dependence competes with the best effect
+    as a model of its own, by the same reduction of the cost and the same penalty for each
+    parameter.
     """
     score = next(
         (
@@ -196,7 +209,7 @@ def _beyond_the_library(this: Round, best: Fitted | None, runs: Concatenated) ->
 
 
 def _fall(gain: float, data: int) -> float:
-    """What the cost falls by when squared innovations fall by `gain`: the noise shrinks as well."""
+    """Cost reduction for a fall of the squared innovations, with the noise re-estimated."""
     return -data * math.log1p(-min(max(gain / data, 0.0), 0.999))
 
 

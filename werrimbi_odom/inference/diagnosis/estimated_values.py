@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What follows from a diagnosis: values with standard deviations, sizes, what physics rules out."""
+"""Results of a diagnosis: values with standard deviations, sizes, values outside bounds."""
 
 from __future__ import annotations
 
@@ -24,10 +24,10 @@ from werrimbi_odom.inference.set_up.search import IN_DEGREES, SetUpFinding
 
 @dataclass(frozen=True, slots=True)
 class Value:
-    """A parameter of an effect that was found."""
+    """Estimated parameter of an effect that was found."""
 
     value: float
-    """NaN for what each run has anew."""
+    """NaN for a per-run parameter."""
     std: float
     """NaN where it is not known."""
     unit: str
@@ -35,25 +35,25 @@ class Value:
     null: float
     per_run: bool = False
     is_shape: bool = False
-    """Whether it is a length or a threshold of the law, which has no null of its own."""
+    """Whether it is a length or a threshold of the law, which has no null value."""
     determined: bool = True
-    """Whether the drives hold it: else what a fit says of it is no number to be told."""
+    """Whether the drives determine it; otherwise its fitted value means nothing."""
 
     @property
     def told(self) -> bool:
-        """Whether there is one number to tell of all drives."""
+        """Whether there is one value for all drives to report."""
         return self.determined and not self.per_run
 
 
 def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
-    """The parameters of an effect that was found; empty for a mistake, which has none."""
+    """Parameters of an effect that was found; empty for a set-up mistake, which has none."""
     if name == IN_DEGREES:
         return {}
     if name in CALIBRATED:
         if name not in diagnosis.found and diagnosis.runs.headings_alone:
             return _as_twin(diagnosis, name)
         value = _calibrated(diagnosis, name)
-        if math.isclose(value.value, value.null, rel_tol=1e-6):  # a rival that no model here holds
+        if math.isclose(value.value, value.null, rel_tol=1e-6):  # a rival that is not in the model
             return {}
         return {next(iter(find(name).parameters)): value}
     fit = _fit_with(diagnosis, name)
@@ -88,12 +88,12 @@ def values_of(diagnosis: Diagnosis, name: str) -> Mapping[str, Value]:
 
 
 def ranked_of(diagnosis: Diagnosis, name: str) -> Ranked | None:
-    """The line of the ranking about an effect."""
+    """The effect's row in the ranking."""
     return next((item for item in diagnosis.ranking if item.effect == name), None)
 
 
 def _calibrated(diagnosis: Diagnosis, name: str) -> Value:
-    """A multiplier by its effect's name; what the set-up search put in and what was fitted."""
+    """A calibration effect's value, from the set-up search and the fit together."""
     effect = find(name)
     item = next(iter(effect.parameters.values()))
     size = sizes_of(diagnosis.robot).over(sizes_of(diagnosis.given)).as_effects[name]
@@ -107,7 +107,7 @@ def _calibrated(diagnosis: Diagnosis, name: str) -> Value:
 
 
 def _as_twin(diagnosis: Diagnosis, name: str) -> dict[str, Value]:
-    """A size that no fit holds, by what was found in its place; empty where that says nothing."""
+    """Values of an unfitted effect from its fitted observational equivalent; else empty."""
     for found in set(diagnosis.found) & set(CALIBRATED):
         twin = next(
             (item for item in find(found).indistinguishable_from if item.name == name), None
@@ -131,7 +131,7 @@ def _as_twin(diagnosis: Diagnosis, name: str) -> dict[str, Value]:
 
 
 def _fit_with(diagnosis: Diagnosis, name: str) -> Fitted | None:
-    """The final fit if it holds an effect, else the cheapest one that was tried with it."""
+    """The final fit if it has the effect, else the cheapest fit that was tried with it."""
     tried = [fit for this in diagnosis.rounds for fit in this.tried if fit.names[-1] == name]
     return next(
         (
@@ -144,7 +144,7 @@ def _fit_with(diagnosis: Diagnosis, name: str) -> Fitted | None:
 
 
 def _spreads(fit: Fitted) -> dict[str, float]:
-    """Standard deviations of all shared numbers of a fit."""
+    """Standard deviations of all shared parameters of a fit."""
     return {
         number.name: math.sqrt(max(float(fit.covariance[index, index]), 0.0))
         for index, (number, run) in enumerate(fit.design.columns)
@@ -153,9 +153,9 @@ def _spreads(fit: Fitted) -> dict[str, float]:
 
 
 def widest(diagnosis: Diagnosis) -> float:
-    """By how much the scatter of the parts widened the deviation of what is told, at most.
+    """Largest factor by which the scatter of the parts widened a reported standard deviation.
 
-    1 where the parts agree to within the noise, or where nothing is told.
+    1 where the parts agree to within the noise, or where nothing is reported.
     """
     fit, found = diagnosis.final, set(diagnosis.found)
     sizes = bool({*CALIBRATED, *fit.calibrated} & found)
@@ -169,14 +169,14 @@ def widest(diagnosis: Diagnosis) -> float:
 
 
 def mistakes(diagnosis: Diagnosis) -> dict[str, SetUpFinding]:
-    """What is set up wrongly, by name."""
+    """Set-up mistakes, by name."""
     return {finding.effect: finding for finding in diagnosis.set_up.findings}
 
 
 def best_sizes(diagnosis: Diagnosis) -> Mapping[str, tuple[float, float | None]]:
-    """Base and radii of the best model, as multipliers with standard deviations.
+    """Wheel base and radii of the best model, as multipliers with standard deviations.
 
-    The given ones where set-up mistakes were found: sizes are told with them.
+    The given ones where set-up mistakes were found, since sizes are reported together with them.
     """
     given, final = diagnosis.given, diagnosis.final
     if mistakes(diagnosis):
@@ -192,9 +192,9 @@ def best_sizes(diagnosis: Diagnosis) -> Mapping[str, tuple[float, float | None]]
 
 
 def one_wheel(diagnosis: Diagnosis) -> str | None:
-    """The wheel that is off alone, where its size is what two effects of calibration are found of.
+    """The one wheel whose size is off, where both a ratio and a scale of the radii were found.
 
-    A ratio and a scale are then one thing on the robot.
+    On the robot these two effects are then one cause.
     """
     found = set(diagnosis.found) & set(CALIBRATED)
     if mistakes(diagnosis) or not {"unequal_wheel_radii", "wheel_radius_scale"} <= found:
@@ -209,7 +209,7 @@ def one_wheel(diagnosis: Diagnosis) -> str | None:
 
 
 def at_bounds(diagnosis: Diagnosis) -> dict[str, tuple[str, float, str]]:
-    """Effects that would help, but only at a value that physics does not allow.
+    """Effects that would help, but only at a value outside the physical bounds.
 
     By name: the parameter at its bound, its value, its unit.
     """
@@ -234,9 +234,10 @@ def at_bounds(diagnosis: Diagnosis) -> dict[str, tuple[str, float, str]]:
 
 
 def reference_wanders(diagnosis: Diagnosis) -> bool:
-    """Whether errors go with something beyond chance though nothing is missing.
+    """Whether errors depend on something beyond chance although no effect is missing.
 
-    Errors that are alike for seconds together, and no law that all parts of the drives agree on.
+    Such errors are correlated over seconds, and follow no law on which all parts of the drives
+    agree.
     """
     sure = any(cell.p_value < VERY_SURE for cell in diagnosis.depends_on)
     return sure and diagnosis.verdict == "none" and diagnosis.misfit is None

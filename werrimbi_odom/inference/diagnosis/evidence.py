@@ -1,11 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the model fails, before any name is given to it: what the errors depend on.
+"""Evidence map: which measured variables the errors depend on, before any effect is named.
 
-Under a complete model the whitened innovations depend on nothing. Each cell of the evidence map
-asks whether the error of one channel (left, right, along, sideways, heading) goes with one measured
-variable, as a line or as any smooth curve. It is a score test: the pattern that such a dependence
-would leave in the innovations, less what the model can turn already, against what is there.
+Under a complete model the whitened innovations are independent of everything. Each cell of the map
+tests whether the error of one channel (left, right, along, sideways, heading) depends on one
+measured variable, as a line or as a smooth curve. It is a score test: the pattern of such a
+dependence in the innovations, with the nuisance parameters projected out, is compared with the
+innovations.
 """
 
 from __future__ import annotations
@@ -41,7 +42,7 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.reference_view import View
 
 BATCH = 2_000_000
-"""Numbers of legs times columns that go through the filter at once."""
+"""Legs times columns that the filter processes at once."""
 
 CHANNELS = ("left", "right", "along", "sideways", "heading")
 _OF_WHEELS = CHANNELS[:3]
@@ -49,7 +50,7 @@ _OF_WHEELS = CHANNELS[:3]
 
 @dataclass(frozen=True, slots=True)
 class Amount:
-    """What an error is in proportion to, beside its variable."""
+    """Error channel, and the quantity that the error is proportional to."""
 
     channel: str
     """left, right, along (both wheels alike), sideways or heading."""
@@ -58,7 +59,7 @@ class Amount:
 
     @property
     def of_wheels(self) -> bool:
-        """Whether it is what each wheel has of its own."""
+        """Whether the error is a separate one of each wheel."""
         return self.channel in _OF_WHEELS and self.per != "turn"
 
 
@@ -86,32 +87,32 @@ class Dependence:
     variable: Variable
     form: Form
     coefficients: Floats
-    """Of the form's functions; (k,), or (runs, k) where each run has its own zero."""
+    """Coefficients of the form's functions; (k,), or (runs, k) where each run has its own zero."""
     gain: float
-    """Fall of the squared innovations, in their own variances."""
+    """Test statistic: fall of the whitened squared innovations."""
     degrees: int
     p_value: float
-    """Corrected for the number of cells looked at (Bonferroni)."""
+    """Corrected for the number of cells tested (Bonferroni)."""
     shares: tuple[Floats, Floats] | None = None
-    """How much of what the error is in proportion to was gone in each step, for left and right
-    wheel, (n,): an error per metre is none while the robot stands. None: as much in each."""
+    """Size of the quantity `amount.per` in each step, for left and right wheel, (n,). An error per
+    metre is zero while the robot stands. None: the same in each step."""
 
     @property
     def channel(self) -> str:
-        """Which error."""
+        """Error channel."""
         return self.amount.channel
 
     @property
     def name(self) -> str:
-        """What it goes with: the variable, or where it depends on none, what it is per."""
+        """Name of the variable; for a constant error, of what it is proportional to."""
         return self.amount.per if self.variable.name == CONSTANT else self.variable.name
 
 
 def place_of(cell: Dependence) -> tuple[float, float]:
-    """Where on the floor most of an error is, in the reference's frame [m].
+    """Place on the floor where most of an error is, in the frame of the reference [m].
 
-    The floor's cell of the most certain error, and its neighbours with an error of the same sign:
-    the middle of them all, each by its certainty. That is finer than a cell is wide.
+    It is the mean of the most certain floor cell and of its neighbours with an error of the same
+    sign, weighted by certainty. That is finer than the width of a cell.
     """
     x, y = cell.variable.left, cell.variable.right
     cells = floor_cells(x, y)
@@ -130,9 +131,9 @@ def place_of(cell: Dependence) -> tuple[float, float]:
 def dependences(
     runs: Concatenated, point: Point, numbers: Sequence[FreeParameter]
 ) -> tuple[Dependence, ...]:
-    """All cells of the map for a model, the most certain first.
+    """The evidence map of a model: all cells, most significant first.
 
-    `numbers` are what the model can turn: what they can explain is no evidence.
+    `numbers` are the nuisance parameters: what they can explain is no evidence.
     """
     frame, rest = unexplained(runs, point, numbers, predict_all(point.model, runs))
     told = unexpected(runs, point)
@@ -169,14 +170,16 @@ def dependences(
 
 
 def _tested(patterns: Sequence[Floats], products: Floats) -> ScoreTest | None:
-    """Score test of patterns (k, n) that each part of the data has anew, zero in the others.
+    """Score test of patterns (k, n) with separate coefficients for each part of the data.
 
-    With no copy of them less the nuisances, for there are many.
+    It works with products, without a copy of the many patterns with the nuisances projected out.
 
     Parameters
     ----------
+    patterns : sequence of ndarray, shape (k, n)
+        The patterns in each part; zero in the others.
     products : ndarray, shape (parts, k, nuisances + 1)
-        With what the model can turn, and with what is left of the innovations, clear of that.
+        Their products with the nuisance basis and, last, with the projected innovations.
     """
     width = products.shape[1]
     square = np.zeros((len(patterns) * width,) * 2)
@@ -197,7 +200,7 @@ class _Cells(NamedTuple):
 
 
 def _changes(runs: Concatenated, point: Point) -> Iterator[tuple[_Cells, Floats]]:
-    """Cells with their changes of the legs (m, 3, amounts * k), as many as memory bears at once."""
+    """Cells with their changes of the legs (m, 3, amounts * k), in blocks that fit into memory."""
     path = path_of(point.model, runs)
     of_wheels = [amount for amount in AMOUNTS if amount.channel in _OF_WHEELS]
     both = np.empty((path.motion.turn.size, 3 * len(AMOUNTS)))
@@ -224,12 +227,12 @@ def _changes(runs: Concatenated, point: Point) -> Iterator[tuple[_Cells, Floats]
 
 
 Pushes = Callable[[NDArray[np.intp]], Floats]
-"""What unit errors of some steps (...) do to their legs' relative poses, (..., p); worked out when
-asked for, since of all steps it is much."""
+"""Function of step numbers (...): change of the legs' relative poses for unit errors of these
+steps, (..., p). It is evaluated on demand, as the array for all steps is large."""
 
 
 def legs_pushed(runs: Concatenated, functions: Floats, pushes: Pushes) -> Floats:
-    """Sums over each leg's steps of functions (n, k) times pushes, as (m, p, k)."""
+    """Sum functions (n, k) times pushes over the steps of each leg: (m, p, k)."""
     size = runs.end - runs.begin
     width = pushes(np.zeros(0, dtype=np.intp)).shape[-1]
     found = np.zeros((runs.count, width, functions.shape[1]))
@@ -244,16 +247,16 @@ def legs_pushed(runs: Concatenated, functions: Floats, pushes: Pushes) -> Floats
 
 
 _BLOCK = 4096
-"""Steps at a time: what they take fits in the processor's cache."""
+"""Steps in a block, so that their arrays fit into the processor's cache."""
 
 
 def pushes_of(
     runs: Concatenated, path: DrivenPath, amounts: Sequence[Amount], point: Point
 ) -> tuple[Pushes, Pushes]:
-    """What unit errors of steps do to their legs' relative poses: of left wheel, of right wheel.
+    """Change of the legs' relative poses for unit errors of steps: of left wheel, of right wheel.
 
-    Three coordinates for each of the amounts, one amount after the other, (..., 3 a). Where an
-    amount belongs to the robot, the second is zero.
+    Three coordinates for each of the amounts, one amount after the other, (..., 3 a). For an amount
+    of the robot as a whole, the second is zero.
     """
     robot = point.model.robot
     levers = runs.of_steps(
@@ -286,13 +289,13 @@ _OTHER: dict[Side, Side] = {"left": "right", "right": "left"}
 
 
 def _bases(path: DrivenPath, duration: Floats) -> dict[str, Floats]:
-    """What errors are in proportion to in each step, (n,); a path is the size of a travel."""
+    """What errors are proportional to, in each step, (n,); a path is the size of a travel."""
     (left, right), (along, _, turn) = path.travel, path.motion
     return {"left": left, "right": right, "along": along, "turn": turn, "duration": duration}
 
 
 def _base_of(amount: Amount, side: Side) -> str:
-    """Which of them it is for one wheel."""
+    """Name of the quantity for one wheel."""
     if amount.of_wheels:
         return side
     return "along" if amount.per in ("travel", "path") else amount.per
@@ -309,7 +312,7 @@ def _shares(path: DrivenPath, duration: Floats) -> dict[Amount, tuple[Floats, Fl
 
 
 class _Levers(NamedTuple):
-    """How errors of steps move the end of their leg, in its start's frame; of one shape."""
+    """Lever arms: how errors of steps move the end of their leg, in the frame of its start."""
 
     along: NDArray[np.complex128]
     """For a metre along."""

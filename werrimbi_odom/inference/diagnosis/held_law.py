@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A law that fits but not fully is said to be that: its rest is not another effect.
+"""Model misfit: a law of about the right form leaves a remainder, which is not another effect.
 
-An effect that the robot file holds (the library's, a user's, a draft) has a law of some form, and
-nature's may be a bit another one. What that leaves goes with the effect's own variables and acts
-where the effect acts, it is little beside what the law explains, and a freer form of the law (a
-curve over one of its variables) takes it away. Some other effect may fit a part of it; to name that
-would send the user after a thing that is not there.
+An effect in the robot file (the library's, a user's, a draft) has a law of some form, and the true
+law may differ slightly. The remainder then depends on the effect's own variables and acts on the
+same channels. It is small against what the law explains, and a freer form of the law (a curve over
+one of its variables) removes it. Some other effect may fit a part of it, but naming that one would
+mislead the user.
 """
 
 from __future__ import annotations
@@ -37,14 +37,15 @@ from werrimbi_odom.model.effect import AppliedEffect
 
 @dataclass(frozen=True)
 class Misfit:
-    """What a law leaves, because its form is not quite nature's."""
+    """What remains because the form of a law is slightly wrong."""
 
     effect: str | None
-    """Whose law; None where no law looks at that variable: then something else is left."""
+    """Effect with that law; None where no law depends on that variable: then something else
+    remains."""
     cell: Dependence
-    """What the errors still go with."""
+    """What the errors still depend on."""
     share: float | None
-    """Of what the law explains."""
+    """The remainder as a share of what the law explains."""
     only_in: str | None = None
     """The one drive that shows it; None where all do."""
 
@@ -52,14 +53,14 @@ class Misfit:
 def misfit_of_held_law(
     this: Round, best: Fitted | None, beyond: Dependence | None, runs: Concatenated
 ) -> Misfit | None:
-    """The misfit that a round found in the place of an effect; None where it found one.
+    """The misfit that explains a round's finding better than a new effect; None if there is none.
 
     Parameters
     ----------
-    best
-        The effect that the round would take.
-    beyond
-        The dependence that no effect explains, which would end the search.
+    best : Fitted, optional
+        Model with the effect that the round would accept.
+    beyond : Dependence, optional
+        Dependence that no effect explains, which would end the search.
     """
     before = this.before
     for law, support, explained in _laws(before, runs):
@@ -86,17 +87,17 @@ def misfit_of_held_law(
 def misfit_of_found(
     fit: Fitted, certain: Sequence[Dependence], runs: Concatenated
 ) -> Misfit | None:
-    """What is left beside everything found, if anything lasts: what explains most for its numbers.
+    """The lasting dependence, if any, that remains beside everything found.
 
     Parameters
     ----------
-    certain
-        Cells of the final model's map that chance does not show.
+    certain : sequence of Dependence
+        Significant cells of the final model's map.
     """
     worth = sorted(certain, key=lambda cell: cell.degrees * fit.price_of_one - cell.gain)
     numbers = (*CALIBRATION, *fit.numbers)
     for cell, p_value, only_in in lasting(runs, fit.point, numbers, worth[:LEFT_ASKED]):
-        dear = cell.gain <= cell.degrees * fit.price_of_one  # as a law of the robot
+        dear = cell.gain <= cell.degrees * fit.price_of_one  # does not pay its penalty as a law
         if only_in or (p_value < SURE and not dear):
             for law, support, explained in _laws(fit, runs):
                 if _shares(support, cell):
@@ -106,7 +107,7 @@ def misfit_of_found(
 
 
 def _laws(fit: Fitted, runs: Concatenated) -> Iterator[tuple[AppliedEffect, Support, float]]:
-    """Laws of a model with their reach, and by how much each lowers the cost."""
+    """Laws of a model, each with its support and the rise of the cost without it."""
     robot = fit.point.model.robot
     drive = runs.drive(fit.point.model.laid_out(runs.steps))
     for applied in robot.effects:
@@ -121,7 +122,7 @@ def _laws(fit: Fitted, runs: Concatenated) -> Iterator[tuple[AppliedEffect, Supp
 
 
 def _shares(support: Support, cell: Dependence) -> bool:
-    """Whether a dependence is in a variable that a law looks at, where it acts."""
+    """Whether a dependence is on an input of the law and in one of its output channels."""
     return cell.channel in support.outputs and bool(support.inputs & set(cell.variable.looks_at))
 
 
@@ -132,7 +133,7 @@ def _gain_beside(
     score: Score,
     cell: Dependence,
 ) -> float:
-    """What a candidate would still explain if the model could turn a cell's pattern as well."""
+    """Score gain of a candidate with the cell's pattern as a further nuisance."""
     prediction = predict_all(point.model, runs)
     turned, rest = unexplained(runs, point, numbers, prediction)
     pattern = pattern_of(runs, point, cell)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Models judged on runs that took no part in their fit."""
+"""Models judged on held-out runs, which took no part in their fit."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True, slots=True)
 class Errors:
-    """Root mean square errors of legs: of position [m], or of headings alone [rad]."""
+    """Root mean square errors of legs: position [m], or heading if only that is known [rad]."""
 
     train: float
     holdout: float
@@ -43,19 +43,19 @@ class Errors:
     yaw: tuple[float, float]
     """Root mean square heading errors of train and holdout [rad]."""
     quiet: tuple[float, float]
-    """The first two over legs in which nothing happened at once."""
+    """`train` and `holdout` without legs with an abrupt event."""
     unit: Unit
     legs: Legs
-    """Of the held-out drives."""
+    """Legs of the held-out drives."""
 
     def to(self, after: Errors) -> Sides:
-        """What becomes of the held-out error with another model."""
+        """Change of the held-out error from this model to another."""
         return sides_of(self.legs, after.legs, self.unit)
 
 
 @dataclass(frozen=True)
 class Judge:
-    """Legs to judge models on: those of the runs they were fitted on, and of others."""
+    """Legs to judge models on: those of the fitted runs, and those of the held-out runs."""
 
     given: Robot
     options: EvaluationOptions
@@ -64,20 +64,20 @@ class Judge:
     train: Prepared
     holdout: Prepared
     fine: Concatenated
-    """Held-out runs in the short legs of a fit, for what each run has of its own."""
+    """Held-out runs in the short legs of a fit, for the estimation of their per-run parameters."""
 
     @property
     def nothing_of_own(self) -> tuple[Mapping[str, float], ...]:
-        """For a model that has no values of the runs' own."""
+        """Empty per-run values, one for each fitted run."""
         return tuple({} for _ in self.fitted_on)
 
     @property
     def left_out(self) -> tuple[LeftOut, ...]:
-        """Stretches of all runs that nothing is judged on."""
+        """Stretches of all runs that are excluded from judgement."""
         return tuple(dict.fromkeys((*self.train.left_out, *self.holdout.left_out)))
 
     def of(self, model: Model) -> Errors:
-        """Errors of a model; what each held-out run has of its own is fitted to that run alone."""
+        """Errors of a model; per-run parameters of a held-out run are fitted to that run alone."""
         train = _legs(self.train, in_runs(self.train, model))
         holdout = _legs(self.holdout, known_at_home(model, self.fine, self.options.reference_kind))
         unit: Unit = "rad" if judged_by(self.train) == "heading" else "m"
@@ -92,19 +92,19 @@ class Judge:
         )
 
     def at_home(self, model: Model) -> Point:
-        """The model in the held-out runs: shared values as they are, the runs' own learnt."""
+        """The model for the held-out runs: shared values kept, per-run parameters estimated."""
         return at_home(model, self.fine, self.options.reference_kind)
 
 
 @dataclass(frozen=True)
 class Begun:
-    """What every judgement of drives begins with."""
+    """Result of the preparation that every judgement of drives begins with."""
 
     judge: Judge
     set_up: SetUp
-    """Found in the fitted drives alone."""
+    """Set-up, found in the fitted drives alone."""
     otherwise: tuple[RecordedOtherwise, ...]
-    """Drives that were recorded otherwise; left out wherever others remain."""
+    """Drives recorded with another set-up; left out wherever others remain."""
 
 
 def begin(
@@ -115,18 +115,30 @@ def begin(
     *,
     given: Robot | None = None,
 ) -> Begun:
-    """Split the drives, find the set-up of the fitted ones, and leave out what is not like them.
+    """Split the drives, find the set-up of the fitted ones, and leave out drives of another set-up.
 
     Parameters
     ----------
+    runs : sequence of Run
+        Runs to fit; a part of them is held out if `holdout` is empty.
+    holdout : sequence of Run
+        Runs for judging only.
+    robot : Robot
+        The model as given.
+    options : EvaluationOptions
+        How drives are cut into legs and judged.
     given : Robot, optional
-        By whose travel legs are cut, where that is not `robot`.
+        Robot by whose travel legs are cut, where that is not `robot`.
+
+    Returns
+    -------
+    Begun
 
     Raises
     ------
     InputError
         When a run has no usable reference or no ticks, or is in degrees or millimetres; when the
-        wheels stood in all of them.
+        wheels stood still in all of them.
     """
 
     def split(kept: Sequence[Run], held: Sequence[Run]) -> tuple[SetUp, Judge]:
@@ -168,7 +180,7 @@ def _refuse_standing(runs: Sequence[Run]) -> None:
 def judge_of(
     runs: Sequence[Run], holdout: Sequence[Run], robot: Robot, options: EvaluationOptions
 ) -> Judge:
-    """Cut the legs of the runs that are fitted, and of those that judge."""
+    """Cut the legs of the fitted runs and of the held-out runs."""
     fitted_on, kept_back = tuple(runs), tuple(holdout)
     train, held = (prepare(some, robot, options) for some in (fitted_on, kept_back))
     return Judge(robot, options, fitted_on, kept_back, train, held, finely(held))

@@ -1,13 +1,13 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Test of homogeneity: whether the parts of the drives agree on what the errors go with.
+"""Test of homogeneity: whether the parts of the drives agree on a dependence of the errors.
 
-Scores and the evidence map take innovations for independent. Those of a reference that wanders (a
-camera, a map that is matched) are not, and go with something by chance much farther. So runs are
-cut into parts, and what a pattern explains in all of them is held against how much more it would
-explain if each part had coefficients of its own: a test of homogeneity, by Fisher's F. Where
-something is really there the parts agree, to within the noise. And what one drive alone shows,
-where the others could as well, is something that happened on that drive.
+Score tests and the evidence map assume independent innovations. The innovations of a reference with
+correlated errors (a camera, a matched map) are not, and show far stronger chance dependences. So
+runs are cut into parts. What a pattern explains in all of them is compared with how much more it
+would explain with separate coefficients for each part, by Fisher's F. A real effect is the same in
+all parts, to within the noise. What only one drive shows, where the others could as well, was
+specific to that drive.
 """
 
 from __future__ import annotations
@@ -39,21 +39,22 @@ from werrimbi_odom.model.pose import Floats
 
 
 class Lasting(NamedTuple):
-    """A dependence, and whether it lasts."""
+    """A dependence, and the result of its homogeneity test."""
 
     cell: Dependence
     p_value: float
-    """How often chance shows as much, by the disagreement of the parts."""
+    """P-value by the disagreement between the parts."""
     only_in: str | None
-    """The one drive that shows it where the others could and do not."""
+    """The one drive that shows the dependence where the others could and do not."""
 
 
 def lasting_effect(runs: Concatenated, fit: Fitted, name: str) -> float:
-    """How often chance would make an effect of a model, by the disagreement of the parts.
+    """P-value of an effect in the model, by the disagreement between the parts.
 
-    Each part's own sizes are those that the law would have there by its derivatives *at the fit*:
-    half of a late reference (a tenth of a second, at every start and stop) lies beyond what its
-    derivative at no delay says, and would pass for a disagreement of the parts.
+    The size of the effect in each part comes from the derivatives *at the fit*. For a law that is
+    not linear, derivatives at the null would not do: half of what a late reference causes (a tenth
+    of a second, at every start and stop) lies beyond the derivative at zero delay, and would pass
+    for a disagreement of the parts.
     """
     white, flat = fit.design.flat()
     parts = parts_of_innovations(runs, white)
@@ -71,7 +72,7 @@ def lasting_effect(runs: Concatenated, fit: Fitted, name: str) -> float:
             own.append(column)
             away.append(0.0 if is_phase and run >= 0 else model.value(number, max(run, 0)) - null)
     mine = [effect == name for effect, *_ in whose]
-    # What these drives do not determine was not turned, and explains nothing of the effect.
+    # Directions that the data do not determine were not fitted, and explain nothing of the effect.
     others = nuisance(flat @ fit.moves[:, ~fit.moves[mine].any(axis=0)])
     free = others.residual(flat[:, own])
     rest = others.residual(white) - free @ np.array(away)
@@ -82,9 +83,9 @@ def lasting_effect(runs: Concatenated, fit: Fitted, name: str) -> float:
 def lasting(
     runs: Concatenated, point: Point, numbers: Sequence[FreeParameter], cells: Iterable[Dependence]
 ) -> Iterator[Lasting]:
-    """Some cells of a model's map, each with whether it lasts.
+    """Homogeneity test of some cells of a model's evidence map.
 
-    `numbers` are those of the map.
+    `numbers` are the nuisance parameters of the map.
     """
     prediction = predict_all(point.model, runs)
     frame, rest = unexplained(runs, point, numbers, prediction)
@@ -100,7 +101,7 @@ def lasting(
 
 
 def pattern_of(runs: Concatenated, point: Point, cell: Dependence) -> Floats:
-    """What a dependence of a cell's form does to the whitened innovations, (3 m, k)."""
+    """Change of the whitened innovations for a dependence of a cell's form, (3 m, k)."""
     path = path_of(point.model, runs)
     sides = zip(
         functions_of(cell.variable)[cell.form],
@@ -117,30 +118,31 @@ def pattern_of(runs: Concatenated, point: Point, cell: Dependence) -> Floats:
 def lasting_columns(
     runs: Concatenated, gain: float, degrees: int, free: Floats, rest: Floats
 ) -> float:
-    """How often chance would explain as much by some columns, by the disagreement of the parts.
+    """P-value of what some columns explain, by the disagreement between the parts.
 
     Parameters
     ----------
     free : ndarray, shape (3 m, d)
-        Columns clear of all that else is fitted.
+        Columns with all other fitted parameters projected out.
     rest : ndarray, shape (3 m,)
-        Innovations clear of it.
+        Innovations with them projected out.
     """
     parts = parts_of_innovations(runs, rest)
     return 0.0 if parts is None else _chance(gain, degrees, free, rest, parts)
 
 
 def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp]) -> int | None:
-    """Index of the drive without which a pattern is not seen, though the others hold enough of it.
+    """Index of the drive without which a pattern vanishes, though the others could show it.
 
-    A law is the robot's, so any drive may be left out (a jackknife over drives).
+    A law belongs to the robot, so it must remain when any one drive is left out (a jackknife over
+    drives).
 
     Parameters
     ----------
     free : ndarray, shape (n, k)
-        The pattern's columns, clear of what the model can turn.
+        The pattern's columns with the nuisances projected out.
     rest : ndarray, shape (n,)
-        What is left of the whitened innovations.
+        Whitened innovations with the nuisances projected out.
     run : ndarray, shape (n,)
         Drive of each innovation.
     """
@@ -162,7 +164,7 @@ def _drive_alone(free: Floats, rest: Floats, run: NDArray[np.intp]) -> int | Non
 def _chance(
     gain: float, degrees: int, free: Floats, rest: Floats, parts: NDArray[np.intp]
 ) -> float:
-    """Of a pattern's gain, against the disagreement of the parts."""
+    """P-value of a pattern's gain, relative to the disagreement between the parts."""
     size = np.sqrt(np.sum(free**2, axis=0))
     scaled = free[:, size > 0.0] / size[size > 0.0]
     apart, freedom = 0.0, 0

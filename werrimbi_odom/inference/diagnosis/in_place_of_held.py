@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What else would do in the place of an effect that the robot file holds.
+"""Rivals of an effect that the robot file holds: effects that explain the drives as well.
 
-A user to whom several effects were rivals adds one of them, and then nothing is missing. That is no
-proof of it: the same drives still cannot tell it from the others, and that must not be forgotten.
+A user who was told several rivals adds one of them, and then nothing is missing. That does not
+prove it: the same drives still cannot tell it from the others, and the report must keep saying so.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from werrimbi_odom.model.robot import Robot
 def rivals_of_held(
     runs: Concatenated, fit: Fitted, effects: Sequence[Effect], given: Robot
 ) -> dict[str, tuple[str, ...]]:
-    """Effects that would explain the drives as well as one that the file holds, by its name."""
+    """Effects that explain the drives as well as an effect that the file holds, by its name."""
     found = {}
     for applied in fit.point.model.robot.effects:
         if applied.effect.is_mistake or applied.name in CALIBRATED or base_name(applied.effect):
@@ -45,7 +45,7 @@ def rivals_of_held(
 def _rivals(
     runs: Concatenated, fit: Fitted, effects: Sequence[Effect], given: Robot, held: Effect
 ) -> tuple[str, ...]:
-    """Scored beside the held one where that is taken out; the best few are fitted in its place."""
+    """Score all effects without the held one; fit the best few in its place."""
     model, mine = fit.point.model, f"{held.name}."
     others = tuple(item for item in model.robot.effects if item.name != held.name)
     own = tuple(

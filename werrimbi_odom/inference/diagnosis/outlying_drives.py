@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Drives that were recorded otherwise than the rest: a plug exchanged, a clock set, a file edited.
+"""Drives recorded with another set-up than the rest: a plug swapped, a clock set, a file edited.
 
-The set-up is found in the fitted drives alone. A drive that errs far more with it than the fitted
-ones do is looked at by itself: where its own records show another set-up, it says nothing of the
-robot that the others show.
+The set-up is estimated from the fitted drives alone. A drive with far larger errors under it is
+examined by itself. If its own data show another set-up, it tells nothing about the robot of the
+other drives.
 """
 
 from __future__ import annotations
@@ -28,28 +28,28 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True)
 class RecordedOtherwise:
-    """A drive whose set-up is not that of the fitted ones."""
+    """A drive whose set-up differs from that of the fitted drives."""
 
     run: str
     held_out: bool
     findings: tuple[SetUpFinding, ...]
-    """What differs from the set-up of the fitted drives."""
+    """Differences from the set-up of the fitted drives."""
 
     @property
     def effects(self) -> tuple[str, ...]:
-        """Names of what differs."""
+        """Names of the differences."""
         return tuple(finding.effect for finding in self.findings)
 
 
 def recorded_otherwise(
     fitted: Prepared, held_out: Prepared, mended: Robot, options: EvaluationOptions
 ) -> tuple[RecordedOtherwise, ...]:
-    """Drives on either side that were not recorded as most of the fitted ones.
+    """Fitted and held-out drives that were recorded with another set-up than most fitted ones.
 
     Parameters
     ----------
     mended : Robot
-        With the set-up mistakes that the fitted drives have in common put right.
+        Robot with the set-up mistakes common to the fitted drives corrected.
     """
     own = typical_errors(fitted, mended)
     usual = float(np.median(own))
@@ -74,7 +74,7 @@ def _differing(run: Run, mended: Robot, options: EvaluationOptions) -> tuple[Set
 
 
 def typical_errors(prepared: Prepared, robot: Robot) -> Sequence[float]:
-    """Median error of each drive's legs, by position [m], or by heading [rad] where that is all."""
+    """Median error of each drive's legs, of position [m], or of heading [rad] where that is all."""
     model = Model(robot, tuple({} for _ in prepared.runs))
     legs = judged_legs(prepared, model, prepared.options.leg)
     by_position = np.isfinite(legs.errors.distance).any()

@@ -1,15 +1,16 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Two models over the same legs, leg by leg: by how much one errs more, and what of it is chance.
+"""Paired comparison of two models over the same legs: the change of the error, and its p-value.
 
-Both err by the same noise on the same leg, so what they differ by tells far more than two totals
-do. On each leg one model's error is the other's less a known difference δ of their predictions, and
-of that difference the drives want a share β: 1 where the second model is right, 0 where the first
-is; below one half its squared errors are the larger ones. β is found by least squares, and its
-scatter from what is left, taken together in parts of each run, since errors are alike for seconds.
+Both models have the same noise on a leg, so their difference is far more precise than their two
+totals. On each leg the errors differ by the known difference δ of the predictions. The data
+determine its best weight β, by least squares: 1 where the second model is right, 0 where the first
+is. Below one half, the second has the larger squared error. The standard error of β is
+cluster-robust: residuals are summed over parts of each run, since errors are correlated over
+seconds.
 
 Sources: the encompassing test of two predictions (Chong and Hendry, Rev. Econ. Stud. 53, 1986);
-scatter from sums over parts (Liang and Zeger, Biometrika 73, 1986).
+cluster-robust standard errors (Liang and Zeger, Biometrika 73, 1986).
 """
 
 from __future__ import annotations
@@ -30,38 +31,38 @@ Unit = Literal["m", "rad"]
 
 @dataclass(frozen=True, slots=True)
 class Sides:
-    """A figure before and after."""
+    """An error measure before and after."""
 
     before: float
     after: float
     unit: Unit = "m"
-    """Radians where headings alone were measured, and errors are those of the heading."""
+    """Radians where only headings were measured."""
     chance: float = 1.0
-    """How often chance would raise the errors of these legs as much; 1 where none rose."""
+    """P-value of the rise of the error on these legs; 1 where it did not rise."""
 
     @property
     def fell(self) -> bool:
-        """Whether the error is lower after."""
+        """Whether the error fell."""
         return self.after < self.before * (1.0 - HELD_OUT_FALL)
 
     @property
     def rose(self) -> bool:
-        """Whether it is higher, by more than chance."""
+        """Whether the error rose, significantly."""
         return self.chance < SURE_WHEN_ASKED
 
 
 def sides_of(before: Legs, after: Legs, unit: Unit) -> Sides:
-    """Root mean square errors of two models over the same legs, and the chance of the rise.
+    """Root mean square errors of two models over the same legs, and the p-value of a rise.
 
-    That is told over legs in which nothing happened at once: where it did, a robot ends anywhere.
+    The p-value is of legs without an abrupt event: after an event the end pose may be anything.
 
     Parameters
     ----------
-    unit
+    unit : {"m", "rad"}
         "m" for errors of position, "rad" for those of heading.
     """
     errors = error_of(before, unit), error_of(after, unit)
-    quiet = ~(before.event | after.event)  # each model has its own view of what happened at once
+    quiet = ~(before.event | after.event)  # each model has its own view of which legs have an event
     before, after = before.chosen(quiet), after.chosen(quiet)
     if not error_of(after, unit) > error_of(before, unit) * (1.0 + HELD_OUT_FALL):
         return Sides(*errors, unit)
@@ -75,7 +76,7 @@ def error_of(legs: Legs, unit: Unit) -> float:
 
 
 def median_of(legs: Legs, unit: Unit) -> float:
-    """Median size of the errors of all legs, jumps of the reference among them."""
+    """Median size of the errors of all legs, jumps of the reference included."""
     if unit == "m":
         return statistics_of(legs).median_position_m
     turned = np.abs(legs.errors.error[:, 2])
@@ -84,7 +85,7 @@ def median_of(legs: Legs, unit: Unit) -> float:
 
 
 def _chance(before: Legs, after: Legs, unit: Unit) -> float:
-    """That two models which are as good as each other differ so much, the second erring more."""
+    """P-value of the second model's larger error, if both models are equally good."""
     own = slice(0, 2) if unit == "m" else slice(2, 3)
     first, second = (legs.errors.error[:, own] for legs in (before, after))
     kept = ~(before.outlier | after.outlier) & np.isfinite(first - second).all(axis=1)

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""How well numbers are known, for all that the same drives chose which of them to free.
+"""Post-selection inference: standard deviations that allow for the choice of the free parameters.
 
-Which sizes differ from the given file's, and which parameters an effect needs, is chosen by what is
-worth its price. By chance a number that is none earns it in one set of drives among some twenty,
-and it is then three of its deviations from the truth, however well the rest is known.
+Which sizes differ from the given file's, and which parameters an effect needs, is chosen on the
+same drives by penalised likelihood. In about one set of drives in twenty, a parameter that is truly
+null is chosen by chance. Its estimate is then three of its standard deviations from the truth,
+however well the rest is known.
 """
 
 from __future__ import annotations
@@ -25,7 +26,7 @@ from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
 Law = dict[str, float]
-"""Parameters that an effect may have or lack, at least one of them, with their null values."""
+"""Optional parameters of an effect, of which at least one is kept, with their null values."""
 
 
 def spread_over_choices(
@@ -36,20 +37,26 @@ def spread_over_choices(
     laws: Sequence[Law] = (),
     design: Design | None = None,
 ) -> dict[str, float]:
-    """Standard deviations of shared numbers about what one choice makes of them.
+    """Standard deviations of shared parameters, averaged over the possible choices.
 
-    Each choice has its own values, with their own covariance, and is as likely as its cost and
-    price say; the mean square about the values told, over all choices, is what is not known of them
-    (Hoeting and others, Bayesian model averaging, Statistical Science 14, 1999).
+    Each choice of free parameters has its own estimates with their covariance, and a probability by
+    its cost and penalty. The mean square deviation from the reported values, over all choices, is
+    the variance (Bayesian model averaging: Hoeting and others, Statistical Science 14, 1999).
 
     Parameters
     ----------
-    wanted
-        Effects of calibration whose sizes are free in every choice.
-    told
-        Sizes that were chosen, and what is told is about; of `laws` the numbers that `fit` holds.
-    design
-        With the other parameters of `laws` too; the fit's own if there are none.
+    fit : Fitted
+        The fit whose values are reported.
+    given : Robot
+        Robot with the sizes of the file.
+    wanted : collection of str
+        Calibration effects whose sizes are free in every choice.
+    told : Sizes
+        The chosen sizes, about which deviations are taken; of `laws`, the parameters in `fit`.
+    laws : sequence of Law
+        Optional parameters of effects.
+    design : Design, optional
+        Design with all parameters of `laws`; by default that of the fit.
     """
     robot = fit.point.model.robot
     names, marks, rest = _shared(design or fit.design)
@@ -84,7 +91,7 @@ def spread_over_choices(
         moves, columns = moves[:, heard], marks @ moves[:, heard]
         covariance = covariance_of(columns)
         if not is_told and not np.all(np.sqrt(np.diag(covariance))[: len(limits)] < limits):
-            continue  # what drives do not tell says nothing of what it would do to others
+            continue  # parameters that the data do not determine say nothing about the others
         left = rest + marks @ absent
         step = -covariance @ (columns.T @ left)
         there = absent + moves @ step
@@ -104,18 +111,18 @@ def spread_over_choices(
 
 
 def _shared(design: Design) -> tuple[list[str], Floats, Floats]:
-    """Names, derivatives, innovations of shared numbers, clear of what runs have of their own."""
+    """Names, Jacobian and innovations of the shared parameters, with per-run ones projected out."""
     white, flat = design.flat()
     common = np.array([run < 0 for _, run in design.columns])
     own = nuisance(flat[:, ~common])
     joined = np.column_stack([own.residual(flat[:, common]), own.residual(white)])
-    corner = np.asarray(np.linalg.qr(joined, mode="r"))  # as good as all rows, for squares
+    corner = np.asarray(np.linalg.qr(joined, mode="r"))  # has the same least squares
     names = [number.name for number, run in design.columns if run < 0]
     return names, corner[:, :-1], corner[:, -1]
 
 
 def _subsets(laws: Sequence[Law]) -> Iterator[tuple[str, ...]]:
-    """Of each law at least one parameter."""
+    """Subsets of the parameters, with at least one of each law."""
     each = [
         [kept for size in range(1, len(law) + 1) for kept in combinations(law, size)]
         for law in laws

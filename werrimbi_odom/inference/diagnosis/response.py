@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is left of an error in each part of a variable's range, with error bars.
+"""Response curve: the remaining error in each bin of a variable's range, with error bars.
 
-A leg of a quarter of a metre runs through most of a wheel's turn, so an error that goes with the
-wheel's angle averages out in it. As the evidence map does, this asks which error of the single
-steps, constant in each part of the range, explains the legs' innovations best, beside all that
-calibration can explain; but it asks for parts, not for a law, so that it shows any law as it is.
+A leg of a quarter of a metre spans most of a wheel's turn, so an error that depends on the wheel's
+angle averages out in it. As in the evidence map, the estimate is therefore the error of the single
+steps, constant in each bin, that explains the innovations of the legs best, with the calibration as
+nuisance. A curve of bins assumes no law, so it shows any law as it is.
 """
 
 from __future__ import annotations
@@ -28,14 +28,14 @@ from werrimbi_odom.inference.linear import SILENT
 from werrimbi_odom.model.pose import Floats
 
 PARTS = 12
-_UNTOLD = 10.0  # times the usual error bar: a part in which next to nothing was driven
-_BLURRED = 3e-3  # of the best told pattern of parts: one told worse swings the curve for nothing
-_SAME = 1e-9  # of the range: values nearer than this are one
+_UNTOLD = 10.0  # times the median error bar: a bin in which next to nothing was driven
+_BLURRED = 3e-3  # of the best determined pattern of bins: worse ones would only add noise
+_SAME = 1e-9  # of the range: values nearer than this are equal
 
 
 @dataclass(frozen=True, slots=True)
 class Response:
-    """Error for each unit of its amount, over a variable; arrays of shape (parts,)."""
+    """Error per unit of its amount, over a variable; arrays of shape (parts,)."""
 
     centre: Floats
     value: Floats
@@ -44,7 +44,7 @@ class Response:
 
 
 def parts_of(left: Floats, right: Floats, *, turns: bool) -> Floats:
-    """Edges of the parts: equal ones of a turn, else such that each holds as many steps."""
+    """Edges of the bins: equal bins of a turn, else quantiles."""
     if turns:
         return np.linspace(0.0, 2.0 * np.pi, PARTS + 1)
     pooled = left if left is right else np.concatenate([left, right])
@@ -61,15 +61,18 @@ def response(
     values: tuple[Floats, Floats],
     edges: Floats,
 ) -> Response:
-    """What is left of an error over a variable.
+    """Estimate the remaining error over a variable.
 
     Parameters
     ----------
-    numbers
-        What the model could turn: what they can explain is taken off.
+    numbers : sequence of FreeParameter
+        Nuisance parameters, which are projected out.
+    amount : Amount
+        Error channel, and what the error is proportional to.
     values : (ndarray, ndarray), shape (n,) each
         The variable at every step, for left and right wheel.
     edges : ndarray, shape (parts + 1,)
+        Edges of the bins.
     """
     prediction = predict_all(point.model, runs)
     frame, rest = unexplained(runs, point, numbers, prediction)
@@ -85,10 +88,10 @@ def response(
     heard = length > SILENT
     scale, free = length[heard], frame.residual(flat[:, heard])
     normal = (free / scale).T @ (free / scale)
-    # What numbers explain as well (a constant, mostly) is no part of it: left out, not blown up.
+    # Patterns that nuisances explain as well (mostly a constant) are left out, not amplified.
     inverse = np.linalg.pinv(normal, rcond=_BLURRED, hermitian=True)
     solution = -(inverse @ ((free / scale).T @ rest)) / scale
-    excess = max(float(np.mean(rest**2)), 1.0)  # errors larger than promised: wider bars
+    excess = max(float(np.mean(rest**2)), 1.0)  # errors larger than the noise model: wider bars
     spread = np.sqrt(np.maximum(np.diag(inverse), 0.0) * excess) / scale
     centre = np.array([_centre(values, edges, part) for part in range(edges.size - 1)])
     told = spread <= _UNTOLD * np.median(spread)
@@ -96,7 +99,7 @@ def response(
 
 
 def _marks(values: Floats, edges: Floats) -> Floats:
-    """In which part each step is, (n, parts)."""
+    """Indicator of the bin of each step, (n, parts)."""
     part = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, edges.size - 2)
     return np.asarray(part[:, None] == np.arange(edges.size - 1), dtype=np.float64)
 
@@ -113,27 +116,27 @@ _FOR_CALIBRATION = {
     "unequal_wheel_radii": ("heading", "travel", ("speed", "distance")),
     "wheel_radius_scale": ("along", "travel", ("speed", "distance")),
 }
-"""Channel, amount and variable along which a wrong size is seen, as a line off zero."""
+"""Channel, amount and variable in which a wrong size shows as a straight line."""
 
 
 @dataclass(frozen=True, kw_only=True)
 class BeforeAfter:
-    """What the figure shows."""
+    """Contents of the figure."""
 
     effect: str | None
-    """None: no effect of the library; what the error goes with, alone."""
+    """None: no effect of the library, only the dependence."""
     cell: Dependence
     before: Response
     after: Response | None
     turns: bool
     aligned: bool
-    """Whether each run's angle was shifted by the phase that was found for it."""
+    """Whether the angle of each run was shifted by its fitted phase."""
 
 
 def before_after(diagnosis: Diagnosis) -> BeforeAfter | None:
-    """The error along the variable of what was found first; None where there is none to show.
+    """The error over the variable of the first effect found; None where there is nothing to show.
 
-    Set-up mistakes have none: see `set_up_figure`.
+    Set-up mistakes have a figure of their own: see `set_up_figure`.
     """
     effect = diagnosis.effect or (diagnosis.rivals[0] if diagnosis.rivals else None)
     if any(finding.effect == effect for finding in diagnosis.set_up.findings):
@@ -166,7 +169,7 @@ def before_after(diagnosis: Diagnosis) -> BeforeAfter | None:
 
 
 def _own_cell(diagnosis: Diagnosis, effect: str | None) -> Dependence | None:
-    """The cell of the evidence map that the effect is about; without one, the strongest cell."""
+    """Cell of the evidence map that the effect is about; without an effect, the strongest cell."""
     cells = [cell for cell in diagnosis.depends_on if cell.variable.name != CONSTANT]
     by_worth = sorted(cells, key=lambda cell: 2 * cell.degrees - cell.gain)
     if not by_worth:
@@ -202,7 +205,7 @@ def _own_cell(diagnosis: Diagnosis, effect: str | None) -> Dependence | None:
 
 
 def _after(diagnosis: Diagnosis, effect: str) -> Point | None:
-    """The fitted model that holds the effect."""
+    """The fitted model with the effect."""
     if effect in diagnosis.final.names or effect in diagnosis.found:
         return diagnosis.final.point
     for this in diagnosis.rounds:
@@ -215,7 +218,7 @@ def _after(diagnosis: Diagnosis, effect: str) -> Point | None:
 def _values(
     diagnosis: Diagnosis, cell: Dependence, effect: str | None, after: Point | None
 ) -> tuple[tuple[Floats, Floats], bool]:
-    """The variable at every step; angles from where the fitted phase of each run puts them."""
+    """The variable at every step; angles are counted from the fitted phase of each run."""
     variable = cell.variable
     if cell.form != "turns":
         return (variable.left, variable.right), False

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What the drives cannot tell from what was found."""
+"""Rivals: effects that the drives cannot tell from the one that was found."""
 
 from __future__ import annotations
 
@@ -19,7 +19,10 @@ from werrimbi_odom.model.robot import Robot
 
 
 def possible_twins(finding: SetUpFinding) -> tuple[str, ...]:
-    """What else it could be, as far as physics allows: no axle is askew by a quarter turn."""
+    """Observational equivalents of a finding that lie within physical bounds.
+
+    No axle is askew by a quarter turn.
+    """
     impossible = {
         twin.name
         for twin in find(finding.effect).indistinguishable_from
@@ -31,7 +34,7 @@ def possible_twins(finding: SetUpFinding) -> tuple[str, ...]:
 def rivals_of(
     first: str, rounds: tuple[Round, ...], final: Fitted, instead: tuple[Instead, ...]
 ) -> tuple[str, ...]:
-    """What the runs cannot tell from the first effect, that one leading; alone: none."""
+    """The first effect and its rivals, which the runs cannot tell from it; empty if it has none."""
     if first in CALIBRATED:
         named = [first, *_sizes_in_place_of(first, final)]
         limit = final.total + RIVAL * final.scatter
@@ -48,7 +51,7 @@ def rivals_of(
 def rivals_of_others(
     found: Sequence[str], rivals: Sequence[str], rounds: tuple[Round, ...], final: Fitted
 ) -> dict[str, tuple[str, ...]]:
-    """The same of each further effect, in the round that took it; none that was found as well."""
+    """Rivals of each further effect, in the round that accepted it; without those found as well."""
     others = {}
     for name in found[1:]:
         if name in rivals:
@@ -63,13 +66,13 @@ def rivals_of_others(
 
 
 def _sizes_in_place_of(name: str, final: Fitted) -> tuple[str, ...]:
-    """Sizes of the robot that explain as much without one."""
+    """Calibration effects that explain as much in place of `name`."""
     others = {other for subset in final.alternatives for other in subset if name not in subset}
     return tuple(other for other in CALIBRATED if other in others)
 
 
 def _in_place_of_a_size(name: str, rounds: tuple[Round, ...], final: Fitted) -> Iterator[str]:
-    """Effects beside which a size is needless, and all in all as likely: it may be theirs."""
+    """Effects that make a size unnecessary, in a model about as likely."""
     last = rounds[-1]
     if last.before.names != final.names:
         return
@@ -81,7 +84,7 @@ def _in_place_of_a_size(name: str, rounds: tuple[Round, ...], final: Fitted) -> 
 
 
 def _near(name: str, this: Round) -> tuple[str, ...]:
-    """What would have done as well as an effect in the round that tried it."""
+    """Rivals of an effect in the round that tried it."""
     fits = [fit for fit in this.tried if not fit.at_bound]
     best = next(fit for fit in fits if fit.names[-1] == name)
     near = (fit.names[-1] for fit in fits if fit.total - best.total < RIVAL * best.scatter)
@@ -91,10 +94,10 @@ def _near(name: str, this: Round) -> tuple[str, ...]:
 def own_scale_instead(
     name: str, final: Fitted, given: Robot, laid: Concatenated
 ) -> tuple[str, ...]:
-    """What of the reference itself does the same as a size of the robot, to headings alone.
+    """Effects of the reference that are equivalent to a size of the robot, for headings alone.
 
-    Positions are measured by tape or by satellites, whose metre is one; nobody knows a gyro's
-    radian, and no tape tells it.
+    Positions are measured by tape or by satellites, whose metric scale is right. The scale of a
+    gyro is unknown, and no tape measures it.
     """
     if not laid.headings_alone or name not in CALIBRATED:
         return ()
@@ -117,7 +120,7 @@ def torn_by_halves(
 ) -> tuple[str, ...]:
     """Effects that halves of the data prefer to the one that was found.
 
-    Of several that were found none is asked: a half that shows more of the one prefers it rightly.
+    Empty where several effects were found: a half that excites one of them more rightly prefers it.
     """
     if final.names != (first,):
         return ()

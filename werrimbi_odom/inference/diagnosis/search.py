@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Forward search for what a model is missing: score all, fit the best few, keep what earns it."""
+"""Forward selection of missing effects: score all, fit the best few, keep what pays its penalty."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True, slots=True)
 class Round:
-    """One round of the search."""
+    """One round of forward selection."""
 
     before: Fitted
     scores: tuple[Score, ...]
@@ -52,31 +52,31 @@ class Round:
     dependences: tuple[Dependence, ...]
     """The evidence map of `before`."""
     number: int
-    """Of candidates looked at."""
+    """Number of candidates scored."""
 
 
 def first_fit(
     runs: Concatenated, robot: Robot, options: EvaluationOptions = EvaluationOptions()
 ) -> Fitted:
-    """The robot as given, calibrated."""
+    """Fit of the robot as given, with calibration."""
     point = start_point(runs, robot, options)
     point = replace(point, excluded=at_edges(runs.runs))
     point, numbers = with_own_values(runs, point)
     starts = [point]
     if options.reference_kind != "absolute":
         near = fit_model(runs, point, (*CALIBRATION, *numbers), rounds=0).point
-        # Of a gyro no leg is left out, so both can be compared. The file as it is may be right all
-        # but for what happened once, and legs weighed by that lead away from it.
+        # With a gyro no leg is left out, so both starts can be compared. The given file may be
+        # right but for an event, and a start with legs weighted by the event leads away from it.
         starts = [near, point] if runs.headings_alone else [near]
     fits = (fitted(runs, start, (), numbers, robot, rounds=3) for start in starts)
     return min(fits, key=lambda fit: fit.total)
 
 
 def jumps_anew(runs: Concatenated, fit: Fitted, robot: Robot) -> Fitted:
-    """The fit with the reference's jumps found by its own, better model.
+    """Fit again, with the jumps of the reference found by the better model.
 
-    Only a reference whose errors last has jumps that stay: of one whose poses are each their own, a
-    bad pose costs two legs and no more.
+    Only a reference with correlated errors has jumps that stay. Where the errors of poses are
+    independent, a bad pose costs two legs and no more.
     """
     if fit.point.options.reference_kind == "absolute":
         return fit
@@ -92,7 +92,7 @@ class Instead:
 
     effect: str
     total: float
-    """Cost and price, to be compared with the calibrated model's."""
+    """Cost and penalty, comparable with the calibrated model's."""
 
 
 def instead_of_calibration(
@@ -100,7 +100,7 @@ def instead_of_calibration(
 ) -> tuple[Instead, ...]:
     """Effects that would do in place of the calibration that a model needs, cheapest first.
 
-    The multipliers are put back to the given robot's, and stay there.
+    The multipliers are fixed at the given robot's.
     """
     back = {name: float(getattr(given, name)) for name in MULTIPLIERS}
     model = calibrated.point.model
@@ -108,7 +108,7 @@ def instead_of_calibration(
     nuisances = model.nuisance_parameters
     held = {applied.name for applied in model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
-    # On a map that somebody made, by a laser's metre.
+    # In a map made by a lidar, whose metric scale is its own.
     wanders = point.options.reference_kind == "local_map"
     looked_at = candidates(effects, held, channels, len(runs.runs), own_scale=wanders)
     found = scores(runs, point, (*calibrated.numbers, *nuisances), looked_at)
@@ -126,7 +126,7 @@ def instead_of_calibration(
 def search_round(
     runs: Concatenated, before: Fitted, effects: Sequence[Effect], given: Robot
 ) -> Round:
-    """Look for one more effect."""
+    """Score all candidates once more and fit the best few."""
     point = before.point
     held = {applied.name for applied in point.model.robot.effects}
     channels = set.intersection(*(set(run.counters.channels) for run in runs.runs))
@@ -163,9 +163,9 @@ def search_round(
 
 
 def sensor_first(tried: Sequence[Fitted]) -> Sequence[Fitted]:
-    """Fits, cheapest first; but of two that are one on any drive what is of the sensor.
+    """Order fits by cost, with a sensor effect first among observational equivalents.
 
-    A lidar that was screwed on by hand is askew more often than an axle.
+    A lidar that was mounted by hand is askew more often than an axle.
     """
     effects = [fit.point.model.robot.effects[-1].effect for fit in tried]
     for fit, effect in zip(tried[1:], effects[1:], strict=True):
@@ -176,7 +176,7 @@ def sensor_first(tried: Sequence[Fitted]) -> Sequence[Fitted]:
 
 
 def best_of_each(found: Sequence[Score]) -> list[Score]:
-    """The best shape of each effect, best effect first."""
+    """The best candidate of each effect, best effect first."""
     best: dict[str, Score] = {}
     for score in sorted(found, key=lambda score: -score.excess):
         best.setdefault(score.candidate.name, score)
@@ -184,7 +184,7 @@ def best_of_each(found: Sequence[Score]) -> list[Score]:
 
 
 def worth_fitting(ordered: Sequence[Score]) -> list[Score]:
-    """The few that may be the best one after a fit."""
+    """The few that may turn out best after a full fit."""
     if not ordered:
         return []
     top = ordered[0].gain

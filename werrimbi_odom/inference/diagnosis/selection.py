@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Models weighed against each other: what they cost, and which of their parts they need.
+"""Model selection by penalised likelihood: what models cost, and which parameters they need.
 
 A model is the robot, some effects, and its multipliers. Its cost is minus two log-likelihood with
-the noise that suits it, plus a price for every number that it was free to choose. Parts that do not
-earn their price are left out: of the multipliers all eight subsets are tried, by the curvature of
-the likelihood at the fit, without fitting anew.
+the noise fitted, plus a penalty for each free parameter (BIC, with a floor). Parameters that do not
+pay their penalty are left out. All eight subsets of the three calibration effects are compared, by
+the quadratic approximation of the likelihood at the fit, without new fits.
 """
 
 from __future__ import annotations
@@ -59,58 +59,59 @@ RATIO = "unequal_wheel_radii.ratio"
 
 @dataclass(frozen=True, slots=True)
 class Fitted:
-    """A model fitted to all runs, and what it costs."""
+    """A model fitted to all runs, and its cost."""
 
     names: tuple[str, ...]
-    """Effects that it holds beyond the given robot's."""
+    """Effects of the model beyond those of the given robot."""
     point: Point
     numbers: tuple[FreeParameter, ...]
-    """What was fitted."""
+    """Fitted parameters."""
     cost: float
     """Minus two log-likelihood."""
     calibrated: tuple[str, ...]
-    """Of the three calibration effects those that it needs."""
+    """Those of the three calibration effects that the model needs."""
     alternatives: tuple[tuple[str, ...], ...]
-    """Other sets of as many that would do as well."""
+    """Other subsets of the same size that explain as much."""
     price: float
-    """For all that was free, its needless multipliers put back."""
+    """Penalty of all free parameters, without the needless calibration effects."""
     price_of_one: float
-    """Of one free number."""
+    """Penalty of one free parameter."""
     scatter: float
-    """Factor by which its costs are too large, where few data could not tell the noise."""
+    """Dispersion: factor by which costs are too large where few data determine the noise."""
     spare: float
-    """Degrees of freedom by which `scatter` is known; infinite where noise was fitted."""
+    """Degrees of freedom of `scatter`; infinite where the noise was fitted."""
     needless: float
-    """What it costs to put them back."""
+    """Rise of the cost when needless calibration effects are reset to the given values."""
     at_bound: tuple[str, ...]
-    """Free parameters that ran against what physics allows; `RATIO` where two wheels of one robot
-    are farther apart than any are."""
+    """Free parameters at their physical bound; `RATIO` where the two wheels differ by more than
+    those of any robot."""
     importance: dict[str, float]
-    """By effect, how much the cost would rise without it."""
+    """Rise of the cost without an effect, by its name."""
     covariance: Floats
-    """Of the values of the design's columns, by the disagreement of the parts where that is more
-    than the noise makes."""
+    """Covariance of the values of the design's columns, scaled up where the parts disagree by more
+    than the noise."""
     widening: Floats
-    """By how much that widened the standard deviation of each, (p,)."""
+    """Factor of that on each standard deviation, (p,)."""
     moves: Floats
-    """Of the design's columns, for a unit of each number that was free; (p, q)."""
+    """Step of the design's columns for a unit of each free direction; (p, q)."""
     design: Design
     held: tuple[str, ...]
-    """Shared directions (of `CALIBRATED`, or numbers) that the runs do not determine: as given."""
+    """Shared directions (of `CALIBRATED`, or parameters) that the runs do not determine: held as
+    given."""
 
     @property
     def by_noise(self) -> Floats:
-        """The covariance that the noise alone makes."""
+        """Covariance by the noise alone."""
         return self.covariance / np.outer(self.widening, self.widening)
 
     @property
     def doubts(self) -> dict[str, float]:
-        """By how much the parts widened the variance of each calibration effect."""
+        """Factor by which the parts scaled the variance of each calibration effect."""
         return doubts_of_sizes(self.design, self.by_noise, self.widening, self.point.model.robot)
 
     @property
     def told(self) -> bool:
-        """Whether the runs determine what its newest effect is for; else it is no finding."""
+        """Whether the runs determine the newest effect's parameters; otherwise it is no finding."""
         if not self.names or self.names[-1] in CALIBRATED:
             return True
         name = self.names[-1]
@@ -120,32 +121,32 @@ class Fitted:
 
     @property
     def total(self) -> float:
-        """Cost, price and what the needless multipliers were worth."""
+        """Cost with all penalties."""
         return self.cost + self.needless + self.price * self.scatter
 
 
 def unequal_beyond_physics(robot: Robot, given: Robot) -> bool:
-    """Whether a model needs wheels that differ as no two of one robot do.
+    """Whether a model has wheels that differ more than two wheels of one robot can.
 
-    Who reaches for it explains something else: a robot that slides past its gyro turns as little as
-    one with a wheel of half the size, and then any law of the wheels lowers the error.
+    Such a model explains something else: a robot that slides past its gyro turns as little as one
+    with a wheel of half the size, and then any law of the wheels lowers the error.
     """
     ratio = sizes_of(robot).over(sizes_of(given)).as_effects["unequal_wheel_radii"]
     return not is_ordinary(ratio)
 
 
 def price_of_one(runs: Concatenated) -> float:
-    """What one free number must be worth: the logarithm of the number of data (BIC), or more."""
+    """Penalty of one free parameter: the logarithm of the number of data (BIC), or its floor."""
     return max(PENALTY_FLOOR, math.log(max(runs.data, 2)))
 
 
 def scatter_of(runs: Concatenated, design: Design) -> float:
-    """By how much costs are too large where few data could not tell the noise; else 1."""
+    """Dispersion of the innovations where few data determine the noise; else 1."""
     return max(1.0, float(np.sum(design.white**2)) / spare_of(runs, design))
 
 
 def spare_of(runs: Concatenated, design: Design) -> float:
-    """Degrees of freedom that are left to tell the noise by; infinite where data tell it."""
+    """Residual degrees of freedom for the noise; infinite where there are enough data."""
     if runs.data >= NOISE_NUMBERS:
         return math.inf
     return float(max(runs.data - len(design.columns), 1))
@@ -160,7 +161,7 @@ def fitted(
     *,
     rounds: int = 2,
 ) -> Fitted:
-    """Fit a model, calibration and all, and say which multipliers it needs."""
+    """Fit a model with its calibration, and select the calibration effects that it needs."""
     every = (*CALIBRATION, *numbers, *point.model.nuisance_parameters)
     result = fit_model(runs, point, every, find_jumps=False, rounds=rounds)
     design = stacked(runs, result.point, [*CALIBRATION, *own_of(every), *shared_of(numbers)])
@@ -218,24 +219,24 @@ def fitted(
 
 
 class _Rise(NamedTuple):
-    """Some calibration effects, and what the cost rises when the others are put back."""
+    """A subset of the calibration effects, and the rise of the cost when the others are reset."""
 
     kept: tuple[str, ...]
     rise: float
     fitted: bool
     """Whether the data determine all of them."""
     believed: bool
-    """Whether the others stay within what a tape may be off by, and can be seen at all."""
+    """Whether the others stay within the uncertainty of a tape, and can be observed at all."""
 
 
 def calibration_rises(
     design: Design, robot: Robot, given: Robot, held: Sequence[str] = ()
 ) -> list[_Rise]:
-    """For each subset of the calibration effects, what the cost rises when the others are put back.
+    """For each subset of the calibration effects, the rise of the cost when the others are reset.
 
-    Everything else is fitted again, to first order. Effects that are `held`, for the data do not
-    determine them beside the others, are no part of the fit, but may do in place of what is (on a
-    circle the base and the ratio of the radii are one).
+    Everything else is fitted again, to first order. Effects in `held`, which the data do not
+    determine beside the others, are not fitted, but may replace one that is (on a circle the base
+    and the ratio of the radii are equivalent).
     """
     ways = every_direction(design.columns, robot)
     flat = design.flat()
@@ -260,7 +261,7 @@ def calibration_rises(
 def doubts_of_sizes(
     design: Design, covariance: Floats, wide: Floats, robot: Robot
 ) -> dict[str, float]:
-    """By how much the variance of each calibration effect is widened, for all three."""
+    """Factor by which the variance of each calibration effect is widened, for all three."""
     names = [number.name for number, _ in design.columns]
     where = [names.index(name) for name in MULTIPLIERS]
     inside = covariance[np.ix_(where, where)]
@@ -273,7 +274,7 @@ def doubts_of_sizes(
 
 
 def covariance_of(design: Design, ways: Directions) -> Floats:
-    """Covariance of the values that a design's least squares gives; huge where nothing is told."""
+    """Covariance of the least-squares estimate; 1e12 where the data determine nothing."""
     covariance = ways.covariance(design.flat()[1])
     untold = ~ways.matrix.any(axis=1)
     covariance[untold, untold] = 1e12
@@ -281,9 +282,10 @@ def covariance_of(design: Design, ways: Directions) -> Floats:
 
 
 def grain_of(design: Design, robot: Robot) -> Floats:
-    """Variances (p,) of what laws leave open of their own thresholds (`Parameter.grain`).
+    """Variances (p,) that laws leave open for their own thresholds (`Parameter.grain`).
 
-    Where in the stretch over which it sets in the robot's own edge lies is anybody's guess: evenly.
+    The robot's own threshold lies anywhere in the stretch over which the law sets in: a uniform
+    distribution.
     """
     declared = {
         f"{item.name}.{name}": item.effect.parameters[name].grain * float(np.mean(value))
@@ -295,7 +297,7 @@ def grain_of(design: Design, robot: Robot) -> Floats:
 
 
 def rise_without(name: str, design: Design, covariance: Floats, point: Point) -> float:
-    """How much the cost rises when an effect is taken out, by the curvature at the fit."""
+    """Rise of the cost without an effect, by the curvature at the fit (Wald statistic)."""
     chosen, away = [], []
     for index, (number, run) in enumerate(design.columns):
         effect, _, parameter = number.name.rpartition(".")

@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Which sizes of the robot the drives move away from the given file; all others go back to it.
+"""Selection of the sizes that differ from the given file; all others are reset to it.
 
-A fit turns base, left radius and right radius together. What of that earns its price need not be
-all three: the base alone, one wheel, both wheels alike, one against the other. The cheapest of
-these is kept, and everything else is fitted again with the other sizes where the file has them.
+A fit frees base, left radius and right radius together. The part of it that pays its penalty may be
+the base alone, one wheel, both wheels alike, or one against the other. The cheapest of these is
+kept, and everything else is fitted again with the other sizes as in the file.
 """
 
 from __future__ import annotations
@@ -46,34 +46,34 @@ _MOVES = {
     "unequal_wheel_radii": ("left", "right", "ratio", "both"),
     "wheel_radius_scale": ("left", "right", "scale", "both"),
 }
-"""Parts that move what an effect of calibration is about."""
+"""Parts that move a calibration effect."""
 
 
 @dataclass(frozen=True, slots=True)
 class Sizes:
-    """What of the sizes is free, as directions in the logarithms of the three multipliers."""
+    """Free sizes, as directions in the logarithms of the three multipliers."""
 
     parts: tuple[str, str]
-    """Of the base and of the radii: what moves, "" for nothing."""
+    """Free parts of the base and of the radii; "" for none."""
     directions: Floats
-    """(3, k)."""
+    """Shape (3, k)."""
 
     @property
     def free(self) -> int:
-        """How many numbers that is."""
+        """Number of free parameters."""
         return int(self.directions.shape[1])
 
 
 def sizes_needed(fit: Fitted, given: Robot, wanted: Collection[str]) -> Sizes:
     """The cheapest set of sizes that may differ from the given file's.
 
-    To first order, everything else fitted again. A number is worth its price as in any choice of a
-    model (`Fitted.price_of_one`).
+    To first order, with everything else fitted again. The penalty of a parameter is that of all
+    model selection (`Fitted.price_of_one`).
 
     Parameters
     ----------
-    wanted
-        Effects of calibration that are to be fitted whatever they are worth.
+    wanted : collection of str
+        Calibration effects that are free regardless of their gain.
     """
     marks, rest = _at_given(fit.design, fit.point.model.robot, given)
     weighed = []
@@ -86,18 +86,19 @@ def sizes_needed(fit: Fitted, given: Robot, wanted: Collection[str]) -> Sizes:
 
 
 def _surprise(logs: Floats) -> float:
-    """What it costs to believe in multipliers (3,) so far from the given, twice a log-likelihood.
+    """Minus two log prior density of multipliers (3,) at this distance from the given.
 
-    By Cauchy's law about what a tape tells: where two choices do as well, as on one circle, the
-    one that moves the robot less is the likelier. Nothing where the data decide.
+    The prior of a tape measurement is Cauchy's distribution. Where two choices explain as much, as
+    on a circle, the one that moves the robot less is the likelier. Where the data decide, it has no
+    influence.
     """
     return float(2.0 * np.sum(np.log1p((logs / CALIBRATION_KNOWN) ** 2)))
 
 
 def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: Sizes) -> Fitted:
-    """The fit again, with those sizes alone free to differ from the given file's.
+    """Fit again, with only those sizes free to differ from the given file's.
 
-    The fit itself where all are free, or where putting back does not do what it promised.
+    The fit itself where all are free, or where the cost rises more than the approximation promised.
     """
     if sizes.free == len(MULTIPLIERS):
         return fit
@@ -112,7 +113,7 @@ def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: Sizes) -> F
     for _ in range(3):
         there = _sized(given, sizes, away)
         if not all(low < there[name] < high for name, (low, high) in _BOUNDS.items()):
-            return fit  # a model that is far off: what is worth its price there means nothing
+            return fit  # a model that is far off: the penalised comparison means nothing there
         robot = changed(point.model.robot, there)
         point = replace(point, model=Model(robot, point.model.own))
         design = stacked(runs, point, every)
@@ -150,13 +151,13 @@ def with_sizes(runs: Concatenated, fit: Fitted, given: Robot, sizes: Sizes) -> F
 
 
 def sizes_at(fit: Fitted, given: Robot, sizes: Sizes) -> dict[str, float]:
-    """Multipliers with those sizes alone free, to first order; the others as they were given."""
+    """Multipliers with only those sizes free, to first order; the others as given."""
     marks, rest = _at_given(fit.design, fit.point.model.robot, given)
     return _sized(given, sizes, -_solved(marks, sizes, rest))
 
 
 def choices(wanted: Collection[str] = ()) -> Iterator[Sizes]:
-    """All that may be free, the fewest numbers first; with all effects that are `wanted`."""
+    """All choices of free sizes that move the `wanted` effects, the fewest parameters first."""
     every = [
         Sizes((base, radii), np.array([*_BASE[base], *_RADII[radii]]).reshape(-1, 3).T)
         for radii in _RADII
@@ -168,9 +169,9 @@ def choices(wanted: Collection[str] = ()) -> Iterator[Sizes]:
 
 
 def _at_given(design: Design, robot: Robot, given: Robot) -> tuple[Floats, Floats]:
-    """Derivatives in the logarithms of the multipliers (n, 3), and innovations (n,) at the given.
+    """Jacobian in the logarithms of the multipliers (n, 3), and innovations (n,) at the given ones.
 
-    Both clear of all that else is fitted.
+    Both with all other fitted parameters projected out.
     """
     names = [number.name for number, _ in design.columns]
     white, flat = design.flat()
@@ -183,14 +184,14 @@ def _at_given(design: Design, robot: Robot, given: Robot) -> tuple[Floats, Float
 
 
 def _solved(marks: Floats, sizes: Sizes, rest: Floats) -> Floats:
-    """Least squares of what is left in the directions that are free, (k,)."""
+    """Least squares in the free directions, (k,)."""
     if sizes.free == 0:
         return np.zeros(0)
     return np.asarray(np.linalg.lstsq(marks @ sizes.directions, rest, rcond=1e-6)[0])
 
 
 def _sized(given: Robot, sizes: Sizes, away: Floats) -> dict[str, float]:
-    """Multipliers so far from the given ones; what is not free is the given one to the last bit."""
+    """Multipliers at this distance from the given ones; those that are not free stay exact."""
     logs = sizes.directions @ away
     return {
         name: float(getattr(given, name)) * float(np.exp(log))
@@ -199,7 +200,7 @@ def _sized(given: Robot, sizes: Sizes, away: Floats) -> dict[str, float]:
 
 
 def _free(design: Design, robot: Robot, sizes: Sizes) -> Floats:
-    """Columns of a design (p,) by what is free in it (q,): the sizes first, then all the rest."""
+    """Matrix from free directions (q,) to design columns (p,): the sizes first, then all others."""
     names = [number.name for number, _ in design.columns]
     rest = [index for index, name in enumerate(names) if name not in MULTIPLIERS]
     free = np.zeros((len(names), sizes.free + len(rest)))

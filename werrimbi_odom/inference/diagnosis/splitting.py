@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parts of the drives put aside for judging, where nobody has given others for it."""
+"""Splitting of the drives into a fitted and a held-out part, where no held-out drives are given."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ Runs = tuple[Run, ...]
 
 
 def set_aside(runs: Sequence[Run]) -> tuple[Runs, Runs]:
-    """What is fitted, and what is put aside for judging: a quarter of every drive.
+    """Split into the fitted and the held-out part: a quarter of every drive is held out.
 
-    Two stretches of each drive's reference are taken out of it, others in every drive, so that all
-    kinds of motion are on both sides; the counters run on through them, so that what an effect
-    remembers (a wheel's angle, the travel since a reversal, the distance) is the same on both. Of
-    drives with too few poses for that, whole ones are put aside; of a single such drive the end.
+    Two stretches of each drive's reference are held out, at other places in every drive, so that
+    all kinds of motion are on both sides. The counters run on through them, so that the memory of
+    an effect (a wheel's angle, the travel since a reversal, the distance) is the same on both. If a
+    drive has too few poses for that, whole drives are held out; of a single such drive, its end.
     """
     if all(_rows(run) >= SET_ASIDE_ROWS for run in runs):
         parts = [_parted(run, number) for number, run in enumerate(runs)]
@@ -49,7 +49,7 @@ def _rows(run: Run) -> int:
 
 
 def _parted(run: Run, number: int) -> tuple[Run, Run]:
-    """A run without the stretches that are put aside, and the run with nothing but these."""
+    """A run without its held-out stretches, and the run with only these."""
     reference = run.reference
     assert reference is not None
     rows = np.arange(reference.time.size)
@@ -59,7 +59,7 @@ def _parted(run: Run, number: int) -> tuple[Run, Run]:
 
 
 def _without(run: Run, reference: Reference, kept: np.ndarray) -> Run:
-    """The run with some rows of its reference; what lies between them is said to be taken out."""
+    """The run with some rows of its reference; the gaps between them are marked as taken out."""
     edges = np.flatnonzero(np.diff(kept.astype(np.int8)))
     ends = [0, *(edges + 1).tolist(), kept.size]
     time = reference.time

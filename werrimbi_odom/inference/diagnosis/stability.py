@@ -1,10 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Whether a verdict survives on halves of the data: one that does not is no certainty.
+"""Stability of a verdict: whether halves of the data prefer another effect.
 
-Innovations of a filter are independent from leg to leg, so the likelihood of a model is a sum over
-legs, and any half of them votes by itself. Every effect that was fitted is a candidate in every
-half; one that beats the chosen effect there by as much as makes two models two is a rival.
+Innovations of a filter are independent from leg to leg, so the log-likelihood of a model is a sum
+over legs, and any half of them can be evaluated by itself. Every fitted effect is compared in every
+half. One that beats the chosen effect in a half by the margin for rivals is a rival.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from werrimbi_odom.model.pose import Floats
 
 
 def rivals_in_halves(runs: Concatenated, this: Round, best: Fitted) -> tuple[str, ...]:
-    """Effects of a round that explain some half of the legs better than the best of all does."""
+    """Effects of a round that explain some half of the legs better than the overall best."""
     others = [fit for fit in this.tried if fit is not best and not fit.at_bound]
     if not others:
         return ()
@@ -39,7 +39,7 @@ def rivals_in_halves(runs: Concatenated, this: Round, best: Fitted) -> tuple[str
 
 
 def _price(best: Fitted, other: Fitted) -> float:
-    """What the other model is cheaper by, before any of the data."""
+    """Difference of the penalties."""
     return (best.price - other.price) * best.scatter
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What an effect looks at and what it acts on, found by trying it: nobody has to declare it."""
+"""Support of an effect: its inputs and output channels, found by evaluating it on trial."""
 
 from __future__ import annotations
 
@@ -21,16 +21,16 @@ from werrimbi_odom.model.robot import Robot
 
 
 class Support(NamedTuple):
-    """How far an effect's law reaches."""
+    """Inputs and outputs of an effect's law."""
 
     inputs: frozenset[str]
-    """Quantities of `Drive`, and extra channels, that it looks at."""
+    """Quantities of `Drive`, and extra channels, that the law reads."""
     outputs: frozenset[str]
     """Error channels that it can explain: left, right, along, sideways, heading."""
 
 
 def support_of(candidate: Candidate, drive: Drive[Floats]) -> Support:
-    """What a candidate looks at and acts on, tried on the steps of recorded runs."""
+    """Support of a candidate, by evaluation on the steps of recorded runs."""
     effect = candidate.effect
     if effect.stage not in ("wheels", "body"):
         return Support(frozenset(), frozenset())
@@ -50,9 +50,9 @@ def support_of(candidate: Candidate, drive: Drive[Floats]) -> Support:
 
 
 def askable(effects: Sequence[Effect], runs: Concatenated, robot: Robot) -> tuple[Effect, ...]:
-    """Those that such a reference can show: a slope of the floor wants axes that stay where it is.
+    """Effects that the reference can show: a slope of the floor needs axes fixed to the floor.
 
-    Of effects that look at a channel nothing is known here.
+    Effects that read a channel are kept: their other inputs are not known here.
     """
     if not runs.own_axes:
         return tuple(effects)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What an error may depend on: measured variables of every step, and functions of them."""
+"""Variables that an error may depend on, measured at every step, and functions of them."""
 
 from __future__ import annotations
 
@@ -31,10 +31,10 @@ from werrimbi_odom.model.drive import Span
 from werrimbi_odom.model.pose import Floats
 
 CONSTANT = "constant"
-"""Name of the variable that is 1 everywhere: an error in proportion to its amount alone."""
+"""Name of the variable that is 1 everywhere: for an error proportional to its amount alone."""
 
 ON_THE_FLOOR = frozenset({"heading", "x", "y"})
-"""Quantities of a drive that only axes which all drives have in common give a meaning."""
+"""Quantities of a drive that have a meaning only in axes common to all drives."""
 
 Form = Literal["constant", "line", "curve", "turns", "place"]
 
@@ -46,25 +46,25 @@ class Variable:
     name: str
     unit: str
     left: Floats
-    """Of the left wheel, or of the robot, (n,)."""
+    """Values of the left wheel, or of the robot, (n,)."""
     right: Floats
-    """Of the right wheel; the same array where it is the robot's."""
+    """Values of the right wheel; the same array for a quantity of the robot."""
     form: Form = "curve"
     looks_at: tuple[str, ...] = ()
-    """Fields of `Drive` that an effect would look at to know it."""
+    """Fields of `Drive` that an effect would read to know it."""
     per_run: bool = False
-    """Whether its zero is another one in each run (a wheel's angle)."""
+    """Whether its zero differs between runs (a wheel's angle)."""
     harmonic: int = 1
-    """Of an angle."""
+    """Harmonic of an angle."""
 
     @property
     def shared(self) -> bool:
-        """Whether it is one quantity of the robot."""
+        """Whether it is one quantity of the robot, not of each wheel."""
         return self.left is self.right
 
 
 def variables_of(runs: Concatenated, model: Model) -> tuple[Variable, ...]:
-    """All that was measured, the extra channels of the records among it."""
+    """All measured variables, including the extra channels."""
     robot = model.laid_out(runs.steps)
     drive = runs.drive(robot)
     path = path_of(model, runs)
@@ -165,7 +165,7 @@ def _places(
     yaw: Floats,
     start: Floats,
 ) -> tuple[Floats, Floats] | None:
-    """Where each step begins, in the reference's frame; None where it gives no position."""
+    """Position at the start of each step, in the reference's frame; None without positions."""
     known = np.isfinite(start[:, 0]) & np.isfinite(start[:, 1])
     if not known.any() or not known[runs.legs[:-1]].all():
         return None
@@ -176,7 +176,7 @@ def _places(
 
 
 def functions_of(variable: Variable) -> dict[Form, tuple[Floats, Floats]]:
-    """Functions of a variable, for left and right wheel, by form; arrays of shape (n, k)."""
+    """Basis functions of a variable, for left and right wheel, by form; arrays of shape (n, k)."""
     if variable.form == "constant":
         return {"constant": (variable.left[:, None],) * 2}
     if variable.form == "turns":
@@ -199,18 +199,18 @@ def functions_of(variable: Variable) -> dict[Form, tuple[Floats, Floats]]:
 
 
 def curve_knots(values: Floats) -> Floats:
-    """Knots of a curve: at quantiles, so that each piece rests on as many data."""
+    """Knots of a curve at quantiles, so that each piece has as many data."""
     return np.unique(np.quantile(values, np.linspace(0.0, 1.0, CURVE_KNOTS)))
 
 
 def hats(values: Floats, knots: Floats) -> Floats:
-    """Tent functions: 1 at a knot, 0 at all others, straight between; (n, knots)."""
+    """Hat functions (linear B-splines): 1 at a knot, 0 at all others; (n, knots)."""
     unit = np.eye(knots.size)
     return np.stack([np.interp(values, knots, row) for row in unit], axis=-1)
 
 
 def floor_cells(x: Floats, y: Floats) -> Floats:
-    """Marks of the floor's cells in which the steps are, (n, cells)."""
+    """Indicator of the floor cell of each step, (n, cells)."""
     width = FLOOR_CELL
     while True:
         column = np.floor((x - x.min()) / width).astype(int)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The verdict: what was found, what cannot be told apart, what each effect is worth."""
+"""The verdict: what was found, what cannot be told apart, what each effect explains."""
 
 from __future__ import annotations
 
@@ -49,79 +49,79 @@ Verdict = Literal["none", "named", "ambiguous", "unknown"]
 
 @dataclass(frozen=True, slots=True)
 class Ranked:
-    """An effect and what it is worth."""
+    """An effect with its p-value and its effect on the errors."""
 
     effect: str
     p_value: float | None
-    """Of as much by chance, corrected for the number of effects tried; None where nothing was
-    tested: a set-up mistake is found by a search of all set-ups, and has no distribution."""
+    """Corrected for the number of effects tried. None where nothing was tested: a set-up mistake is
+    found by a search of all set-ups, whose statistic has no known distribution."""
     train: Sides | None
-    """Position error before and after adding it [m]; None where it was not worth a fit."""
+    """Position error before and after adding it [m]; None where it was not fitted."""
     holdout: Sides | None
 
 
 @dataclass(frozen=True)
 class Diagnosis:
-    """What is missing, and what is known of it."""
+    """Result of a diagnosis."""
 
     verdict: Verdict
     effect: str | None
     found: tuple[str, ...]
-    """All effects that were found, one after the other; the most important first."""
+    """All effects that were found, the most important first."""
     ranking: tuple[Ranked, ...]
     rivals: tuple[str, ...]
-    """Effects that these runs cannot tell apart; the named one is among them."""
+    """Effects that these runs cannot tell apart, including the named one."""
     torn: tuple[str, ...]
-    """Those of the rivals that are so because halves of the data disagree."""
+    """Those of the rivals that halves of the data prefer."""
     set_up: SetUp
     otherwise: tuple[RecordedOtherwise, ...]
-    """Drives that were recorded otherwise than the fitted ones; left out where others remain."""
+    """Drives recorded with another set-up than the fitted ones; left out where others remain."""
     depends_on: tuple[Dependence, ...]
-    """What the errors of the robot as given (its set-up put right) depend on."""
+    """Dependences of the errors of the robot as given, with its set-up corrected."""
     remaining: tuple[Dependence, ...]
-    """What they depend on once all that was found is put in."""
+    """Dependences that remain with everything found in the model."""
     given: Robot
     rounds: tuple[Round, ...]
     final: Fitted
     """The fit of everything found, with all sizes free."""
     model: Model
-    """What is told: sizes that are not worth their price as they were given, as `add` has them."""
+    """The reported model: sizes that do not pay their penalty are as given, as in `add`."""
     runs: Concatenated
     train: Sides
     """Position error with the robot as given, and with everything found [m]."""
     holdout: Sides
     medians: Sides
-    """Median position error on the held-out runs, outliers and all [m]."""
+    """Median position error on the held-out runs, outliers included [m]."""
     headings: tuple[Sides, Sides]
-    """Heading errors of `train` and `holdout` [rad]: those of headings alone are judged by them."""
+    """Heading errors of `train` and `holdout` [rad]: headings alone are judged by them."""
     quiet: tuple[Sides, Sides]
-    """`train` and `holdout` without the legs in which something happened at once."""
+    """`train` and `holdout` without the legs with an abrupt event."""
     rivals_of_others: Mapping[str, tuple[str, ...]]
-    """Of the further effects that were found those that the runs cannot tell from another one."""
+    """For the further effects that were found: their rivals, by name."""
     left_out: tuple[LeftOut, ...] = ()
-    """Stretches of all runs that none of it is about."""
+    """Stretches of all runs that are excluded."""
     remarks: tuple[ReferenceRemark, ...] = ()
-    """What is suspect about the reference of the fitted runs."""
+    """Suspicions about the reference of the fitted runs."""
     misfit: Misfit | None = None
-    """What is left because a law's form is not quite nature's, or beside everything found."""
+    """Remainder of a law of slightly wrong form, or beside everything found."""
     happened: Events = field(default_factory=Events)
-    """What no law explains, for it happened at an instant."""
+    """Abrupt errors, which no law explains."""
     rivals_of_held: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
-    """Where nothing is missing: effects that would do as well in the place of one that the file
-    holds, by its name."""
+    """Where nothing is missing: effects that explain as much in place of one that the file holds,
+    by its name."""
 
     @property
     def of_another_drive(self) -> bool:
-        """Whether wheels and reference have nothing in common, so that nothing is told."""
+        """Whether wheels and reference have nothing in common, so that there is no result."""
         return any(remark.what == "another_drive" for remark in self.remarks)
 
     @property
     def robot(self) -> Robot:
-        """With everything that was found put in."""
+        """The robot with everything that was found."""
         return self.model.robot
 
     def effect_named(self, name: str) -> Effect | None:
-        """The effect of a name, a user's own among them; None for a finding that is no effect."""
+        """The effect of that name, a user's own included; None for a finding that is no effect."""
         if name == IN_DEGREES:
             return None
         known = [score.candidate.effect for this in self.rounds for score in this.scores]
@@ -129,7 +129,7 @@ class Diagnosis:
         return next((effect for effect in known if effect.name == name), None) or find(name)
 
     def explained_by(self, name: str) -> bool:
-        """Whether an effect that was tried explains what the errors go with, or nearly so."""
+        """Whether an effect that was tried explains all or nearly all of the evidence."""
         falls = [
             this.before.cost - fit.cost
             for this in self.rounds
@@ -150,7 +150,7 @@ def told(
     laid: Concatenated,
     instead: tuple[Instead, ...],
 ) -> Diagnosis:
-    """Everything put together."""
+    """Combine all results into the diagnosis."""
     judge, set_up = begun.judge, begun.set_up
     mistakes = [finding.effect for finding in set_up.findings]
     sizes = [
@@ -175,7 +175,7 @@ def told(
     as_given = Model(given, judge.nothing_of_own)
     another = all(
         of_another_drive(judge.train, model)
-        for model in (_plain(final, set_up.robot), as_given)  # a fit of few poses may lead astray
+        for model in (_plain(final, set_up.robot), as_given)  # a fit of few poses may be far off
     )
     if another:
         verdict, found, rivals, torn = "unknown", (), (), ()
@@ -220,14 +220,17 @@ def told(
 
 
 def _is_news(name: str, final: Fitted, tried: int) -> bool:
-    """Whether a size is a finding: worth its price twice, and as sure as any effect must be."""
+    """Whether a size is a finding: significant, with a gain well above its penalty."""
     worth = final.importance[name]
     certain = in_any_of(tried, chance_of_size(final, name)) < SURE
     return certain and worth > CALIBRATION_WORTH * final.price_of_one
 
 
 def _differs(name: str, final: Fitted, given: Robot) -> bool:
-    """Whether a size surely differs from the file's; what set-ups began with may be off it too."""
+    """Whether a size differs significantly from the file's.
+
+    The set-up search may have started from sizes that differ from the file's.
+    """
     robot = final.point.model.robot
     columns = [number.name for number, _ in final.design.columns]
     where = [columns.index(multiplier) for multiplier in MULTIPLIERS]
@@ -237,7 +240,7 @@ def _differs(name: str, final: Fitted, given: Robot) -> bool:
 
 
 def _plain(fit: Fitted, given: Robot) -> Model:
-    """A fitted model; multipliers that it does not need stay as they were given."""
+    """A fitted model, with multipliers that it does not need as given."""
     if fit.calibrated or fit.names:
         return fit.point.model
     model = fit.point.model
@@ -246,7 +249,7 @@ def _plain(fit: Fitted, given: Robot) -> Model:
 
 
 def _as_told(fit: Fitted, given: Robot, found: Collection[str], laid: Concatenated) -> Model:
-    """A fitted model with those sizes alone that are told."""
+    """A fitted model, with only the reported sizes changed."""
     if not (fit.calibrated or fit.names):
         return _plain(fit, given)
     sizes = sizes_needed(fit, given, set(found) & set(CALIBRATED))
@@ -262,9 +265,9 @@ def _ranking(
     start: Errors,
     laid: Concatenated,
 ) -> list[Ranked]:
-    """All effects, what was found first, with the figures of the round that took it.
+    """All effects, those found first, with the figures of the round that accepted them.
 
-    Those of the others are of their first trial.
+    The figures of the others are of their first trial.
     """
     ranked: dict[str, Ranked] = {}
     mended = judge.of(Model(set_up.robot, judge.nothing_of_own)) if set_up.findings else start
@@ -276,7 +279,7 @@ def _ranking(
             before = judge.of(this.before.point.model)
         for fit in this.tried:
             name = fit.names[-1]
-            # What was taken is told as it stood when it was taken, not at an earlier trial.
+            # An accepted effect is reported as of its acceptance, not of an earlier trial.
             taken = final.names[number : number + 1] == (name,)
             if name not in ranked or taken:
                 p_value = chance(fit, this.before, this.number)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Fits without what happened at an instant: of a diagnosis, and of effects that are added."""
+"""Fits repeated without abrupt events: for a diagnosis, and for effects that are added."""
 
 from __future__ import annotations
 
@@ -24,13 +24,20 @@ def fitted_without_events(
     runs: Sequence[Run],
     holdout: Sequence[Run],
 ) -> tuple[Found, Events]:
-    """What is fitted to drives, and fitted anew without the events that are found beside it.
+    """Fit drives, and fit again without the events that are found beside the model.
 
     Parameters
     ----------
-    fit
-        Of runs and held-out runs what is found, and what happened beside it; whether for the first
-        time.
+    fit : callable
+        From runs, held-out runs and whether it is the first time, to the result and the events
+        beside it.
+    runs, holdout : sequence of Run
+        Fitted and held-out drives.
+
+    Returns
+    -------
+    (Found, Events)
+        The last result, and the events beside it.
     """
     found, happened = fit(runs, holdout, True)
     for _ in range(EVENT_ROUNDS):
@@ -47,7 +54,7 @@ def fitted_without_events(
 
 
 def events_beside(runs: Concatenated, fitted: Point, judge: Judge) -> Events:
-    """What happened at an instant beside a model, in the drives it was fitted to and in others."""
+    """Abrupt events beside a model, in the fitted and in the held-out drives."""
     noise = noise_of_most(runs, fitted)
     point = replace(fitted, variances=noise)
     home = replace(judge.at_home(point.model), variances=noise)

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""An effect written from the evidence, where the library holds none that explains it.
+"""Draft of an effect from the evidence, where no effect of the library explains the errors.
 
-The strongest cells of the evidence map say which error goes with which variable. For each of them a
-few forms are written as effect files (a line, a square, a step, a curve, a wave, a spot), held
-against the laws of effects, and fitted as any effect is. The simplest of those that explain about
-as much as the best is the draft.
+The strongest cells of the evidence map say which error depends on which variable. For each of them
+a few laws are written as effect files (a line, a square, a step, a curve, a wave, a spot), checked
+against the contract of effects, and fitted as any effect is. The draft is the simplest of those
+that explain about as much as the best.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ from werrimbi_odom.progress import Show, silent
 
 @dataclass(frozen=True)
 class Draft:
-    """An effect file, and what it was made of."""
+    """An effect file with its evidence and its fit."""
 
     name: str
     source: str
@@ -63,35 +63,40 @@ class Draft:
     fit: Fitted
     diagnosis: Diagnosis
     tried: tuple[tuple[str, str, float], ...]
-    """Effect, form and cost beyond the best of all drafts that were fitted."""
+    """Effect, form and cost above the best draft, of all drafts that were fitted."""
     law: str = ""
-    """In rates, with its numbers: sideways = -0.011 * v * w; "" of what is no sum of products."""
+    """The law as a formula in rates, with its numbers: sideways = -0.011 * v * w; "" if it is no
+    sum of products."""
     of_two: OfTwo | None = None
-    """Of a law of two variables, what it was taken for; None of one variable."""
+    """Evidence for a law of two variables; None for one variable."""
 
 
 @dataclass(frozen=True)
 class OfTwo:
-    """A law of two variables, and the law of one that it was held against."""
+    """Comparison of a law of two variables with the best law of one variable."""
 
     variables: tuple[str, ...]
     terms_tried: int
     one: Draft | None
     """None where no law of one variable could be drafted."""
     held_out: Sides | None = None
-    """What the held-out error would be with the law of one instead, and the chance of as much."""
+    """Change of the held-out error with the law of one variable instead, with its p-value."""
 
 
 def draft_effect(
     diagnosis: Diagnosis,
     show: Show = silent,
 ) -> Draft:
-    """Write the effect that the strongest dependence asks for.
+    """Draft the effect that explains the strongest dependence.
+
+    Returns
+    -------
+    Draft
 
     Raises
     ------
     InputError
-        When the errors depend on nothing beyond chance, or no draft of it can be fitted.
+        When there is no significant dependence, or no draft of it can be fitted.
     """
     cells = _worth_drafting(diagnosis)
     if not cells:
@@ -124,7 +129,8 @@ def draft_effect(
         show((number + 1) / (MOST_FITTED + 2), f"{plan.claim.variable}: {plan.form.kind}")
         options.append(fitted_plan(diagnosis, drives, plan))
         if number == 0:
-            # Without the law the wheels' noise had to stand for it, and hid what tells forms apart.
+            # Without the law its errors inflated the wheels' noise, which hid differences between
+            # forms.
             ordered = by_score(diagnosis, drives, drafted, options[0].fit.point.variances)
     if not options:
         names = ", ".join(dict.fromkeys(cell.name for cell in cells))
@@ -151,7 +157,7 @@ def draft_effect(
 
 
 def _in_a_line(last: Plan, fit: Fitted) -> str:
-    """The law, if it is a line in its variable."""
+    """The law as a formula, if it is linear in its variable."""
     if last.form.kind != "line":
         return ""
     (name,) = (item.name for item in last.form.parameters)
@@ -187,7 +193,7 @@ def _forms(
 
 
 def _spot(diagnosis: Diagnosis, cell: Dependence) -> Form:
-    """A circle around the place on the floor that the errors point at."""
+    """A circle around the place on the floor where the errors are."""
     x, y = place_of(cell)
     offsets = (-SPOT_OFF, 0.0, SPOT_OFF)
     places = [(x + dx, y + dy) for dx, dy in zip(offsets, offsets, strict=True)]

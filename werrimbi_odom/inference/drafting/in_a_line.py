@@ -1,8 +1,8 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A draft's law in a line, with its numbers, as one would write it by hand.
+"""The law of a draft as a formula with its numbers, as one would write it by hand.
 
-In rates: sideways = -0.011 * v * w says by how many metres a second the robot goes sideways.
+In rates: sideways = -0.011 * v * w says by how many metres a second the robot moves sideways.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ _ORDER = ("v", "|v|", "w", "|w|")
 
 
 def in_a_line(amount: Amount, values: Sequence[float], terms: Sequence[Sequence[str]]) -> str:
-    """The sum of terms, each a value times its factors and what the error is in proportion to."""
+    """Sum of terms: each a value times its factors and what the error is proportional to."""
     base = [_RATES[amount.per]] if amount.per in _RATES else []
     line = ""
     for value, factors in zip(values, terms, strict=True):
@@ -29,7 +29,7 @@ def in_a_line(amount: Amount, values: Sequence[float], terms: Sequence[Sequence[
 
 
 def factor_of(amount: Amount, seen: Seen) -> str:
-    """One variable as it stands in a line; less its usual value where zero is not natural."""
+    """Variable as a factor of a formula; minus its usual value if zero is no natural origin."""
     speed = "wheel_speed" if amount.of_wheels else "speed"
     names = {speed: "|v|", "yaw_rate": "w", "yaw_rate_size": "|w|"}
     name = names.get(seen.name, seen.name)
@@ -37,7 +37,7 @@ def factor_of(amount: Amount, seen: Seen) -> str:
 
 
 def symbols_of(amount: Amount, line: str) -> str:
-    """What the letters in a line are; "" where there are none."""
+    """Explanation of the symbols of a formula; "" where there are none."""
     whose = " of that wheel" if amount.of_wheels else ""
     words = []
     if re.search(r"\bv\b", line):
@@ -48,5 +48,5 @@ def symbols_of(amount: Amount, line: str) -> str:
 
 
 def _place(factor: str) -> int:
-    """Speeds and turning first, then what was measured, then where it acts."""
+    """Order of a factor: speeds and turning first, then measured quantities, then gates."""
     return _ORDER.index(factor) if factor in _ORDER else 5 if factor.startswith("(") else 4

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A law of two variables: terms of one amount, as the form of an effect file and in a line."""
+"""Laws of two variables: terms of one amount, as the form of an effect file and as a formula."""
 
 from __future__ import annotations
 
@@ -24,11 +24,11 @@ class LawOfTwo(NamedTuple):
     terms: tuple[Term, ...]
     coefficients: tuple[float, ...]
     gain: float
-    """By how much it would lower the squared innovations."""
+    """Fall of the whitened squared innovations."""
 
     @property
     def variables(self) -> tuple[str, ...]:
-        """Both of them; of one alone the second is what the error is in proportion to."""
+        """Names of both; with one signal the second is what the error is proportional to."""
         names = dict.fromkeys(self._of_share)
         if len(names) < 2 and self.amount.per in _MEASURED:
             names[_MEASURED[self.amount.per]] = None
@@ -36,7 +36,7 @@ class LawOfTwo(NamedTuple):
 
     @property
     def name(self) -> str:
-        """Of its variables, in words; what acts only backwards goes with the direction."""
+        """Name made of its variables; "direction" if it acts only backwards."""
         alone = set(self._of_share) == {"direction"}
         return "direction" if alone else " and ".join(self.variables)
 
@@ -46,16 +46,16 @@ class LawOfTwo(NamedTuple):
 
     @property
     def kind(self) -> str:
-        """Of its form."""
+        """Kind of the form."""
         return self.terms[0].kind if len(self.terms) == 1 else f"sum of {len(self.terms)} terms"
 
     def line(self, values: Sequence[float]) -> str:
-        """With numbers: sideways = -0.011 * v * w."""
+        """The law as a formula with numbers: sideways = -0.011 * v * w."""
         return in_a_line(self.amount, values, [term.formula.split(" * ") for term in self.terms])
 
     @property
     def seen(self) -> Seen:
-        """As a draft sees its variables."""
+        """Its variables, as seen by a draft."""
         channels = dict.fromkeys(name for term in self.terms for name in term.channels)
         return Seen(
             self.name,
@@ -67,7 +67,7 @@ class LawOfTwo(NamedTuple):
 
     @property
     def form(self) -> Form:
-        """As an effect file has it, its numbers what the score says."""
+        """Its form for an effect file, with the coefficients of the regression."""
         names = _NAMES[: len(self.terms)]
         declared = []
         for name, term, value in zip(names, self.terms, self.coefficients, strict=True):
@@ -107,7 +107,7 @@ class LawOfTwo(NamedTuple):
 
 
 def _says(term: Term) -> str:
-    """What the number before a term is."""
+    """Description of the coefficient of a term."""
     of = term.formula.removesuffix(term.gate).removesuffix(" * ")
     each = f" for each unit of {of}" if of else ""
     return f"share{each}{f' where {term.gate[1:-1]}' if term.gate else ''}"

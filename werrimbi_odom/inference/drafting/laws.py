@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Laws that a draft may have: for each form of a dependence its parameters and its lines of code.
+"""Forms of law for a draft: for each form of a dependence its parameters and its lines of code.
 
-A law is made of two parts: the share (or rate) as a function of the variable, and what an error is
-in proportion to. Both are written as Python that a user will read.
+A law has two factors: the share (or rate) as a function of the variable, and the quantity that the
+error is proportional to. Both are written as Python code for the user to read.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ class Declared:
     tries: tuple[float, ...] = ()
 
     def source(self) -> str:
-        """As Python."""
+        """Its declaration as Python code."""
         low, high = (
             f"{value:.3g}" if abs(value) != 3.1415927 else f"{value}" for value in self.bounds
         )
@@ -52,14 +52,14 @@ class Declared:
 
 @dataclass(frozen=True, slots=True)
 class Seen:
-    """A variable as an effect sees it in a step."""
+    """A variable as an effect reads it in a step."""
 
     name: str
     unit: str
     span: Callable[[str], str]
-    """Python for its span, by side (left, right); the robot's own is the same for both."""
+    """Python code for its span, by side (left, right); the same for both if it is the robot's."""
     middle: float = 0.0
-    """Usual value, at which a line is zero."""
+    """Usual value, at which a linear law is zero."""
     low: float = 0.0
     high: float = 1.0
     per_wheel: bool = False
@@ -70,9 +70,9 @@ class Seen:
     waves: bool = False
     per_run: bool = False
     channels: tuple[str, ...] = ()
-    """Measured columns that it looks at."""
+    """Extra channels that it reads."""
     rate: bool = False
-    """Whether it is a change per step (acceleration), of which only a line can be drawn."""
+    """Whether it is a change per step (acceleration), for which only a line is possible."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -82,12 +82,12 @@ class Form:
     kind: str
     parameters: tuple[Declared, ...]
     expression: Callable[[str], str]
-    """Python for the share on a side."""
+    """Python code for the share on a side."""
     formula: str
     uses: tuple[str, ...]
     """Names to import from effects.shapes."""
     numbers: int
-    """Free numbers."""
+    """Number of free parameters."""
     constants: tuple[str, ...] = ()
     quadrature: tuple[str, str] | None = None
     needs_span: bool = False
@@ -95,7 +95,7 @@ class Form:
 
 
 def unit_per(base: str, per: str) -> str:
-    """The unit of a coefficient: that of the share, per unit of the variable."""
+    """Unit of a coefficient: that of the share, per unit of the variable."""
     if not per:
         return base
     inverse = {
@@ -112,19 +112,23 @@ def unit_per(base: str, per: str) -> str:
 
 
 def unit_of(amount: Amount) -> str:
-    """The unit of the share itself."""
+    """Unit of the share itself."""
     over = {"travel": "m", "path": "m", "turn": "rad", "duration": "s"}[amount.per]
     own = "rad" if amount.channel == "heading" else "m"
     return "" if own == over else f"{own}/{over}"
 
 
 def forms_of(seen: Seen, amount: Amount, size: float) -> tuple[Form, ...]:
-    """Forms in a variable, the simplest first.
+    """Forms of law in a variable, the simplest first.
 
     Parameters
     ----------
+    seen : Seen
+        The variable.
+    amount : Amount
+        Error channel, and what the error is proportional to.
     size : float
-        Of the share, as the evidence has it.
+        Size of the share, by the evidence.
     """
     if seen.waves:
         return (_wave(seen, amount, size),)
@@ -140,7 +144,7 @@ def forms_of(seen: Seen, amount: Amount, size: float) -> tuple[Form, ...]:
 
 
 def wide(typical: float) -> tuple[float, float]:
-    """Bounds far beyond what was seen."""
+    """Bounds far beyond what was observed."""
     return (-100.0 * abs(typical), 100.0 * abs(typical))
 
 
@@ -293,7 +297,7 @@ def _wave(seen: Seen, amount: Amount, size: float) -> Form:
 def spot_form(
     places: Sequence[tuple[float, float]], radii: Sequence[float], size: float, half: float
 ) -> Form:
-    """A circle of the floor."""
+    """A share on a circular spot of the floor."""
     xs = tuple(dict.fromkeys(round(place[0], 3) for place in places))
     ys = tuple(dict.fromkeys(round(place[1], 3) for place in places))
     far = (-1000.0, 1000.0)

@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where one variable does not explain what is left: a law of two, found by sparse regression.
+"""Laws of two variables by sparse regression, where one variable does not explain the errors.
 
-For each kind of error all terms of two variables (`terms`) are summed along the drives and
-regressed on what is left. The few best laws are written as effect files, scored and fitted as those
-of one variable are. The best of them must earn its place twice: on the drives that are fitted, all
-terms that were tried counted in its price, and on drives that were held out of both fits, where it
-must err less than the law of one variable does, by more than chance.
+For each amount all terms of two variables (`terms`) are summed along the drives and regressed on
+the innovations. The few best laws are written as effect files, scored and fitted like those of one
+variable. The best is accepted if it passes two tests. On the fitted drives it must pay a penalty
+that allows for all terms tried. On held-out drives its error must be significantly lower than that
+of the law of one variable.
 """
 
 from __future__ import annotations
@@ -58,17 +58,21 @@ from werrimbi_odom.progress import Show, silent
 def best_draft(
     diagnosis: Diagnosis, tried_out: Callable[[Draft], Added], show: Show = silent
 ) -> tuple[Draft, Added]:
-    """The draft of one variable, or of two where held-out drives want the second.
+    """The best draft of one variable, or of two where the held-out drives support it.
 
     Parameters
     ----------
-    tried_out
-        What a draft does to the errors once it is added.
+    tried_out : callable
+        Adds a draft to the model and returns the change of the errors.
+
+    Returns
+    -------
+    (Draft, Added)
 
     Raises
     ------
     InputError
-        When the errors depend on nothing beyond chance, or no draft of it can be fitted.
+        When there is no significant dependence, or no draft of it can be fitted.
     """
     one, refused = None, None
     try:
@@ -89,12 +93,12 @@ def best_draft(
 
 
 def draft_of_two(diagnosis: Diagnosis, one: Draft | None, show: Show = silent) -> Draft | None:
-    """The best law of two variables, if it explains the fitted drives better than one of one does.
+    """The best law of two variables, if it explains the fitted drives better than a law of one.
 
     Parameters
     ----------
-    one
-        The draft of one variable; None where there is none: then calibration alone is to be beaten.
+    one : Draft, optional
+        The draft of one variable; without one, the law must be better than calibration alone.
     """
     base = diagnosis.final
     drives = Drives(diagnosis.runs, base.point.excluded, base.point.options)
@@ -130,15 +134,15 @@ def draft_of_two(diagnosis: Diagnosis, one: Draft | None, show: Show = silent) -
 
 
 def better_held_out(two: Draft, with_two: Added, with_one: Added | None) -> Draft | None:
-    """The law of two, where drives held out of both fits want it beyond chance; else None.
+    """The law of two, if significantly better than the law of one on held-out drives; else None.
 
-    They are asked one question that was put before they answered: whether their errors rise when
-    the law of one takes its place.
+    It is a single test, fixed before the held-out drives are looked at: whether their errors rise
+    when the law of one takes its place. So it needs no correction.
 
     Parameters
     ----------
-    with_one
-        What the law of one does to the same drives; None where there is none, then calibration.
+    with_one : Added, optional
+        Errors on the same drives with the law of one; without it, those with calibration are used.
     """
     assert two.of_two is not None
     side = with_two.holdout
@@ -150,16 +154,16 @@ def better_held_out(two: Draft, with_two: Added, with_one: Added | None) -> Draf
 
 
 class _Found(NamedTuple):
-    """A law of two that was fitted."""
+    """A law of two variables that was fitted."""
 
     law: LawOfTwo
     option: Option
     tried: int
-    """Terms among which it was found."""
+    """Number of terms that the search selected from."""
 
     @property
     def total(self) -> float:
-        """Cost and price, that of the search too."""
+        """Cost with the penalty of the parameters and of the search."""
         searched = _price_of_search(self.tried) * len(self.law.terms)
         return self.option.fit.total + searched * self.option.fit.scatter
 
@@ -167,7 +171,7 @@ class _Found(NamedTuple):
 def _fitted(
     diagnosis: Diagnosis, drives: Drives, laws: Sequence[LawOfTwo], tried: int, noise: Variances
 ) -> Iterator[_Found]:
-    """The few laws that may be the best, fitted in full."""
+    """Fit the few most promising laws."""
     planned_from = {}
     for law in laws:
         chance = in_any_of(tried, chi2_above(law.gain, len(law.terms)))
@@ -181,10 +185,10 @@ def _fitted(
 
 
 def _as_calm(noise: Variances) -> Variances:
-    """Both wheels' noise as that of the calmer one, and no more than is usual.
+    """Reduce both wheels' noise to that of the less noisy one, and at most to a typical one.
 
-    While a law is missing, the noise of the wheels that it is about stands for it, and hides what
-    tells laws apart.
+    While a law is missing, its errors inflate the noise of the wheels concerned, which hides
+    differences between laws.
     """
     usual = np.full(noise.left.shape, TYPICAL_WHEEL_NOISE**2)
     calm = np.minimum(np.minimum(noise.left, noise.right), usual)
@@ -217,12 +221,12 @@ def _searched(diagnosis: Diagnosis, point: Point) -> tuple[list[LawOfTwo], int]:
 
 
 def _price_of_search(tried: int) -> float:
-    """What a term must be worth because so many were looked at (`regression`)."""
+    """Penalty of a term for the search among `tried` terms (`regression`)."""
     return 2.0 * math.log(max(tried, 1))
 
 
 def _of_two_variables(sums: Sums) -> Callable[[Collection[int], int], bool]:
-    """Whether a term may join others: two variables, and one gate, are what is still read."""
+    """Whether a term may join others: a readable law has two variables and one gate at most."""
 
     def may_join(chosen: Collection[int], one: int) -> bool:
         terms = [sums.terms[each] for each in (*chosen, one)]

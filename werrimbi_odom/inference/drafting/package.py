@@ -8,7 +8,7 @@ from werrimbi_odom.inference.drafting.draft import Draft
 
 
 def package_of(draft: Draft) -> dict[str, str]:
-    """Texts by file name."""
+    """Text of each file, by its name."""
     return {
         f"{draft.name}.py": draft.source,
         "pyproject.toml": _project(draft.name),

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A law that may be drafted: written as an effect file, scored without a fit, fitted, rewritten."""
+"""A possible law of a draft: written as an effect file, scored without a fit, fitted, rewritten."""
 
 from __future__ import annotations
 
@@ -27,22 +27,22 @@ from werrimbi_odom.model.effect import Effect
 
 
 class Claim(NamedTuple):
-    """What the drives show: which error goes with what."""
+    """The evidence: which error depends on what."""
 
     amount: Amount
     variable: str
-    """Its name; of a law of two variables both."""
+    """Name of the variable, or of both variables."""
     p_value: float
 
     @property
     def channel(self) -> str:
-        """Which error."""
+        """Error channel."""
         return self.amount.channel
 
 
 @dataclass(frozen=True)
 class Plan:
-    """A form that may be fitted."""
+    """A form of law that may be fitted."""
 
     claim: Claim
     seen: Seen
@@ -50,21 +50,21 @@ class Plan:
     effect: Effect
     source: str
     score: Score | None = None
-    """Of the best of its shapes; None before it is scored."""
+    """Score of the best of its shapes; None before it is scored."""
     excess: float = -math.inf
-    """By how much it should cost less than it takes, its numbers paid for."""
+    """Gain by the score test, less the penalty of its parameters."""
 
 
 @dataclass(frozen=True)
 class Option:
-    """A form that was fitted."""
+    """A form of law that was fitted."""
 
     plan: Plan
     fit: Fitted
 
 
 def planned(diagnosis: Diagnosis, claim: Claim, seen: Seen, form: Form) -> Plan:
-    """The effect file of a form."""
+    """Write the effect file of a form."""
     source = _written(diagnosis, claim, seen, form)
     return Plan(claim, seen, form, loaded(source), source)
 
@@ -72,7 +72,7 @@ def planned(diagnosis: Diagnosis, claim: Claim, seen: Seen, form: Form) -> Plan:
 def by_score(
     diagnosis: Diagnosis, drives: Drives, plans: Sequence[Plan], noise: Variances
 ) -> list[Plan]:
-    """The forms that the drives show anything of, the most promising first, all without a fit."""
+    """Rank forms by their score tests, without a fit; undetermined ones left out."""
     base = diagnosis.final
     before = replace(base, point=replace(base.point, variances=noise))
     found = []
@@ -86,11 +86,11 @@ def by_score(
 
 
 def fitted_plan(diagnosis: Diagnosis, drives: Drives, plan: Plan) -> Option:
-    """A draft of one form, fitted from where its score points."""
+    """Fit a draft, starting from the values that its score suggests."""
     base = diagnosis.final
     assert plan.score is not None
     start = start_at(base, plan.score, base.numbers)
-    # After one round the noise is still what stood for the law: a true one cost more than another.
+    # After one round the noise is still inflated by the missing law, which would favour some laws.
     fit = drives.fit(start.point, start.names, start.numbers, diagnosis.given, rounds=2)
     return Option(plan, fit)
 
@@ -102,7 +102,7 @@ def _written(diagnosis: Diagnosis, claim: Claim, seen: Seen, form: Form) -> str:
 
 
 def with_values(diagnosis: Diagnosis, option: Option) -> Plan:
-    """The draft with the fitted values as what is typical, so that fits begin there."""
+    """The draft with the fitted values as typical values, so that fits begin there."""
     plan, robot = option.plan, option.fit.point.model.robot
     applied = next(item for item in robot.effects if item.name == plan.effect.name)
     parameters = []
@@ -128,16 +128,16 @@ def with_values(diagnosis: Diagnosis, option: Option) -> Plan:
 
 
 def value_of(fit: Fitted, plan: Plan, name: str) -> float:
-    """The fitted value of a parameter of a draft."""
+    """Fitted value of a parameter of a draft."""
     held = fit.point.model.robot.effects
     return next(item for item in held if item.name == plan.effect.name).values[name]
 
 
 def keeps_laws(effect: Effect) -> bool:
-    """Whether an effect keeps the laws of effects, on the short drive that they are held on.
+    """Whether an effect keeps the contract of effects, on the short drive of its test.
 
-    That drive may not reach a speed, a time or a channel's value at which the effect begins; then
-    it does nothing there, which is no breach.
+    That drive may not reach the speed, time or channel value at which the effect begins. Then it
+    does nothing there, which is no violation.
     """
     try:
         check_effect(effect)
@@ -147,7 +147,7 @@ def keeps_laws(effect: Effect) -> bool:
 
 
 def loaded(source: str) -> Effect:
-    """The effect of a source, as `--effects FILE` would load it."""
+    """Load the effect of a source text, as `--effects FILE` would."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "draft.py"
         path.write_text(source, encoding="utf-8")

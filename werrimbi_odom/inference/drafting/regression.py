@@ -1,12 +1,12 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Sparse regression: few terms out of many, each of which earns a price that counts them all.
+"""Sparse regression: select a few terms out of many, with a penalty that allows for the search.
 
-Forward selection by orthogonal least squares: in each round the term that lowers the squared
-innovations most beside those that are there (Chen, Billings and Luo, Int. J. Control 50, 1989). It
-begins with each of the best terms in turn, since the one that is best alone may be none of a pair.
-Among k terms the best useless one gains about 2 ln k, so that is what each must be worth beside
-what any number costs (risk inflation: Foster and George, Ann. Stat. 22, 1994).
+Forward selection by orthogonal least squares: each round adds the term that lowers the squared
+innovations most beside the terms already selected (Chen, Billings and Luo, Int. J. Control 50,
+1989). It starts with each of the best terms in turn, since the best single term may not be in the
+best pair. Among k terms the best null term gains about 2 ln k, so each term must gain that much in
+addition to the usual penalty (risk inflation criterion: Foster and George, Ann. Stat. 22, 1994).
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from werrimbi_odom.model.pose import Floats
 
 
 class Selected(NamedTuple):
-    """Terms that were taken."""
+    """A selected set of terms."""
 
     terms: tuple[int, ...]
     coefficients: Floats
-    """Of their columns."""
+    """Coefficients of their columns."""
     gain: float
     """Fall of the squared innovations."""
 
     def worth(self, price: float) -> float:
-        """Its gain less its price."""
+        """Gain less the penalty."""
         return self.gain - price * len(self.terms)
 
 
@@ -41,18 +41,23 @@ def selections(
     price: float,
     may_join: Callable[[Collection[int], int], bool] = lambda chosen, one: True,
 ) -> list[Selected]:
-    """The best small sets of terms, one for each of the first terms; the best first.
+    """The best small sets of terms, one for each starting term; the best first.
 
     Parameters
     ----------
     square : ndarray, shape (k, k)
-        Products of the terms' columns with each other; the columns were of unit length.
+        Gram matrix of the terms' columns, which had unit length before nuisances were projected
+        out.
     cross : ndarray, shape (k,)
-        With what is to be explained.
+        Products of the columns with the response.
     price : float
-        What each term must gain.
-    may_join
-        Whether a term may join those that are chosen.
+        Penalty of a term.
+    may_join : callable
+        Whether a term may join a set of selected terms.
+
+    Returns
+    -------
+    list of Selected
     """
     alone = cross**2 / np.diag(square)
     found: dict[tuple[int, ...], Selected] = {}
@@ -71,7 +76,7 @@ def selections(
 
 
 def _gains(square: Floats, cross: Floats, chosen: list[int]) -> Floats:
-    """By how much each further term would lower the squared innovations."""
+    """Fall of the squared innovations for each further term."""
     solved = np.linalg.solve(
         square[np.ix_(chosen, chosen)], np.column_stack([square[chosen], cross[chosen]])
     )
@@ -82,7 +87,7 @@ def _gains(square: Floats, cross: Floats, chosen: list[int]) -> Floats:
 
 
 def _thinned(square: Floats, cross: Floats, chosen: list[int], price: float) -> Selected:
-    """Without terms that others made needless after they had been taken."""
+    """Backward elimination: drop terms that later ones made needless."""
     best = _solved(square, cross, chosen)
     for one in chosen:
         others = [other for other in best.terms if other != one]

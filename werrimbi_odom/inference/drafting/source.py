@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A law as an effect file: short enough to be read, and said what it cannot know."""
+"""The source of an effect file: short, readable, and clear about what the data cannot show."""
 
 from __future__ import annotations
 
@@ -40,12 +40,12 @@ _CHECK = {
 
 
 def name_of(amount: Amount, variable: str) -> str:
-    """Name of a draft, until the user knows a better one."""
+    """Name of a draft, until the user chooses a better one."""
     return f"{amount.channel}_by_{''.join(c if c.isalnum() else '_' for c in variable.lower())}"
 
 
 def source_of(name: str, amount: Amount, seen: Seen, form: Form, drives: int, strength: str) -> str:
-    """The effect file."""
+    """Write the effect file."""
     on_wheels = amount.channel in ("left", "right", "along") and amount.per in ("travel", "path")
     kind = "wheel" if on_wheels else "body"
     moved = "WheelTravel" if on_wheels else "BodyMotion"
@@ -122,7 +122,7 @@ def _doc(amount: Amount, seen: Seen, form: Form, drives: int, strength: str) -> 
 
 
 def first_of(amount: Amount) -> str:
-    """What the along channel changes."""
+    """Field of the motion that the along channel changes."""
     return "along" if amount.per in ("turn", "duration") else "left and right"
 
 
@@ -161,7 +161,7 @@ def _law(amount: Amount, seen: Seen, form: Form, on_wheels: bool) -> list[str]:
 
 
 def _share(variable: str, seen: Seen, form: Form, side: str) -> list[str]:
-    """Lines that work a share out; a span that is used twice, or is long, gets a name."""
+    """Lines that compute a share; a span that is used twice, or is long, gets a name."""
     if not form.needs_span:
         return [f"{variable} = {form.expression(side)}"]
     seen_as = "seen" if variable == "share" else f"{side}_seen"

@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What terms of a law would do to the innovations: their sums over each leg's steps, whitened.
+"""Effect of the terms of a law on the innovations: sums over each leg's steps, whitened.
 
-Of all terms of an amount only the products with each other and with what is left of the innovations
-are kept; a regression needs no more, and they take no memory.
+For each amount only the Gram matrix of the terms and their products with the innovations are kept.
+A regression needs no more, and they take little memory.
 """
 
 from __future__ import annotations
@@ -25,15 +25,17 @@ from werrimbi_odom.model.pose import Floats
 
 
 class Sums(NamedTuple):
-    """Products of the terms of an amount that the drives tell anything of."""
+    """Products of the terms of an amount that the data determine."""
 
     terms: tuple[Term, ...]
     square: Floats
-    """With each other, less what the model can turn, (k, k); of columns brought to unit length."""
+    """Gram matrix of the terms, (k, k): columns of unit length, with the nuisances projected
+    out."""
     cross: Floats
-    """With what is left of the innovations, (k,)."""
+    """Products with the projected innovations, (k,)."""
     size: Floats
-    """Lengths of the columns, (k,): a coefficient of a term is that of its column over it."""
+    """Lengths of the columns, (k,): the coefficient of a term is that of its unit column divided by
+    this."""
 
 
 def sums_of(
@@ -43,12 +45,12 @@ def sums_of(
     amount: Amount,
     terms: Sequence[Term],
 ) -> Sums:
-    """Sum the pushes of all terms along the path, and whiten them.
+    """Sum the errors of all terms along the path, and whiten them.
 
     Parameters
     ----------
-    numbers
-        What the model can turn: what they can explain is no evidence.
+    numbers : sequence of FreeParameter
+        Nuisance parameters: what they can explain is no evidence.
     """
     prediction = predict_all(point.model, runs)
     frame, rest = unexplained(runs, point, numbers, prediction)

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Terms of a law of two variables: products, ratios, and what acts only where a gate is open.
+"""Terms of a law of two variables: products, ratios and gated terms.
 
-A term is what a share is in proportion to. It has values at every step, for the search, and a
-source, for the effect file; both are means over the step (`effects.shapes`), so that it does not
-matter how often counters are read. Terms may be added, since each has a coefficient of its own
-unit; nothing is divided by what comes near zero.
+A term is a factor of the share. It has values at every step, for the regression, and a source text,
+for the effect file. Both are means over the step (`effects.shapes`), so the rate at which counters
+are read does not matter. Terms may be added, as each coefficient has its own unit. No term is
+divided by a quantity that comes near zero.
 """
 
 from __future__ import annotations
@@ -31,35 +31,35 @@ Kind = Literal["line", "product", "ratio", "gated law"]
 
 @dataclass(frozen=True)
 class Term:
-    """What a share may be in proportion to, for the left and the right wheel alike or not."""
+    """A factor of the share, for the left and the right wheel."""
 
     kind: Kind
     formula: str
-    """As it is written by hand: v * payload_kg."""
+    """As written by hand: v * payload_kg."""
     signals: tuple[Signal, ...]
     source: tuple[str, str]
-    """Python for its mean over a step, for left and right wheel."""
+    """Python code for its mean over a step, for left and right wheel."""
     values: Callable[[int], Floats]
-    """The same at every step, (n,), of the left wheel (0) or the right one (1); worked out when
-    asked for, since of all terms it is much."""
+    """The same at every step, (n,), of the left wheel (0) or the right one (1); computed on demand,
+    as the arrays of all terms are large."""
     unit: dict[str, int]
-    """Powers of its units."""
+    """Exponents of its units."""
     gate: str = ""
-    """Where it acts, as in the formula; "" everywhere."""
+    """Condition under which it acts, as in the formula; "" if always."""
 
     @property
     def variables(self) -> frozenset[str]:
-        """What is measured in it, whatever is made of that."""
+        """Names of the variables in it."""
         return frozenset(signal.variable for signal in self.signals)
 
     @property
     def channels(self) -> tuple[str, ...]:
-        """Measured columns that it looks at."""
+        """Extra channels that it reads."""
         return tuple(signal.channel for signal in self.signals if signal.channel is not None)
 
 
 def terms_of(signals: Sequence[Signal]) -> list[Term]:
-    """All terms that the signals of one kind of amount make, the simplest first."""
+    """All terms of the signals of one kind of amount, the simplest first."""
     found = [_line(one) for one in signals]
     found += [
         _product(one, other)
@@ -83,14 +83,14 @@ def terms_of(signals: Sequence[Signal]) -> list[Term]:
 def is_of_two(term: Term, amount: Amount) -> bool:
     """Whether no law of one variable says the same.
 
-    That laws of one variable know the size of a speed alone; per turn, its sign makes a product of
-    speed and yaw rate.
+    Laws of one variable use the size of a speed alone. Per turn, the signed speed makes a product
+    of speed and yaw rate.
     """
     return term.kind != "line" or (term.formula == "v" and amount.per == "turn")
 
 
 def unit_of_coefficient(term: Term, amount: Amount) -> str:
-    """Of the number before a term: the share's unit over the term's."""
+    """Unit of the coefficient of a term: the share's unit over the term's."""
     above, _, below = unit_of(amount).partition("/")
     powers: dict[str, int] = {}
     for name, power in [(above, 1), (below, -1), *((name, -n) for name, n in term.unit.items())]:
@@ -143,7 +143,7 @@ def _ratio(one: Signal, other: Signal) -> Term:
 
 
 def _gates(speed: Signal) -> Iterator[Term]:
-    """Where something acts: rolling backwards, and above some speeds."""
+    """Gates: rolling backwards, and above some speeds."""
     left, right = (f"({source} < {-ROLLS_BACKWARDS})" for source in speed.source)
     yield Term(
         "gated law",
@@ -192,7 +192,7 @@ def _gated(one: Signal, gate: Term) -> Term:
 
 
 def _sources(one: Signal) -> tuple[str, str]:
-    """Python for its mean over a step."""
+    """Python code for its mean over a step."""
     left, right = (f"{source}.mean" if one.spans else source for source in one.source)
     return left, right
 
@@ -202,7 +202,7 @@ def _values(one: Signal, side: int) -> Floats:
 
 
 def _clear_of_zero(other: Signal) -> bool:
-    """Whether it may be divided by."""
+    """Whether a signal stays clear of zero, so that it may be divided by."""
     spans: list[Span[Floats]] = list(other.values)
     ends = np.concatenate([end for span in spans for end in span])
     least = float(np.min(ends)) if np.all(ends > 0.0) else -float(np.max(ends))

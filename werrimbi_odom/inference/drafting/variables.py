@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Measured variables as a draft's effect sees them in a step: the source that reads them."""
+"""Measured variables as the effect of a draft reads them in a step, as source code."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ STEADY = {
     "yaw_rate_size": ("abs(drive.yaw_rate.end)",) * 2,
     "acceleration": ("drive.speed.change / drive.duration",) * 2,
 }
-"""Variables that keep their value through a step, as Python for the left and right wheel."""
+"""Variables that are constant during a step, as Python code for the left and right wheel."""
 
 SPANS = {
     "time": "drive.time",
@@ -38,7 +38,7 @@ FROM_ZERO = ("speed", "wheel_speed", "yaw_rate", "yaw_rate_size", "time", "dista
 
 
 def seen_as(variable: Variable) -> Seen | None:
-    """How an effect sees a variable; None for one that no effect can see."""
+    """How an effect reads a variable; None for one that no effect can read."""
     name = variable.name
     pooled = np.concatenate([variable.left, variable.right])
     low, high = (float(value) for value in np.quantile(pooled, [0.02, 0.98]))
@@ -75,34 +75,34 @@ def seen_as(variable: Variable) -> Seen | None:
 
 
 def _angle_of(side: str) -> Callable[[str], str]:
-    """A wheel's angle, on whichever wheel it acts."""
+    """A wheel's angle, whichever wheel the law acts on."""
     return lambda _: f"drive.{side}_angle"
 
 
 def rounded(value: float, digits: int = 2) -> float:
-    """To some significant digits; 0 for what is not finite."""
+    """Round to some significant digits; 0 for what is not finite."""
     return float(f"{value:.{digits}g}") if math.isfinite(value) else 0.0
 
 
 @dataclass(frozen=True)
 class Signal:
-    """A measured quantity as laws of two variables are made of it; a pair has left and right."""
+    """A measured quantity for laws of two variables, with a left and a right version."""
 
     name: str
-    """In formulas."""
+    """Symbol in formulas."""
     variable: str
-    """What is measured: a speed and its size are one variable."""
+    """Measured variable: a speed and its size are one variable."""
     source: tuple[str, str]
-    """Python for a number where it is steady through a step, else for a span."""
+    """Python code for a number if it is constant during a step, else for a span."""
     values: tuple[Span[Floats], Span[Floats]]
     unit: dict[str, int]
-    """Powers of its units; those of measured channels nobody knows."""
+    """Exponents of its units; empty for extra channels, whose units are unknown."""
     spans: bool = False
     channel: str | None = None
 
 
 def signals_of(drive: Drive[Floats], *, of_wheels: bool) -> list[Signal]:
-    """What laws of two variables may be made of; wheels have a speed of their own."""
+    """Signals for laws of two variables; laws of the wheels use the speed of each wheel."""
     sides = ("left_speed", "right_speed") if of_wheels else ("speed", "speed")
     speeds = (getattr(drive, sides[0]).end, getattr(drive, sides[1]).end)
     found = []

@@ -1,7 +1,7 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Sudden errors that no law explains: a push, a kick, a wheel slip, a jump of the reference.
+"""Abrupt errors that no law explains: a push, a kick, a wheel slip, a jump of the reference.
 
-Reading order: `noise` (of most legs), `steps` (where the innovations jump, and how), `events`
-(which steps are sudden, large and rare), `common_cause` (what they have in common).
+Reading order: `noise` (robust noise estimate), `steps` (detection and estimation of steps),
+`events` (which steps are sudden, large and rare), `common_cause` (what they have in common).
 """

@@ -1,9 +1,10 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What events have in common: a reversal, a start or stop, a place on the floor; or nothing.
+"""Common cause of events: a reversal, a start or stop, a place on the floor, or none.
 
-Events that have something in common are no accidents: at reversals they lead to an effect, at a
-place to the floor. Each is held against how much of the driving there is of it (binomial test).
+Events with a common cause are no accidents: reversals suggest an effect, a place suggests the
+floor. The count of events at each possible cause is compared with its share of the driving
+(binomial test).
 """
 
 from __future__ import annotations
@@ -33,33 +34,34 @@ Common = Literal["reversal", "start or stop", "x", "y", "place"]
 PLACES: tuple[Common, ...] = ("x", "y", "place")
 
 MOVES = 1e-3
-"""Way of an interval [m] from which on its direction is told: counts tremble by less."""
+"""Travel in an interval [m] from which its direction counts: the noise of standing counters is
+less."""
 
 
 @dataclass(frozen=True, slots=True)
 class Alike:
-    """What most of some events have in common."""
+    """What most of the events have in common."""
 
     what: Common
     count: int
-    """Of events that have it."""
+    """Number of events that have it."""
     of: int
-    """Of all."""
+    """Number of all events."""
     at: tuple[float, float]
-    """Where on the floor [m]; NaN where it is no place."""
+    """Position on the floor [m]; NaN where the cause is no place."""
     p_value: float
-    """Of as many by chance, all that was asked counted."""
+    """P-value, corrected for all causes tested (Bonferroni)."""
 
 
 class _Tried(NamedTuple):
-    """What events may have in common, on each of the sides."""
+    """A possible common cause, on each of the sides."""
 
     what: Common
     at: tuple[float, float]
     near: list[NDArray[np.bool_]]
-    """Intervals that have it."""
+    """Mask of the intervals that have it."""
     weight: list[Floats]
-    """How much of the driving each interval is."""
+    """Weight of each interval in the driving."""
 
 
 def alike(
@@ -68,15 +70,17 @@ def alike(
     *,
     places: bool = True,
 ) -> Alike | None:
-    """What is commonest among events, if chance does not make it.
+    """The most significant common cause of the events, if any.
 
     Parameters
     ----------
-    legs
-        Of the events, for each of the sides: sets of drives that were looked at, interval by
-        interval, and what a model predicts for them.
-    places
-        Whether what was measured is a place on the floor: one that adds up is none after a jump.
+    legs : sequence of ndarray
+        Intervals of the events, for each side.
+    sides : sequence of (Concatenated, Prediction)
+        Sets of drives divided into intervals, each with a model's prediction.
+    places : bool
+        Whether measured positions are places on the floor; those of an incremental reference are
+        not, after a jump.
     """
     of = sum(own.size for own in legs)
     if of < EVENTS_ALIKE:
@@ -106,7 +110,7 @@ def alike(
         count = sum(int(here[own].sum()) for own, here in zip(legs, near, strict=True))
         whole = sum(float(part.sum()) for part in weight)
         share = sum(float(p @ here) for p, here in zip(weight, near, strict=True)) / whole
-        # The event that the place is taken from says nothing for it.
+        # The event that gave the place is no evidence for it.
         told_by = 0 if np.isnan(at).all() else 1
         chance = binomial_above(count - told_by, of - told_by, share)
         found.append(Alike(what, count, of, at, in_any_of(len(tried), chance)))
@@ -115,7 +119,7 @@ def alike(
         for each in found
         if each.count >= max(EVENTS_ALIKE, ALIKE_SHARE * of) and each.p_value < SURE
     ]
-    # A drive to and fro has its stops at one place: what it did explains that, and not the floor.
+    # A drive to and fro has all its stops at one place: the manoeuvre explains that, not the floor.
     return min(common, key=lambda each: (each.what in PLACES, each.p_value), default=None)
 
 

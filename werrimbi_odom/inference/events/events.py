@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Events: steps of the pose, or of the reference, that are sudden, large, rare, and no law's."""
+"""Events: sudden, large and rare steps of the pose or of the reference, which no law explains."""
 
 from __future__ import annotations
 
@@ -39,42 +39,42 @@ UNITS = ("m", "m", "rad")
 
 @dataclass(frozen=True, slots=True)
 class Event:
-    """One of them."""
+    """An abrupt error at an instant."""
 
     run: Path
-    """As it was given."""
+    """Path of the run as it was given."""
     held_out: bool
     time: float
-    """In the run's own clock [s]."""
+    """By the clock of the run [s]."""
     seen: float
-    """What the reference stamped it, which may be late [s]."""
+    """By the stamps of the reference, which may be late [s]."""
     started: float
-    """First tick of the run, in that clock [s]."""
+    """First tick of the run, by the clock of the run [s]."""
     channel: Channel
-    """Where it was the largest, in its own deviations; "reference": what was measured jumped."""
+    """Channel of the largest size in standard deviations; "reference" if the reference jumped."""
     size: float
-    """In that channel [m, rad]; of a reference that jumped, how far [m] (or by how much, where it
-    was in heading alone [rad])."""
+    """Size in that channel [m, rad]; for a jump of the reference its distance [m], or its angle if
+    it was in heading alone [rad]."""
     std: float
     unit: str
     sizes: tuple[float, float, float]
     """Along, sideways and in heading [m, m, rad]."""
     stds: tuple[float, float, float]
     place: tuple[float, float]
-    """Where the reference saw the robot then [m]; NaN where it saw no place."""
+    """Position of the robot by the reference [m]; NaN if it measured none."""
     stays: bool
-    """Whether it stayed; else the reference was right again at the next pose."""
+    """Whether the error stayed; else the reference was right again at the next pose."""
     p_value: float
-    """Of as much by chance, all instants and channels counted."""
+    """P-value, corrected for all instants and shapes tested (Bonferroni)."""
 
 
 class Way(NamedTuple):
-    """Where a drive was measured, n poses."""
+    """Measured positions of a drive, n poses."""
 
     run: Path
     held_out: bool
     time: Floats
-    """(n,) [s]"""
+    """Shape (n,) [s]."""
     x: Floats
     y: Floats
 
@@ -84,44 +84,44 @@ class Events:
     """All events of some drives."""
 
     events: tuple[Event, ...] = ()
-    """Drive by drive, in the order of time."""
+    """Drive by drive, in order of time."""
     ways: tuple[Way, ...] = ()
-    """Of the drives; none where nothing happened."""
+    """Measured positions of the drives; empty without events."""
     alike: Alike | None = None
-    """What they have in common."""
+    """Their common cause."""
     many: bool = False
-    """Whether the errors jump more often than accidents happen: a law is missing, and none of the
-    jumps is told."""
+    """Whether errors jump more often than accidents happen. Then a law is missing, and no event is
+    reported."""
     kind: ReferenceKind = "absolute"
-    """Of the reference."""
+    """Kind of the reference."""
 
     @property
     def accidents(self) -> bool:
-        """Whether they have nothing in common: what repeats itself is a law, and stays in fits."""
+        """Whether they have no common cause; what has one is systematic, and stays in fits."""
         return bool(self.events) and self.alike is None
 
     @property
     def left_out(self) -> bool:
         """Whether they are left out of fits.
 
-        The jumps of a reference that wanders are left out already, by its own filter, which lets
-        its error begin anew: a step of the robot would be another thing.
+        The jumps of a reference with correlated errors are already handled by its filter, which
+        resets the error. A step of the robot would be another thing.
         """
         return self.accidents and self.kind != "local_map"
 
 
 class Side(NamedTuple):
-    """Drives, and a model in them."""
+    """Drives, and a model of them."""
 
     runs: Sequence[MatchedRun]
     paths: Sequence[Path]
-    """Of them."""
+    """Paths of the runs."""
     point: Point
     held_out: bool
 
 
 def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Events:
-    """What happened at an instant, beside everything that a model explains."""
+    """Abrupt errors that a model does not explain."""
     events: list[Event] = []
     legs, looked = [], []
     many, time = False, 0.0
@@ -158,7 +158,7 @@ def events_among(sides: Sequence[Side], kind: ReferenceKind) -> Events:
 
 
 def without(run: Run, happened: Events) -> Run:
-    """The run with those of its events marked that are not yet; itself where there are none."""
+    """The run with its new events marked; the same object if there are none."""
     new = [
         (event.seen - EVENT_SPAN, event.seen + EVENT_SPAN)
         for event in happened.events
@@ -169,7 +169,7 @@ def without(run: Run, happened: Events) -> Run:
 
 
 def looked_at(runs: Sequence[MatchedRun]) -> Concatenated:
-    """The same runs with a leg from each pose to the next, as finely as events are looked for."""
+    """The same runs with a leg between successive poses, at the resolution of the search."""
     found = []
     for run in runs:
         time = run.record.measured.time.tolist()
@@ -183,7 +183,7 @@ def looked_at(runs: Sequence[MatchedRun]) -> Concatenated:
 
 
 def _groups(steps: Steps) -> list[list[int]]:
-    """Indices of steps that are one event, in the order of time."""
+    """Groups of step indices that are one event each, in order of time."""
     runs = steps.runs
     groups: list[list[int]] = []
     last = -1
@@ -199,10 +199,10 @@ def _groups(steps: Steps) -> list[list[int]]:
 
 
 def _event(steps: Steps, group: list[int], side: Side) -> Event | None:
-    """What some steps come to, if it is sudden and large."""
+    """The event that a group of steps makes, if it is sudden and large."""
     runs = steps.runs
     spike = all(steps.found[index].shape == "spike" for index in group)
-    # Beside a step a spike says how its time parts between two intervals, and is none of its size.
+    # Beside a step, a spike only says how it is divided between two intervals.
     group = [index for index in group if spike or steps.found[index].shape != "spike"]
     legs = [steps.found[index].leg for index in group]
     first = legs[0]
@@ -210,17 +210,17 @@ def _event(steps: Steps, group: list[int], side: Side) -> Event | None:
     clock = runs.runs[run].counters.time
     at = runs.ends_at[first]
     if not clock[0] + EDGE < at < clock[-1] - EDGE:
-        return None  # as in a fit: a clock that is late shows there what the ticks do not know
+        return None  # as in a fit: a late clock shows motion from outside the ticks' time there
     before, after = np.searchsorted(clock, [at - EDGE, at + EDGE])
     if np.diff(clock[before - 1 : after + 1]).max() > EDGE:
-        return None  # nor does anybody know what the wheels did while their counters were silent
+        return None  # nor is the motion of the wheels known while their counters are silent
     scatter = float(steps.scatter[run])
     sizes, spread = _net(steps, group, scatter, beside=False)
     beside, spread_beside = _net(steps, group, scatter, beside=True)
     stds = np.sqrt(np.diag(spread))
     large = np.abs(sizes) > EVENT_LARGE * steps.noise[first] * np.sqrt(scatter)
     sudden = np.abs(beside) > EVENT_BESIDE * np.sqrt(np.diag(spread_beside))
-    # Of a coordinate that nobody measured there is no noise: a heading that positions tell.
+    # A coordinate that is not measured has no noise: a heading inferred from positions.
     told = sudden & (large | ~steps.told.known[first])
     if not told.any():
         return None
@@ -257,20 +257,20 @@ def _event(steps: Steps, group: list[int], side: Side) -> Event | None:
 
 
 def _beyond_any_push(sizes: Floats, parts: int, interval: float) -> bool:
-    """Whether nothing moves a robot so far in one interval, or two."""
+    """Whether no force moves a robot this far in one interval, or two."""
     return bool(np.hypot(*sizes[:2]) > 0.5 * JOLT * (parts * interval) ** 2)
 
 
 def _fitted(steps: Steps) -> Floats:
-    """All steps fitted together, (q, 3)."""
+    """Least-squares sizes of all steps together, (q, 3)."""
     return np.asarray(np.linalg.lstsq(steps.columns, steps.white, rcond=None)[0].reshape(-1, 3))
 
 
 def _net(steps: Steps, group: list[int], scatter: float, *, beside: bool) -> tuple[Floats, Floats]:
-    """What the steps of a group come to (3,) in the first one's axes, and its covariance.
+    """Total of a group of steps (3,), in the axes of the first step, and its covariance.
 
-    All steps are fitted together, and with them, where asked, what creeps in beside it. A metre and
-    a radian are as much as any may be, so that what nothing is told of has that deviation.
+    All steps are fitted together, if `beside` with a slow drift about the event as well. A prior of
+    1 m and 1 rad keeps undetermined coordinates finite.
     """
     legs = [steps.found[index].leg for index in group]
     first, shape = steps.found[group[0]].leg, steps.found[group[0]].shape

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The noise that most legs have: what happened in a few of them has swollen that of a fit."""
+"""Robust noise estimate: events in a few legs have inflated the noise of a fit."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _ROUNDS = 4
 
 
 def noise_of_most(runs: Concatenated, point: Point) -> Variances:
-    """Variances fitted anew without the legs that deviate far more than most; the model stays."""
+    """Variances fitted again without outlying legs; the model stays."""
     held = point.options.sigmas_known
     bounds = list(zip(runs.legs[:-1].tolist(), runs.legs[1:].tolist(), strict=True))
     for _ in range(_ROUNDS):

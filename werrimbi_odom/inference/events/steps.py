@@ -1,12 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Where the innovations of a model jump: the generalised likelihood ratio of a step of the pose.
+"""Detection of steps in the innovations of a model, by the generalised likelihood ratio.
 
-Willsky and Jones, "A generalized likelihood ratio approach to the detection and estimation of jumps
-in linear systems", IEEE Trans. Autom. Control 21, 1976. Each instant is asked three things: whether
-the robot's pose stepped there and stayed; whether the reference erred in that pose alone; and of a
-reference whose error wanders, whether that error stepped. All instants cost one pass of the filter
-backwards; what the best of them explain is taken off, and the rest is asked again.
+Each instant is tested for three hypotheses: the robot's pose stepped there and stayed; the
+reference erred in that pose alone; or, for a reference with correlated errors, its error stepped.
+All instants together cost one backward pass of the filter. The best steps are subtracted, and the
+search is repeated on the remainder.
+
+Source: Willsky and Jones, "A generalized likelihood ratio approach to the detection and estimation
+of jumps in linear systems", IEEE Trans. Autom. Control 21, 1976.
 """
 
 from __future__ import annotations
@@ -32,47 +34,47 @@ from werrimbi_odom.model.reference_view import View
 Shape = Literal["robot", "spike", "reference"]
 
 STRETCH = 1000
-"""Legs after which the filter may start anew: a step near a stretch's end is hardly seen in it, and
-a leg is one interval of the reference here."""
+"""Legs after which the filter may restart: a step near the end of a block is hardly observable in
+it, and a leg is one interval of the reference here."""
 
 _HEARD = 1e-4
-"""Share of a direction's information below which a step holds nothing of it."""
+"""Share of a direction's information below which a step does not determine it."""
 
 
 class Step(NamedTuple):
     """A step of the pose, along, sideways and in heading, at one leg."""
 
     shape: Shape
-    """"robot": its pose stepped, and stayed; "spike": the reference erred in the pose at the leg's
-    end alone; "reference": a reference's error that wanders stepped."""
+    """"robot": the robot's pose stepped, and stayed; "spike": the reference erred in the pose at
+    the leg's end alone; "reference": the correlated error of the reference stepped."""
     leg: int
 
 
 @dataclass(frozen=True, slots=True)
 class Steps:
-    """All steps that innovations hold, fitted together."""
+    """All steps found in the innovations, fitted together."""
 
     runs: Concatenated
-    """With a leg from each pose that was looked at to the next."""
+    """The runs, with a leg from each examined pose to the next."""
     found: tuple[Step, ...]
     columns: Floats
-    """What unit steps do to the whitened innovations, (3 m, 3 q)."""
+    """Change of the whitened innovations for unit steps, (3 m, 3 q)."""
     white: Floats
-    """Innovations of unit variance, (3 m,)."""
+    """Whitened innovations, (3 m,)."""
     noise: Floats
-    """Standard deviation of what each leg's end was expected at, (m, 3) [m, m, rad]."""
+    """Standard deviation of the predicted end of each leg, (m, 3) [m, m, rad]."""
     scatter: Floats
-    """Factor by which squares are too large in each run, (runs,)."""
+    """Dispersion of the innovations in each run, (runs,)."""
     axes: Floats
-    """From steps of the robot to the filter's pose, in each leg, (m, 3, 3)."""
+    """Map from steps of the robot to the filter's pose, for each leg, (m, 3, 3)."""
     told: Innovations
     p_values: tuple[float, ...]
-    """Of each, all that was looked at counted."""
+    """P-value of each step, corrected for all steps tested (Bonferroni)."""
     many: bool
-    """Whether there are more than were looked for."""
+    """Whether there are more than the search allows."""
 
     def creeping(self, leg: int) -> Floats:
-        """A step that takes all the time about a leg (`EVENT_SLOW`), (3 m, 3)."""
+        """A slow drift about a leg (over `EVENT_SLOW`) in place of a step, (3 m, 3)."""
         runs = self.runs
         own = np.flatnonzero((runs.run_of_leg == runs.run_of_leg[leg]) & ~runs.gap)
         since = np.abs(runs.ends_at[own] - runs.ends_at[leg])
@@ -81,10 +83,10 @@ class Steps:
         return np.asarray(column * self.told.known[leg])
 
     def about(self, legs: Sequence[int]) -> Floats:
-        """Steps in some legs and in those next to them, each of its own size, (3 m, 3 k).
+        """Steps in some legs and their neighbours, each of its own size, (3 m, 3 k).
 
-        In the axes of the first. However the step parts between them, they hold all of it. (A
-        heading that nobody measures parts between none: it would be a way to one side.)
+        In the axes of the first leg. However the error is divided between them, their sum is all of
+        it. (An unmeasured heading is not divided: that would be a sideways motion.)
         """
         runs = self.runs
         first, last = min(legs) - 1, max(legs) + 1
@@ -97,7 +99,7 @@ class Steps:
         return np.concatenate(near, axis=-1)
 
     def spread(self, legs: NDArray[np.intp], axes_of: NDArray[np.intp]) -> Floats:
-        """The same unit steps in several legs, in the axes of other legs, (3 m, 3)."""
+        """Equal unit steps in several legs, in the axes of other legs, (3 m, 3)."""
         states = 3 if self.told.ways is None else self.told.ways.carry.shape[-1]
         change = np.zeros((self.runs.count, states, 3))
         change[legs, :3] = self.axes[axes_of if self.told.ways is not None else legs]
@@ -109,8 +111,14 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
 
     Parameters
     ----------
-    runs
-        With a leg from each pose to the next.
+    runs : Concatenated
+        Runs with a leg from each pose to the next.
+    point : Point
+        The model with its noise.
+
+    Returns
+    -------
+    Steps
     """
     model = point.model
     prediction = predict_all(model, runs)
@@ -127,7 +135,7 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
     shocks = told.shocks(white)
     view = _of_view(view_of(model.robot.effects), headings=runs.headings_alone)
     axes = shocks.enter[:, :3] @ view
-    # The reference errs in what it measures: positions alone have no heading to err in.
+    # The reference errs only in what it measures: positions alone have no heading error.
     measured = axes * told.known[:, :, None]
     of_shape: dict[Shape, Floats] = {"robot": axes, "spike": measured, "reference": measured}
     shapes: tuple[Shape, ...] = ("robot",)
@@ -141,7 +149,7 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
     left = white
     while True:
         gains = {shape: _gain(*_asked(shape, shocks, of_shape[shape])) for shape in shapes}
-        # An error in one pose alone, wherever that can be asked, is what noise makes.
+        # The noise is that of an error in one pose alone, wherever that can be tested.
         local: Shape = "spike" if shocks.both.any() else "robot"
         gain = gains.get(local) or _gain(*_asked(local, shocks, of_shape[local]))
         scatter = _scatter(runs, gain, told)
@@ -158,7 +166,7 @@ def steps_of(runs: Concatenated, point: Point) -> Steps:
         solution = np.linalg.lstsq(columns, white.ravel(), rcond=None)[0]
         left = (white.ravel() - columns @ solution).reshape(white.shape)
         shocks = told.shocks(left)
-    # What wanders shows in the rest alone: a step that is not taken off yet sways all that follows.
+    # The dispersion comes from the remainder: a step not yet subtracted affects all that follows.
     scatter = np.maximum(scatter, _scatter(runs, gains["robot"], told))
     kept = _kept(runs, steps, columns, white.ravel(), scatter, tests)
     columns = columns[:, [3 * step + axis for step in kept for axis in range(3)]]
@@ -187,7 +195,7 @@ def _kept(
     scatter: Floats,
     tests: int,
 ) -> list[int]:
-    """Indices of the steps that chance does not make, each beside all others."""
+    """Indices of the steps that are significant beside all others."""
     kept = []
     covariance = np.linalg.inv(columns.T @ columns + np.eye(columns.shape[1]))
     solution = covariance @ (columns.T @ white)
@@ -203,7 +211,7 @@ def _kept(
 
 
 def _asked(shape: Shape, shocks: Shocks, axes: Floats) -> tuple[Floats, Floats]:
-    """Score and information of one shape's steps in each leg, (m, 3) and (m, 3, 3)."""
+    """Score and information of the steps of one shape in each leg, (m, 3) and (m, 3, 3)."""
     own = slice(3, 6) if shape == "reference" else slice(0, 3)
     score, known = shocks.score[:, own], shocks.known[:, own, own]
     if shape == "spike":
@@ -229,7 +237,7 @@ def _gain(score: Floats, known: Floats) -> tuple[Floats, Floats]:
 
 
 def _scatter(runs: Concatenated, gain: tuple[Floats, Floats], told: Innovations) -> Floats:
-    """By how much squares are too large in each run: by the median, which no few steps move."""
+    """Dispersion of the innovations in each run, by the median, which a few steps do not move."""
     found = np.ones(len(runs.runs))
     looked = told.known.any(axis=-1) & (gain[1] > 0)
     for index in range(found.size):
@@ -243,7 +251,7 @@ def _scatter(runs: Concatenated, gain: tuple[Floats, Floats], told: Innovations)
 def _peaks(
     runs: Concatenated, gains: dict[Shape, tuple[Floats, Floats]], scatter: Floats, tests: int
 ) -> list[tuple[Step, float]]:
-    """Steps better than all about them, each with how often chance makes one as good."""
+    """Local maxima of the significant steps, each with its corrected p-value."""
     own = scatter[runs.run_of_leg]
     names = list(gains)
     every = np.stack([(gain - degrees) / own for gain, degrees in gains.values()])
@@ -265,7 +273,7 @@ def _peaks(
 
 
 def _change(step: Step, axes: Floats, states: int) -> Floats:
-    """What a unit step does to the filter's states, (m, s, 3)."""
+    """Change of the filter's states for a unit step, (m, s, 3)."""
     change = np.zeros((axes.shape[0], states, 3))
     first = 3 if step.shape == "reference" else 0
     change[step.leg, first : first + 3] = axes[step.leg]
@@ -275,7 +283,7 @@ def _change(step: Step, axes: Floats, states: int) -> Floats:
 
 
 def _of_view(view: View, *, headings: bool) -> Floats:
-    """What the reference shows of a step of the robot (along, sideways, heading), (3, 3)."""
+    """Map from a step of the robot (along, sideways, heading) to the reference, (3, 3)."""
     cos, sin = np.cos(view.yaw), np.sin(view.yaw)
     turned = np.array([[cos, sin, 0.0], [-sin, cos, 0.0], [0.0, 0.0, 1.0]])
     arm = np.array([[1.0, 0.0, -view.left], [0.0, 1.0, view.ahead], [0.0, 0.0, 1.0]])

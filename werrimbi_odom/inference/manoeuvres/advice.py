@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A diagnosis with all that is told with it: the next manoeuvre, and what could have been seen."""
+"""A diagnosis with everything reported beside it: next manoeuvre, detection limits, changes."""
 
 from __future__ import annotations
 
@@ -18,21 +18,21 @@ from werrimbi_odom.progress import Show, silent
 
 @dataclass(frozen=True)
 class Told:
-    """A diagnosis and all that is told with it."""
+    """A diagnosis and everything that is reported with it."""
 
     diagnosis: Diagnosis
     manoeuvre: Manoeuvre | None
     sights: Sequence[DetectionLimit]
     leg: float = 1.0
-    """Length of the legs that are judged [m]."""
+    """Length of the judged legs [m]."""
     held_out: bool = True
-    """Whether drives to judge on were given, or put aside by the diagnosis itself."""
+    """Whether held-out drives were given; otherwise the diagnosis held out parts itself."""
     changes: Sequence[Moved] = ()
-    """What differs between the fitted drives."""
+    """Changes between the fitted drives."""
 
 
 def told_of(given: Recordings, show: Show = silent) -> Told:
-    """The diagnosis of one robot, what to do next, and what these drives could have shown.
+    """Diagnose one robot, with the next manoeuvre, the detection limits and the changes.
 
     Raises
     ------
@@ -51,9 +51,9 @@ def told_of(given: Recordings, show: Show = silent) -> Told:
 
 
 def significant(diagnosis: Diagnosis) -> list[Dependence]:
-    """Cells of the evidence map that chance does not make, one for each channel and variable.
+    """Significant cells of the evidence map, one for each channel and variable.
 
-    The best first; where no effect is what it is, first the one that explains most.
+    Most significant first; if no effect explains the errors, first the cell that explains most.
     """
     cells = one_each(beyond_chance(diagnosis.depends_on))
     first = strongest(diagnosis) if diagnosis.verdict == "unknown" else None
@@ -64,7 +64,7 @@ def significant(diagnosis: Diagnosis) -> list[Dependence]:
 
 
 def beyond_chance(cells: Iterable[Dependence]) -> Iterator[Dependence]:
-    """Cells of the evidence map that chance does not make."""
+    """Significant cells of the evidence map."""
     return (cell for cell in cells if cell.p_value < SURE)
 
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What to do where no drive can tell rivals apart, by algebra: what they declare of their twins."""
+"""What to do where rivals are observationally equivalent, by the twins that effects declare."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ from werrimbi_odom.model.effect import Effect, Twin, twin_of
 
 
 def twin_where(one: Effect, other: Effect, positions: bool) -> Twin | None:
-    """What makes two effects one, where the reference measures `positions` or does not."""
+    """The declared equivalence of two effects, if it holds for this kind of reference."""
     twin = twin_of(one, other)
     return None if twin is None or (twin.of_headings and positions) else twin
 
 
 def for_twins(rivals: Sequence[Effect], positions: bool) -> Manoeuvre | None:
-    """What to do; None where drives may tell at least some of them apart, or nobody says what can.
+    """What to do at the robot; None if drives may tell some rivals apart, or nothing is declared.
 
-    Set-up mistakes explain each other in larger sets than pairs: two of them may do what a third
-    does. A hand at the robot tells them all.
+    Set-up mistakes are equivalent in larger sets than pairs: two of them may equal a third. A check
+    by hand tells them all apart.
     """
     pairs = [twin_where(*pair, positions) for pair in combinations(rivals, 2)]
     twins = [twin for twin in pairs if twin is not None]

@@ -1,15 +1,14 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Detection limits: from which size on drives show an effect.
+"""Detection limits: the smallest size of an effect that the drives would have shown.
 
-The limit is that of the information in the drives (Fisher's, calibration and what each run has of
-its own being unknown): the size at which the score test, as sure as the diagnosis asks for and all
-candidates counted, finds the effect in 95 % of cases; its statistic is then non-central
-chi-squared.
+The limit follows from the Fisher information in the drives, with calibration and per-run parameters
+as nuisances. At this size the score test finds the effect in 95 % of cases, at the significance of
+the diagnosis, corrected for all candidates. Its statistic is then non-central chi-squared.
 
-"Nothing is missing" is worth as much as what would have been seen. Where an effect of the size that
-robots show would have stayed hidden, the drive of the library that shows it with this reference is
-named, or it is said that no drive does and a reference that measures more is needed.
+"Nothing is missing" means as much as what would have been detected. If an effect of typical size
+would have stayed hidden, the report names a manoeuvre of the library that shows it with this
+reference, or says that it takes a reference that measures more.
 """
 
 from __future__ import annotations
@@ -48,35 +47,36 @@ from werrimbi_odom.model.robot import Robot
 
 @dataclass(frozen=True, slots=True)
 class DetectionLimit:
-    """From which size on an effect would have been seen."""
+    """Detection limit of an effect."""
 
     effect: str
     parameter: str
-    """The one that shows best, beside its shape."""
+    """The parameter with the lowest limit relative to its typical size; no shape parameter."""
     unit: str
     null: float
     minimum_detectable: float
-    """Distance from null; infinite where it leaves no trace at all."""
+    """Distance from null; infinite where it leaves no trace."""
     typical: float
-    """Distance from null that robots show."""
+    """Typical distance from null on robots."""
     shown_by: str | None = None
-    """A manoeuvre that shows it with this reference; where it is hidden."""
+    """A manoeuvre that shows it with this reference, if it is hidden."""
     needs_more: bool = False
-    """No drive shows it with this reference, but with one of positions and headings it shows."""
+    """Whether no manoeuvre shows it with this reference, but one with positions and headings
+    would."""
 
     @property
     def hidden(self) -> bool:
-        """Whether an effect of usual size would have stayed hidden."""
+        """Whether an effect of typical size would have stayed hidden."""
         return not self.minimum_detectable < HIDDEN_FROM * self.typical
 
 
 def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[DetectionLimit, ...]:
-    """For all effects that are not in the model, in the library's order."""
+    """Detection limits of all effects that are not in the model, in the library's order."""
     final, tried = diagnosis.final, diagnosis.rounds[-1].number
     robot = final.point.model.robot
     held = {applied.name for applied in robot.effects}
     if name_of_base(robot) in held:
-        held.add("track_width")  # its base is told by that name
+        held.add("track_width")  # its base goes by that name
     measured = set.intersection(*(set(run.counters.channels) for run in diagnosis.runs.runs))
     candidates = [
         _typical(effect)
@@ -101,7 +101,7 @@ def detection_limits(diagnosis: Diagnosis, effects: Sequence[Effect]) -> tuple[D
 
 
 def _never(effect: Effect) -> DetectionLimit:
-    """What no drive shows with a reference whose axes begin anew."""
+    """Limit of an effect that is unobservable if the reference's axes differ between drives."""
     name, item = next((name, item) for name, item in effect.parameters.items() if not item.tries)
     limit = DetectionLimit(effect.name, name, item.unit, item.null, math.inf, item.scale)
     return replace(limit, needs_more=True)
@@ -121,18 +121,25 @@ def information_limits(
     tried: int,
     power: float = POWER,
 ) -> dict[str, dict[str, float]]:
-    """Limits of some effects by parameter, where robot and noise are known but for calibration.
+    """Detection limits of some effects by parameter, for a known robot and noise.
+
+    Only calibration and per-run parameters are unknown.
 
     Parameters
     ----------
+    effects : sequence of Effect
+        Effects whose limits are wanted.
     robot : Robot
-        The true one, its wheels' noise included, without the effects.
-    runs
-        Drives with a reference; where it measured, and how the wheels turned, is all that counts.
-    options
-        The reference's noise [m, rad] is to be known.
+        The true robot with its wheel noise, without the effects.
+    runs : sequence of Run
+        Drives with a reference. Only the times and kinds of its measurements and the motion of the
+        wheels count.
+    options : EvaluationOptions
+        With the reference's noise [m, rad], which must be known.
     tried : int
-        Candidates among which the diagnosis chooses (`search.Round.number`).
+        Number of candidates of the diagnosis (`search.Round.number`).
+    power : float
+        Probability of detection at the limit.
 
     Returns
     -------
@@ -168,7 +175,7 @@ def _seen(
 def _best(
     candidate: Candidate, look: Sensitivities, tried: int, held: Sequence[str]
 ) -> DetectionLimit:
-    """The parameter of an effect that shows best."""
+    """The limit of an effect's most sensitive parameter."""
     limits = _limits(candidate, look, tried, POWER, held)
     return min(limits, key=lambda limit: limit.minimum_detectable / limit.typical)
 
@@ -180,11 +187,11 @@ def _limits(
     power: float,
     held: Sequence[str] = (),
 ) -> Iterator[DetectionLimit]:
-    """For each parameter but its shape, beside what calibration may explain."""
+    """Limit of each parameter except shapes, with the calibration as nuisance."""
     effect = candidate.effect
     beside = [name for name in CALIBRATED if name in look.white and name != candidate.name]
     if candidate.name in CALIBRATED:
-        # What the runs do not determine is held, so that it hides nothing (`Fitted.held`).
+        # Directions that the runs do not determine are held, so they hide nothing (`Fitted.held`).
         beside = [name for name in beside if name not in held]
     others = [look.white[name] for name in beside]
     frame = nuisance(np.concatenate([look.own, *others], axis=-1))
@@ -197,7 +204,7 @@ def _limits(
     heard = np.where(heard > DETERMINED**2 * np.maximum(before, SILENT), heard, 0.0)
     wanted = noncentrality(max(int(np.sum(heard > 0.0)), 1), SURE / max(tried, 1), power)
     information = heard.reshape(-1, width).sum(axis=0)
-    if effect.quadrature is not None:  # the phase that shows least
+    if effect.quadrature is not None:  # the least observable phase
         names, information = [effect.quadrature[0]], information.min(keepdims=True)
     else:
         names = [

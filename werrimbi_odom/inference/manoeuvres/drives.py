@@ -1,9 +1,9 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Simple manoeuvres that anybody can drive, as ideal records: made from kinematics alone.
+"""Ideal records of simple manoeuvres, computed from kinematics alone.
 
-They are what a robot without any fault would have recorded, so that it can be worked out beforehand
-what an effect would change in them. No physics engine: that is for tests.
+They are what a robot without faults would record, to predict what an effect would change in them.
+There is no physics engine: that is for tests.
 """
 
 from __future__ import annotations
@@ -36,33 +36,33 @@ REST = 0.6
 """Standstill before and after [s]."""
 
 FINE = 0.005
-"""Steps of the ideal path [s]."""
+"""Time step of the ideal path [s]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pace:
-    """What a robot can do, taken from what it did; speeds at pace 1."""
+    """Speeds that a robot can reach, taken from its recorded drives; at pace 1."""
 
     speed: float
-    """[m/s]"""
+    """In [m/s]."""
     acceleration: float
-    """Of hard starts and stops [m/s^2]."""
+    """At hard starts and stops [m/s^2]."""
     base: float
-    """Between the wheels [m]."""
+    """Distance between the wheels [m]."""
 
     @property
     def size(self) -> float:
-        """Unit of length for a robot of this size [m]: a metre where the wheels are 35 cm apart."""
+        """Unit of length for a robot of this size [m]: 1 m for wheels 35 cm apart."""
         return self.base / 0.35
 
     @property
     def yaw_rate(self) -> float:
-        """Spinning with the wheels at 0.6 of their speed [rad/s]."""
+        """Yaw rate of a spin with the wheels at 0.6 of their speed [rad/s]."""
         return 1.2 * self.speed / self.base
 
 
 def pace_of(runs: Concatenated, robot: Robot) -> Pace:
-    """What the robot did, so what it can do."""
+    """The pace of the recorded drives."""
     travel, drive = runs.raw(robot), runs.drive(robot)
     duration = np.maximum(drive.duration, 1e-6)
     rims = np.concatenate([np.abs(travel.left), np.abs(travel.right)]) / np.tile(duration, 2)
@@ -72,9 +72,9 @@ def pace_of(runs: Concatenated, robot: Robot) -> Pace:
 
 
 def rates_of(runs: Concatenated) -> tuple[float, float]:
-    """Usual time between two messages of the ticks, and between two poses of the reference [s].
+    """Median time between two messages of the ticks, and between two poses of the reference [s].
 
-    A reference that has two or three poses in a drive: infinite.
+    Infinite for a reference with two or three poses in a drive.
     """
     ticks = np.concatenate([np.diff(run.counters.time) for run in runs.runs])
     poses = [
@@ -96,16 +96,22 @@ def ideal_run(
     measures: tuple[bool, bool],
     channels: dict[str, tuple[float, float]] | None = None,
 ) -> Run:
-    """What a manoeuvre would record, the robot being as the model says and without noise.
+    """The record of a manoeuvre by a robot that is exactly as the model, without noise.
 
     Parameters
     ----------
+    ideal : Ideal
+        The manoeuvre.
+    robot : Robot
+        The model.
+    pace : Pace
+        Speeds of the robot.
     ticks, poses : float
         Time between two messages, and between two poses of the reference [s].
     measures : (bool, bool)
         Whether the reference measures positions, and headings.
-    channels
-        Extra channels with the range over which each has varied; here they rise along it.
+    channels : dict
+        Extra channels, each with the range of its recorded values; here they rise along it.
     """
     time, along, turn = _path(ideal, pace)
     yaw = np.concatenate([[0.0], np.cumsum(turn)])
@@ -144,7 +150,7 @@ def ideal_run(
 
 
 def _recorded(wiring: Wiring, left: Floats, right: Floats) -> tuple[Floats, Floats]:
-    """What the counters show where the wiring is wrong and the robot file says so."""
+    """Readings of the counters, with the wiring mistakes that the robot file states."""
     left, right = wiring.left_sign * left, wiring.right_sign * right
     return (right, left) if wiring.swapped else (left, right)
 

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""A manoeuvre of the library as a given robot and a given reference would record it."""
+"""A manoeuvre of the library as a given robot and reference would record it."""
 
 from __future__ import annotations
 
@@ -35,14 +35,18 @@ def measured_in(runs: Concatenated) -> tuple[bool, bool]:
 def imagined(
     ideal: Ideal, runs: Concatenated, point: Point, pace: Pace, *, better: bool = False
 ) -> tuple[Experiment, float]:
-    """What the manoeuvre would record, and its minutes.
+    """Predict the record of a manoeuvre, and its duration in minutes.
 
     Parameters
     ----------
+    ideal : Ideal
+        The manoeuvre.
     runs, point
-        Experiment that were recorded, and the model and noise that suit them.
+        Recorded drives, and the model and noise fitted to them.
+    pace : Pace
+        Speeds of the robot.
     better : bool
-        With a reference that measures positions and headings, as well as motion capture does.
+        With a reference that measures positions and headings as well as motion capture does.
     """
     robot = point.model.robot
     ticks, poses = rates_of(runs)

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Simple manoeuvres that anybody can drive, and `drive_node` does: what they are, and no more."""
+"""Library of simple manoeuvres, which anybody and `drive_node` can drive: definitions only."""
 
 from __future__ import annotations
 
@@ -17,15 +17,15 @@ class Ideal:
     """A manoeuvre of the library."""
 
     name: str
-    """As `werrimbi_odom.simulation` calls it, where it has one."""
+    """As in `werrimbi_odom.simulation`, if it is there."""
     words: str
     """What to drive."""
     where: str
-    """The place in a sentence about what will differ there."""
+    """Phrase for a sentence about the differences to expect."""
     moves: Callable[[float], Sequence[Move]]
-    """For a robot of a size [m]."""
+    """Moves for a robot of a given size [m]."""
     hard: bool = False
-    """Started and stopped as hard as the robot does."""
+    """With starts and stops as hard as the robot's."""
 
 
 def _square(size: float) -> list[Move]:
@@ -52,7 +52,7 @@ def _out_and_back(size: float) -> list[Move]:
 
 
 def _start_stop(size: float) -> list[Move]:
-    # Unequal hops: else the legs, of one length, would all end at the same speed.
+    # Hops of unequal length: otherwise all legs, of one length, would end at the same speed.
     hops = (0.35, 0.5, 0.65, 0.8, 0.45, 0.6)
     return [(way * hop * size, 0.0, 1.0) for way in (1.0, -1.0) for hop in hops] * 2
 
@@ -82,4 +82,4 @@ MANOEUVRES: tuple[Ideal, ...] = (
     Ideal("stand_still", "short lines, with a minute of standing still between them",
           "standing still", _stand_still),
 )  # fmt: skip
-"""Simplest first: of equals the first one is taken."""
+"""Simplest first: of equals the first one is chosen."""

@@ -1,10 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What to drive next, or to remount: the simplest thing that tells apart what these drives cannot.
+"""Proposal of what to drive or remount next: the simplest action that tells the rivals apart.
 
-For rivals the manoeuvres of the library are weighed by what they would show in a minute
-(`manoeuvre_rivals`). For twins no drive can tell, and the mount or a hand has to. For an error that
-no effect explains, a drive that varies what the error depends on, and holds the rest.
+For rivals, the manoeuvres of the library are ranked by their expected evidence per minute
+(`manoeuvre_rivals`). Observational equivalents are beyond any drive, and need a change of the mount
+or a check by hand. For an error that no effect explains, the proposal is a drive that varies what
+the error depends on, and keeps all else constant.
 """
 
 from __future__ import annotations
@@ -44,28 +45,28 @@ __all__ = ["Discrimination", "Manoeuvre", "discriminations", "next_manoeuvre", "
 
 @dataclass(frozen=True, slots=True)
 class Discrimination:
-    """What a manoeuvre of the library would show."""
+    """Expected evidence of a manoeuvre of the library."""
 
     ideal: Ideal
     minutes: float
-    """Duration."""
+    """Duration in minutes."""
     rise: float
-    """Of the cost of the wrong rival: the first against the others, the least sure of these pairs
-    and the lesser way round."""
+    """Expected rise of the wrong rival's cost: the first rival against each other one, the minimum
+    over these pairs and over which of the two is true."""
     every: float
-    """The same of all pairs of rivals: with it a single drive leaves one alone."""
+    """The minimum over all pairs of rivals: with it a single drive leaves only one."""
     against: str
-    """The rival that is the hardest to tell from the first one."""
+    """The rival that is hardest to tell from the first one."""
     apart: Floats
-    """By how much the legs differ between the first one and that, (m, 3)."""
+    """Difference of the legs between the first rival and that one, (m, 3)."""
 
     def minutes_for(self, rise: float) -> float:
-        """How long to drive, if `rise` comes with every turn of the manoeuvre."""
+        """Duration for the required evidence, if each repetition of the manoeuvre adds `rise`."""
         return max(ENOUGH * self.minutes / rise, 1.0) if rise > 0.0 else np.inf
 
 
 def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
-    """The next thing to do; None where the diagnosis leaves nothing open that it could answer."""
+    """The next thing to do; None if the diagnosis leaves nothing open that could be resolved."""
     if diagnosis.verdict == "ambiguous":
         named = [diagnosis.effect_named(name) for name in diagnosis.rivals]
         by_hand = for_twins([effect for effect in named if effect], measured_in(diagnosis.runs)[0])
@@ -79,7 +80,7 @@ def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
 
 
 def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
-    """What each manoeuvre of the library would tell of the rivals, the best first."""
+    """Expected evidence of each manoeuvre of the library about the rivals, the best first."""
     this = _round_of(diagnosis)
     rivals = [_candidate(name, this, diagnosis) for name in diagnosis.rivals]
     first = _as_fitted(rivals[0], this, diagnosis)
@@ -110,7 +111,7 @@ def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
             if twin_where(one.effect, other.effect, positions) is None
         }
         of_first = {pair[1]: rise for pair, rise in rises.items() if pair[0] == rivals[0].name}
-        if not of_first:  # twins by algebra: no drive tells
+        if not of_first:  # observationally equivalent: no drive tells
             continue
         against = min(of_first, key=lambda name: of_first[name])
         rival = next(item for item in rivals if item.name == against)
@@ -124,12 +125,12 @@ def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
 def _gained(
     known: tuple[Sensitivities, Trace], ahead: tuple[Sensitivities, Trace], rival: Candidate
 ) -> float:
-    """What new drives add to the cost of a rival that stands for the target."""
+    """Rise of a rival's cost by new drives, if the target is true."""
     return separation([known, ahead], rival) - separation([known], rival)
 
 
 def _best(rivals: Sequence[str], weighed: Sequence[Discrimination]) -> Manoeuvre | None:
-    """The quickest to leave one rival alone; else to tell the first from all others."""
+    """The quickest manoeuvre that leaves one rival; else that tells the first from all others."""
     best = min(weighed, key=lambda item: item.minutes_for(item.every))
     minutes = best.minutes_for(best.every)
     if minutes > LONGEST_DRIVE:
@@ -158,7 +159,7 @@ def _size(apart: Floats) -> str:
 
 
 def _round_of(diagnosis: Diagnosis) -> Round:
-    """The round in which the rivals stood against each other."""
+    """The round in which the rivals were compared."""
     first = diagnosis.rivals[0]
     for this in diagnosis.rounds:
         if any(fit.names[-1] == first for fit in this.tried):
@@ -167,7 +168,7 @@ def _round_of(diagnosis: Diagnosis) -> Round:
 
 
 def _candidate(name: str, this: Round, diagnosis: Diagnosis) -> Candidate:
-    """A rival at the shape that suits these drives best."""
+    """A rival with the best shape for these drives."""
     for score in (*this.scores, *(one for other in diagnosis.rounds for one in other.scores)):
         if score.candidate.name == name:
             return _with_fitted_shape(score.candidate, this)
@@ -183,7 +184,7 @@ def _with_fitted_shape(candidate: Candidate, this: Round) -> Candidate:
 
 
 def _as_fitted(candidate: Candidate, this: Round, diagnosis: Diagnosis) -> AppliedEffect:
-    """The first rival at its fitted size; what each run has anew as in the first of them."""
+    """The first rival at its fitted size, with the per-run parameters of the first run."""
     for fit in this.tried:
         if fit.names[-1] == candidate.name:
             return next(

@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""How well a drive would tell rivals apart, worked out before it is driven.
+"""Expected evidence of a drive between rivals, before it is driven (experiment design).
 
-Effect A, at the size that was fitted, changes the innovations of the drive. What the rival B cannot
-follow, with everything else that may be fitted, is what would tell them apart: by how much the cost
-of B would exceed that of A. The drives there are already count too: they fix how large B must be.
-All to first order, nothing is fitted.
+Effect A, at its fitted size, changes the innovations of the drive. The part of it that rival B
+cannot follow, with everything else refitted, tells them apart: it is the expected rise of B's cost
+over A's. The recorded drives count as well, as they determine the size of B. All is to first order,
+without any fit.
 """
 
 from __future__ import annotations
@@ -25,27 +25,27 @@ from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 
 _RELUCTANT, _WILLING = 1.0, 0.1
-"""What it costs calibrations beside a rival, and the rival itself, to do all of the target's work
-[standard deviations]: less than the drives tell, where they tell the two apart, and the rival's is
-there lest two coordinates that do the same grow against each other."""
+"""Ridge penalty for calibrations, and for the rival itself, to produce all of the target's change
+[standard deviations]. It is below the information of drives that tell the two apart. The rival's
+keeps two equivalent coordinates from growing against each other."""
 
 
 @dataclass(frozen=True)
 class Experiment:
-    """Some drives, the model to begin from, and how all that may be fitted acts in them."""
+    """Some drives, the model to begin from, and the Jacobians of all that may be fitted."""
 
     runs: Concatenated
     point: Point
 
     def whitened(self, changes: Floats) -> Floats:
-        """Changes of the legs (m, 3, p) as they appear in the innovations, (3 m, p)."""
+        """Changes of the legs (m, 3, p) as changes of the whitened innovations, (3 m, p)."""
         prediction = predict_all(self.point.model, self.runs)
         found = unexpected(self.runs, self.point, prediction)
         marks = found.marks(changes)[..., : changes.shape[-1]]
         return np.asarray(marks.reshape(-1, changes.shape[-1]))
 
     def nuisances(self, numbers: Sequence[FreeParameter]) -> Floats:
-        """Columns of what each run has of its own, and of other numbers; (3 m, q)."""
+        """Columns of per-run and other parameters; (3 m, q)."""
         every = [*numbers, *self.point.model.nuisance_parameters]
         return stacked(self.runs, self.point, every).flat()[1]
 
@@ -64,13 +64,13 @@ class Experiment:
         return np.stack(columns, axis=-1)
 
     def change(self, applied: AppliedEffect) -> Floats:
-        """What an effect of a given size does to the legs, (m, 3, 1)."""
+        """Change of the legs by an effect of a given size, (m, 3, 1)."""
         model = self.point.model
         changed = legs_shown(_holding(model, applied), self.runs) - legs_shown(model, self.runs)
         return changed[..., None]
 
     def each_run(self, marks: Floats) -> Floats:
-        """Columns (3 m, k) given to each run anew, (3 m, k runs)."""
+        """Expand columns (3 m, k) to one copy per run, (3 m, k runs)."""
         run = np.repeat(self.runs.run_of_leg, 3)
         return np.concatenate(
             [marks * (run == index)[:, None] for index in range(len(self.runs.runs))], axis=-1
@@ -83,21 +83,21 @@ def _holding(model: Model, applied: AppliedEffect) -> Model:
 
 @dataclass(frozen=True)
 class Sensitivities:
-    """What some effects would change in some drives."""
+    """Jacobians of some effects in some drives."""
 
     drives: Experiment
     legs: Mapping[str, Floats]
-    """Of each effect, changes of the legs along its coordinates, (m, 3, k)."""
+    """For each effect, changes of the legs along its coordinates, (m, 3, k)."""
     white: Mapping[str, Floats]
-    """The same in the innovations, (3 m, k)."""
+    """The same for the whitened innovations, (3 m, k)."""
     own: Floats
-    """Columns of what may be fitted beside them, (3 m, q)."""
+    """Columns of the nuisance parameters, (3 m, q)."""
 
 
 def sensitivities_of(
     drives: Experiment, candidates: Sequence[Candidate], numbers: Sequence[FreeParameter]
 ) -> Sensitivities:
-    """Try effects on drives; `numbers` are those of effects that the model holds already."""
+    """Compute the Jacobians; `numbers` are parameters of effects that the model already has."""
     legs = {item.name: drives.marks(item) for item in candidates}
     white = {name: drives.whitened(marks) for name, marks in legs.items()}
     return Sensitivities(drives, legs, white, drives.nuisances(numbers))
@@ -105,7 +105,7 @@ def sensitivities_of(
 
 @dataclass(frozen=True)
 class Trace:
-    """An effect at a size: what it changes in the legs (m, 3) and in the innovations (3 m,)."""
+    """Change of legs (m, 3) and innovations (3 m,) by an effect of a given size."""
 
     name: str
     legs: Floats
@@ -113,22 +113,22 @@ class Trace:
 
 
 def trace_at(look: Sensitivities, applied: AppliedEffect) -> Trace:
-    """An effect at its fitted size."""
+    """Trace of an effect at its fitted size."""
     change = look.drives.change(applied)
     return Trace(applied.name, change[..., 0], look.drives.whitened(change)[:, 0])
 
 
 def trace_along(look: Sensitivities, name: str, sizes: Floats) -> Trace:
-    """An effect so far along its coordinates (k,)."""
+    """Trace of an effect at a distance along its coordinates (k,)."""
     return Trace(name, look.legs[name] @ sizes, look.white[name] @ sizes)
 
 
 def best_alias(look: Sensitivities, target: Trace, rival: Candidate) -> Floats:
-    """How far along its coordinates a rival looks most like the target in some drives, (k,).
+    """Size of a rival that looks most like the target in some drives, (k,).
 
-    Where a calibration beside it could do the same within the noise (one circle cannot tell a base
-    that depends on the turning from a base), the rival does it: else it would be imagined with next
-    to nothing of itself, and no drive could tell that from the calibration.
+    Where a calibration could do the same within the noise (on one circle, a base that depends on
+    the turn rate equals a base), the change is attributed to the rival. Otherwise the rival would
+    be assumed at almost zero size, and no drive could tell that from the calibration.
     """
     squeezed, width = _squeezed(look, target, (rival.name, *_beside(target.name, rival)), ())
     columns, wanted = squeezed[:, :width], squeezed[:, width]
@@ -155,7 +155,7 @@ def separation(pairs: Sequence[tuple[Sensitivities, Trace]], rival: Candidate) -
 def difference(
     known: tuple[Sensitivities, Trace], ahead: tuple[Sensitivities, Trace], rival: Candidate
 ) -> Floats:
-    """Legs (m, 3) of drives ahead: the target less what the rival, known so far, would make."""
+    """Legs (m, 3) of new drives: the target less the rival as fitted to the known drives."""
     names = (rival.name, *_beside(known[1].name, rival))
     squeezed, width = _squeezed(known[0], known[1], names, ())
     solution = solved(squeezed[:, :width], squeezed[:, width])
@@ -164,14 +164,14 @@ def difference(
 
 
 def _beside(target: str, rival: Candidate) -> tuple[str, ...]:
-    """What may be calibrated while the rival stands for the target."""
+    """Calibration effects that are fitted while the rival stands for the target."""
     return tuple(name for name in CALIBRATED if name not in (target, rival.name))
 
 
 def _squeezed(
     look: Sensitivities, target: Trace, shared: Sequence[str], anew: Sequence[str]
 ) -> tuple[Floats, int]:
-    """Least squares of these drives in few rows: columns of what is shared, then the target."""
+    """Least squares of these drives, reduced by QR: shared parameters, then the target."""
     own = np.concatenate(
         [look.own, *(look.drives.each_run(look.white[name]) for name in anew)], axis=-1
     )

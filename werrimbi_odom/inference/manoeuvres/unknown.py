@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What to drive where no effect explains the errors: vary what they go with, and hold the rest."""
+"""What to drive if no effect explains the errors: vary what they depend on, keep the rest."""
 
 from __future__ import annotations
 
@@ -22,16 +22,16 @@ from werrimbi_odom.inference.rules import (
 
 @dataclass(frozen=True, slots=True)
 class Manoeuvre:
-    """What to do next, to know more."""
+    """The next thing to do, to know more."""
 
     name: str
-    """As `werrimbi_odom.simulation` calls it, `remount_reference`, `turn_by_hand` or `push`."""
+    """A name in `werrimbi_odom.simulation`, `remount_reference`, `turn_by_hand` or `push`."""
     why: str
     """One plain sentence."""
     do: str
     """What to drive, or to do."""
     minutes: float
-    """How long it should take; 0 where it is no drive."""
+    """Duration in minutes; 0 if it is no drive."""
 
 
 _VARYING = {
@@ -51,11 +51,11 @@ _VARYING = {
     "travel": ("out_and_back", "travel"),
     "path": ("out_and_back", "travel"),
 }
-"""Manoeuvre that varies a variable alone, as far as one can, and the variable in words."""
+"""Manoeuvre that varies a variable by itself as far as possible, and the variable in words."""
 
 
 def for_the_unknown(diagnosis: Diagnosis) -> Manoeuvre | None:
-    """Vary what the error goes with, and hold the rest."""
+    """Vary what the error depends on, and keep all else constant."""
     found = strongest(diagnosis)
     if found is None:
         return None
@@ -93,9 +93,9 @@ def for_the_unknown(diagnosis: Diagnosis) -> Manoeuvre | None:
 
 
 def strongest(diagnosis: Diagnosis) -> Dependence | None:
-    """The dependence that explains most; on a variable rather than a bare amount if it nearly does.
+    """The dependence that explains most; one on a variable is preferred to a bare amount if close.
 
-    What goes with the speed also goes a little with the distance; the other way round it is rare.
+    What depends on the speed also depends slightly on the distance; the reverse is rare.
     """
     sure = [cell for cell in diagnosis.depends_on if cell.p_value < SURE]
     if not sure:
@@ -106,5 +106,5 @@ def strongest(diagnosis: Diagnosis) -> Dependence | None:
 
 
 def _explains(cell: Dependence) -> float:
-    """What a dependence explains beyond what as many useless numbers would."""
+    """Gain of a dependence above that of as many null parameters."""
     return cell.gain - USELESS_NUMBER * cell.degrees
