@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import argparse
 import importlib.util
+import math
 import sys
 import time
 from collections.abc import Callable, Iterator
@@ -29,7 +30,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from benchmark.per_tick import per_tick
 from test.model.drives import ROBOT, Ticks, random_drive, square
 from test.plain_twin import plain_run
-from werrimbi_odom.model import course
+from werrimbi_odom.model import compiled
 from werrimbi_odom.model.odometer import Odometer
 from werrimbi_odom.model.trajectory import trajectory
 
@@ -98,7 +99,7 @@ def race(drives: dict[str, Ticks]) -> Table:
 
 def in_arrays(ticks: Ticks) -> None:
     """A recorded run as it goes where numba is not installed."""
-    with patch.object(course, "machine_for", lambda steps: None):
+    with patch.object(compiled, "WORTH_COMPILING", math.inf):
         trajectory(ROBOT, *ticks)
 
 
@@ -107,7 +108,7 @@ def loading() -> float | None:
     if importlib.util.find_spec("numba") is None:
         return None
     begin = time.process_time()
-    trajectory(ROBOT, *at_random(course.WORTH_COMPILING + 1))
+    trajectory(ROBOT, *at_random(compiled.WORTH_COMPILING + 1))
     return time.process_time() - begin
 
 

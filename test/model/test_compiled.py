@@ -7,10 +7,11 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 from unittest.mock import patch
 
 import numpy as np
@@ -22,21 +23,36 @@ from test.model.drives import ROBOT, random_drive
 from test.model.records import Record, records
 from test.model.test_odometer_and_trajectory import Live, assert_one_odometry, has_a_row
 from werrimbi_odom.effects import find
-from werrimbi_odom.model import course
+from werrimbi_odom.model import course, recorded_counts
 from werrimbi_odom.model.compiled import compiled
 from werrimbi_odom.model.covariance import PathNoise, piece_covariance
 from werrimbi_odom.model.motion import BodyMotion
 from werrimbi_odom.model.odometer import Odometer
-from werrimbi_odom.model.scalar_loop import March, march
 from werrimbi_odom.model.trajectory import Trajectory, trajectory
 
 pytest.importorskip("numba")
 
 
+Way = Callable[[Callable[..., Any]], Callable[..., Any] | None]
+"""What goes along a run in place of a function."""
+
+
+def by_arrays(function: Callable[..., Any]) -> None:
+    """Nothing does."""
+
+
+def as_written(function: Callable[..., Any]) -> Callable[..., Any]:
+    """The function itself, in plain Python."""
+    return function
+
+
 @contextmanager
-def along(machine: March | None) -> Iterator[None]:
-    """Recorded runs go this way, however long they are: by arrays where it is None."""
-    with patch.object(course, "machine_for", lambda steps: machine):
+def along(way: Way) -> Iterator[None]:
+    """Recorded runs go this way, however long they are."""
+    with (
+        patch.object(course, "compiled_for", lambda steps, function: way(function)),
+        patch.object(recorded_counts, "compiled_for", lambda steps, function: way(function)),
+    ):
         yield
 
 
@@ -57,9 +73,9 @@ def test_machine_code_says_what_its_lines_and_the_live_odometer_say_to_the_last_
     if not has_a_row(ticks):
         return
     with patch.object(course, "_BLOCK", together):
-        with along(march):
+        with along(as_written):
             plain = trajectory(robot, *ticks, limits=limits)
-        with along(compiled(march)):
+        with along(compiled):
             machine = trajectory(robot, *ticks, limits=limits)
     assert_same_bits(machine, plain)
     assert_one_odometry(Odometer(robot, limits=limits), ticks, machine)
@@ -74,9 +90,9 @@ def test_machine_code_says_what_arrays_say(record: Record) -> None:
     robot, limits, ticks = record
     if not has_a_row(ticks):
         return
-    with along(None):
+    with along(by_arrays):
         arrays = trajectory(robot, *ticks, limits=limits)
-    with along(compiled(march)):
+    with along(compiled):
         machine = trajectory(robot, *ticks, limits=limits)
     for name in ("time", "row", "tally"):
         assert np.array_equal(getattr(arrays, name), getattr(machine, name)), name
@@ -92,9 +108,9 @@ def test_effects_act_alike_in_machine_code() -> None:
         find("sideways_drift").using(angle=0.01),
     )
     robot, ticks = replace(ROBOT, effects=effects), random_drive(4)
-    with along(march):
+    with along(as_written):
         plain = trajectory(robot, *ticks)
-    with along(compiled(march)):
+    with along(compiled):
         assert_same_bits(trajectory(robot, *ticks), plain)
 
 
@@ -137,11 +153,12 @@ LONG = (
     "    from numba.core import caching\n"
     "    caching.CompileResultCacheImpl._locator_classes = []\n"
     "from test.model.drives import ROBOT, random_drive\n"
-    "from werrimbi_odom.model import course\n"
+    "from werrimbi_odom.model import compiled, scalar_loop\n"
     "from werrimbi_odom.model.trajectory import trajectory\n"
-    "course.WORTH_COMPILING = 1000\n"
+    "compiled.WORTH_COMPILING = 1000\n"
     "path = trajectory(ROBOT, *random_drive(1))\n"
-    "print(course.machine_for(1000) is not None, path.x[-1].hex(), len(path.pieces))\n"
+    "machine = compiled.compiled_for(1000, scalar_loop.march)\n"
+    "print(machine is not None, path.x[-1].hex(), len(path.pieces))\n"
 )
 
 
@@ -163,11 +180,11 @@ def test_machine_code_is_kept_for_the_next_process(tmp_path: Path) -> None:
     kept = tmp_path / "kept"
     first = run_in(tmp_path, NUMBA_CACHE_DIR=str(kept))
     files = sorted(kept.rglob("*.nbc"))
-    assert len(files) == 1
-    written = files[0].stat().st_mtime_ns
+    assert len(files) == 2
+    written = [file.stat().st_mtime_ns for file in files]
     assert run_in(tmp_path, NUMBA_CACHE_DIR=str(kept)) == first
     assert sorted(kept.rglob("*.nbc")) == files
-    assert files[0].stat().st_mtime_ns == written
+    assert [file.stat().st_mtime_ns for file in files] == written
     assert first.startswith("True")
 
 

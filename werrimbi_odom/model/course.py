@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.model.compiled import compiled
+from werrimbi_odom.model.compiled import compiled, compiled_for
 from werrimbi_odom.model.covariance import (
     PathNoise,
     PoseCovariance,
@@ -35,8 +35,6 @@ from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.model.scalar_loop import March, Marching, follow, march, sums_of
 from werrimbi_odom.model.uncertainty import Uncertainty, after_piece
 
-WORTH_COMPILING = 200_000
-"""Steps from which machine code saves more than it takes to load it (0.4 s)."""
 _BLOCK = 8192  # steps that are worked at once: their arrays stay in the cache
 
 Lost = Mapping[int, WheelTravel[float]]
@@ -69,15 +67,10 @@ def course_of(
     lost: Lost,
 ) -> PathInPieces:
     """Go along all steps from a start pose with its errors."""
-    machine = machine_for(steps.travel.left.size) if errors.moments is None else None
-    if machine is not None:
+    machine = compiled_for(steps.travel.left.size, march)
+    if machine is not None and errors.moments is None:
         return _marched(machine, robot, rule, start, errors.covariance, steps, lost)
     return _in_arrays(robot, rule, start, errors, steps, lost)
-
-
-def machine_for(steps: int) -> March | None:
-    """Machine code to go along so many steps, where it pays."""
-    return compiled(march) if steps >= WORTH_COMPILING else None
 
 
 def _marched(
@@ -93,7 +86,8 @@ def _marched(
     poses, covariances = np.empty((3, count + 1)), np.empty((6, count + 1))
     poses[:, 0], covariances[:, 0] = start, covariance
     starts, sums = np.empty(count, dtype=np.intp), np.empty((5, count))
-    block = np.empty((5, _BLOCK))
+    travel = WheelTravel(*map(np.ascontiguousarray, steps.travel))
+    motion = BodyMotion(*map(np.ascontiguousarray, steps.motion))
     reset: dict[int, PoseCovariance[float]] = {}
     at, pieces = Marching(start, covariance, start, covariance, 0.0, NOTHING), 0
     wheels = robot.wheel_noise
@@ -106,15 +100,13 @@ def _marched(
             reset[pieces] = known
             earlier = at.earlier + at.stretch.travelled
             at = Marching(at.pose, known, at.pose, known, earlier, NOTHING)
-        own = block[:, : some.stop - some.start]
-        for row, part in zip(own, (*steps.travel, *steps.motion), strict=True):
-            row[:] = part[some]
         after = slice(some.start + 1, some.stop + 1)
         at, pieces = machine(
             rule,
             wheels,
             at,
-            own,
+            WheelTravel(travel.left[some], travel.right[some]),
+            BodyMotion(motion.along[some], motion.sideways[some], motion.turn[some]),
             poses[:, after],
             covariances[:, after],
             starts,

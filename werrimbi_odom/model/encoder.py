@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.model.counter_wraps import wrapped
-from werrimbi_odom.model.pace import USUAL_AT_FIRST, Pace
+from werrimbi_odom.model.pace import PAUSE, USUAL_AT_FIRST, Pace, lasted_over
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
 
@@ -99,6 +99,35 @@ class Reading(NamedTuple):
     right: float
 
 
+class CountRule(NamedTuple):
+    """What is made of counts, and when they are doubted, for one robot and its limits."""
+
+    left_tick: float
+    """Travel for a count [m]."""
+    right_tick: float
+    left_per_turn: float
+    """Counts for a turn of the wheel."""
+    right_per_turn: float
+    half: float
+    """Half the range of counters that wrap, in counts; infinite where they do not."""
+    top_speed: float
+    """Fastest that a wheel can go [m/s], and turn [turns/s]; 0 when unknown."""
+    top_rate: float
+
+    @staticmethod
+    def of(robot: Robot, limits: EncoderLimits) -> CountRule:
+        """The rule for a robot's encoders."""
+        return CountRule(
+            robot.left_tick,
+            robot.right_tick,
+            robot.left_ticks_per_revolution,
+            robot.right_ticks_per_revolution,
+            2.0 ** (robot.encoder_bits - 1) if robot.encoder_bits else math.inf,
+            limits.max_wheel_speed,
+            limits.max_wheel_speed / (2.0 * math.pi * robot.wheel_radius),
+        )
+
+
 @dataclass(slots=True)
 class Encoder:
     """Counters to wheel travel, a message at a time, in constant time and memory.
@@ -119,6 +148,15 @@ class Encoder:
     """Seconds over which the latest step was judged: its own, but where it came much too soon."""
     _left_speed: float = 0.0
     _right_speed: float = 0.0
+    rule: CountRule = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.rule = CountRule.of(self.robot, self.limits)
+
+    def retune(self, robot: Robot, limits: EncoderLimits) -> None:
+        """Go on with other values."""
+        self.robot, self.limits = robot, limits
+        self.__post_init__()
 
     def step(self, time: float, left: float, right: float) -> WheelStep | None:
         """Travel since the last accepted message.
@@ -168,40 +206,34 @@ class Encoder:
 
     def _advance(self, reading: Reading, duration: float) -> WheelStep | None:
         assert self._last is not None
-        last, robot = self._last, self.robot
+        last, rule, bits, pace = self._last, self.rule, self.robot.encoder_bits, self.pace
         left, right = reading.left - last.left, reading.right - last.right
-        if robot.encoder_bits:
-            left, right = self._unwrapped(left, right)
-        lasted = self.pace.lasted(duration)
-        if self._was_reset(reading, left, right, lasted):
+        if bits:
+            left, right = wrapped(left, bits), wrapped(right, bits)
+        lasted = lasted_over(duration, pace.usual)
+        if was_reset(rule, reading, last, left, right, lasted, pace.usual, pace.fastest):
             self.tally.resets += 1
             return self._anchor_anew(reading, duration)
-        limit = self.limits.max_wheel_speed
-        if limit > 0.0 and self._exceeds(limit, last, reading, duration):
+        if rule.top_speed > 0.0 and self._exceeds(last, reading, duration):
             if self._doubted is None or self._exceeds(
-                limit, self._doubted, reading, reading.time - self._doubted.time
+                self._doubted, reading, reading.time - self._doubted.time
             ):
                 self.tally.implausible += 1
                 self._doubted = reading
                 return None
             self.tally.jumps += 1
             return self._anchor_anew(reading, duration)
-        if robot.encoder_bits:
+        if bits:
             self.tally.wraps += int(left != reading.left - last.left)
             self.tally.wraps += int(right != reading.right - last.right)
         if duration > self.limits.gap_duration:
             self.tally.gaps += 1
         self._accept(reading, duration)
-        left_turns = abs(left) / robot.left_ticks_per_revolution
-        right_turns = abs(right) / robot.right_ticks_per_revolution
-        self.pace.see((left_turns if left_turns > right_turns else right_turns) / lasted)
+        pace.see(faster_wheel(rule, left, right) / lasted)
         self.lasted = lasted
-        left_travel, right_travel = left * robot.left_tick, right * robot.right_tick
+        left_travel, right_travel = left * rule.left_tick, right * rule.right_tick
         self._left_speed, self._right_speed = left_travel / lasted, right_travel / lasted
         return WheelStep(reading.time, duration, left_travel, right_travel)
-
-    def _unwrapped(self, left: float, right: float) -> tuple[float, float]:
-        return wrapped(left, self.robot.encoder_bits), wrapped(right, self.robot.encoder_bits)
 
     def _anchor_anew(self, reading: Reading, duration: float) -> WheelStep:
         lost_left, lost_right = self._left_speed * duration, self._right_speed * duration
@@ -237,29 +269,58 @@ class Encoder:
         self.tally.gaps += int(np.count_nonzero(durations > self.limits.gap_duration))
         self._last, self._doubted = last, None
 
-    def _exceeds(self, limit: float, start: Reading, end: Reading, duration: float) -> bool:
-        robot = self.robot
-        left = wrapped(end.left - start.left, robot.encoder_bits) * robot.left_tick
-        right = wrapped(end.right - start.right, robot.encoder_bits) * robot.right_tick
-        return max(abs(left), abs(right)) > limit * abs(duration)
+    def _exceeds(self, start: Reading, end: Reading, duration: float) -> bool:
+        bits = self.robot.encoder_bits
+        left = wrapped(end.left - start.left, bits) * self.rule.left_tick
+        right = wrapped(end.right - start.right, bits) * self.rule.right_tick
+        return exceeds(self.rule, left, right, duration)
 
-    def _was_reset(self, reading: Reading, left: float, right: float, lasted: float) -> bool:
-        assert self._last is not None
-        last, robot = self._last, self.robot
-        per_left, per_right = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
-        rate = reach_rate(robot, self.limits, self.pace.fastest)
-        reach = lasted * rate
-        new_left, new_right = reading.left / per_left, reading.right / per_right
-        if abs(new_left) > reach < abs(new_right):
-            return False
-        step_left, step_right = left / per_left, right / per_right
-        if new_left == new_right == 0.0:
-            far = max(abs(step_left), abs(step_right))
-            if far > self.pace.usual * rate:
-                return True
-        return fell_to_zero(new_left, last.left / per_left, step_left, reach) or fell_to_zero(
-            new_right, last.right / per_right, step_right, reach
-        )
+
+def exceeds(rule: CountRule, left: float, right: float, duration: float) -> bool:
+    """Whether a wheel would have gone faster than it can, with these travels [m]."""
+    return max(abs(left), abs(right)) > rule.top_speed * abs(duration)
+
+
+def faster_wheel(rule: CountRule, left: float, right: float) -> float:
+    """Turns of the wheel that turned more, for differences of counts."""
+    left_turns, right_turns = abs(left) / rule.left_per_turn, abs(right) / rule.right_per_turn
+    return left_turns if left_turns > right_turns else right_turns
+
+
+def was_reset(
+    rule: CountRule,
+    now: Reading,
+    last: Reading,
+    left: float,
+    right: float,
+    lasted: float,
+    usual: float,
+    fastest: float,
+) -> bool:
+    """Whether a counter has been reset between two readings; see `Encoder`.
+
+    Parameters
+    ----------
+    left, right : float
+        What they differ by, unwrapped.
+    lasted : float
+        Seconds over which to judge that.
+    usual, fastest : float
+        The usual interval [s], and the fastest that a wheel has turned of late [turns/s].
+    """
+    rate = reach_rate(rule, fastest)
+    reach = lasted * rate
+    new_left, new_right = now.left / rule.left_per_turn, now.right / rule.right_per_turn
+    if abs(new_left) > reach < abs(new_right):
+        return False
+    step_left, step_right = left / rule.left_per_turn, right / rule.right_per_turn
+    if new_left == 0.0 and new_right == 0.0:
+        far = max(abs(step_left), abs(step_right))
+        if far > usual * rate:
+            return True
+    return fell_to_zero(new_left, last.left / rule.left_per_turn, step_left, reach) or fell_to_zero(
+        new_right, last.right / rule.right_per_turn, step_right, reach
+    )
 
 
 def fell_to_zero(new: float, old: float, step: float, reach: float) -> bool:
@@ -267,8 +328,41 @@ def fell_to_zero(new: float, old: float, step: float, reach: float) -> bool:
     return abs(new) <= reach and abs(old) > reach and abs(step) > reach
 
 
-def reach_rate(robot: Robot, limits: EncoderLimits, fastest: float) -> float:
+def reach_rate(rule: CountRule, fastest: float) -> float:
     """Fastest that a wheel is believed to turn [turns/s]."""
-    if limits.max_wheel_speed > 0.0:
-        return limits.max_wheel_speed / (2.0 * math.pi * robot.wheel_radius)
+    if rule.top_speed > 0.0:
+        return rule.top_rate
     return max(LEARNED_FLOOR, LEARNED_MARGIN * fastest)
+
+
+class Undoubted(NamedTuple):
+    """What a reading says that leaves no doubt."""
+
+    left: float
+    """Travel since the reading before [m]."""
+    right: float
+    rate: float
+    """Speed of the faster wheel [turns/s]."""
+    lasted: float
+    """Seconds over which that is."""
+
+
+def undoubted(
+    rule: CountRule, now: Reading, last: Reading, usual: float, fastest: float
+) -> tuple[bool, Undoubted]:
+    """Whether `Encoder` would take a reading without further ado; and what that comes to.
+
+    Of numbers that are not finite every comparison is false, so they never pass.
+    """
+    duration = now.time - last.time
+    left, right = float(now.left - last.left), float(now.right - last.right)
+    lasted = lasted_over(duration, usual)
+    rate = faster_wheel(rule, left, right) / lasted
+    step = Undoubted(left * rule.left_tick, right * rule.right_tick, rate, lasted)
+    if not (RESOLUTION < duration <= PAUSE and rate < math.inf):
+        return False, step
+    if not (-rule.half <= left < rule.half and -rule.half <= right < rule.half):
+        return False, step
+    if rule.top_speed > 0.0 and exceeds(rule, step.left, step.right, duration):
+        return False, step
+    return not was_reset(rule, now, last, left, right, lasted, usual, fastest), step

@@ -239,7 +239,7 @@ class Odometer:
             travelled = self._piece.travelled_after
             self._piece = OpenPiece(self._now, self._pose, errors, travelled)
         self.robot, self._rule = robot, rule
-        self._encoder.robot, self._encoder.limits = robot, limits or EncoderLimits()
+        self._encoder.retune(robot, limits or EncoderLimits())
         self._driving.retune(robot, *self._counts)
         return finished
 

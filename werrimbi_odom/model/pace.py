@@ -27,6 +27,25 @@ CLOSE = 0.4
 """A message comes too soon when it comes after less than this share of the usual interval."""
 
 
+def lasted_over(duration: float, usual: float) -> float:
+    """Seconds over which to judge what happened in an interval."""
+    return duration if duration >= CLOSE * usual else usual
+
+
+def seen(rate: float, fastest: float, newer: float, room: int) -> tuple[float, float, int]:
+    """The fastest speeds of late, in all and of the newer messages, after one more [turns/s].
+
+    `room` is how many messages may come before only the newer ones are remembered.
+    """
+    if rate > newer:
+        newer = rate
+        if rate > fastest:
+            fastest = rate
+    if room == 1:
+        return newer, 0.0, REMEMBERED
+    return fastest, newer, room - 1
+
+
 @dataclass(slots=True)
 class Pace:
     """Intervals and speeds of late, a message at a time, in constant time and memory."""
@@ -45,10 +64,6 @@ class Pace:
         self._stamps.clear()
         self._stamps.extend((time - self.usual, time))
 
-    def lasted(self, duration: float) -> float:
-        """Seconds over which to judge what happened in an interval."""
-        return duration if duration >= CLOSE * self.usual else self.usual
-
     def hear(self, time: float, duration: float) -> None:
         """Take the stamp of a message and the seconds since the last one."""
         stamps = self._stamps
@@ -61,30 +76,35 @@ class Pace:
 
     def see(self, rate: float) -> None:
         """Take the speed of the faster wheel [turns/s]."""
-        if rate > self._newer:
-            self._newer = rate
-            if rate > self.fastest:
-                self.fastest = rate
-        self._room -= 1
-        if not self._room:
-            self.fastest, self._newer, self._room = self._newer, 0.0, REMEMBERED
+        self.fastest, self._newer, self._room = seen(rate, self.fastest, self._newer, self._room)
+
+    def stamps(self) -> Floats:
+        """Those that are remembered, the oldest first [s]."""
+        return np.fromiter(self._stamps, dtype=np.float64, count=len(self._stamps))
+
+    def speeds(self) -> tuple[float, float, int]:
+        """What `seen` goes on with."""
+        return self.fastest, self._newer, self._room
+
+    def have_seen(
+        self, time: Floats, usual: float, fastest: float, newer: float, room: int
+    ) -> None:
+        """Go on behind n messages that were taken elsewhere, with their stamps, shape (n,)."""
+        self._stamps.extend(time[-REMEMBERED - 1 :].tolist())
+        self.usual, self.fastest, self._newer, self._room = usual, fastest, newer, room
 
     def usual_at(self, time: Floats) -> Floats:
         """The usual interval [s] now and after each of n messages without a pause; (n + 1,)."""
-        before = np.fromiter(self._stamps, dtype=np.float64, count=len(self._stamps))
-        stamps = np.concatenate([before, time])
+        stamps = np.concatenate([self.stamps(), time])
         last = np.arange(stamps.size - time.size, stamps.size)
         first = np.maximum(last - REMEMBERED, 0)
         return np.concatenate([[self.usual], (time - stamps[first]) / (last - first)])
 
     def have_heard(self, time: Floats, usual: float, rates: Floats) -> None:
         """Take n messages at once: stamps and speeds, shape (n,); and what is usual after them."""
-        self._stamps.extend(time[-REMEMBERED - 1 :].tolist())
-        self.usual = float(usual)
-        while rates.size >= self._room:
-            some, rates = rates[: self._room], rates[self._room :]
-            self.fastest = max(self._newer, float(some.max()))
-            self._newer, self._room = 0.0, REMEMBERED
-        self._newer = max(self._newer, float(rates.max(initial=0.0)))
-        self.fastest = max(self.fastest, self._newer)
-        self._room -= rates.size
+        fastest, newer, room = self.speeds()
+        while rates.size >= room:
+            some, rates = rates[:room], rates[room:]
+            fastest, newer, room = max(newer, float(some.max())), 0.0, REMEMBERED
+        newer = max(newer, float(rates.max(initial=0.0)))
+        self.have_seen(time, float(usual), max(fastest, newer), newer, room - rates.size)

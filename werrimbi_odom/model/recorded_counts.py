@@ -5,12 +5,14 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from werrimbi_odom.model.compiled import compiled_for
 from werrimbi_odom.model.counter_wraps import differences
 from werrimbi_odom.model.encoder import (
     RESOLUTION,
@@ -19,13 +21,13 @@ from werrimbi_odom.model.encoder import (
     EncoderLimits,
     EncoderTally,
     Reading,
-    WheelStep,
     reach_rate,
 )
 from werrimbi_odom.model.motion import WheelTravel
 from werrimbi_odom.model.pace import CLOSE, PAUSE
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.scalar_loop import Heard, read_on
 
 _BLOCK = 8192  # rows of a record taken together: their arrays stay in the cache
 _STRETCH = 256  # rows taken one by one where one was in doubt
@@ -78,18 +80,20 @@ def wheel_steps(
     """
     encoder = Encoder(robot, limits or EncoderLimits())
     record = _Record(np.asarray(time, dtype=np.float64), _as_counts(left), _as_counts(right))
-    parts: list[_Part] = []
+    machine = None if record.is_huge else compiled_for(record.rows, read_on)
+    found = _Found.of(record.rows)
     row = 0
     while row < record.rows:
-        part, row = _judged_steps(encoder, record, row)
-        parts.append(part)
+        row = _judged_steps(encoder, record, found, row)
         quiet = row < record.rows
         while quiet:
-            part = _quiet_steps(encoder, record, row)
-            parts.append(part)
-            row += part.row.size
-            quiet = part.row.size == _BLOCK
-    return WheelSteps(record.first_row(), *_joined(parts), encoder.tally)
+            before = row
+            if machine is None:
+                row = _quiet_steps(encoder, record, found, row)
+                quiet = row - before == _BLOCK
+            else:
+                row, quiet = _read_on(machine, encoder, record, found, row), False
+    return found.steps(record, encoder.tally)
 
 
 class _Record(NamedTuple):
@@ -101,6 +105,11 @@ class _Record(NamedTuple):
     def rows(self) -> int:
         return self.time.size
 
+    @property
+    def is_huge(self) -> bool:
+        """Whether differences of integer counts could leave their 64 bits."""
+        return _is_huge(self.left) or _is_huge(self.right)
+
     def reading(self, row: int) -> Reading:
         """One row in Python's numbers, whose integers are exact at any size."""
         return Reading(self.time[row].item(), self.left[row].item(), self.right[row].item())
@@ -111,41 +120,45 @@ class _Record(NamedTuple):
         return next((row for row in rows if all(map(math.isfinite, self.reading(row)))), -1)
 
 
-class _Part(NamedTuple):
-    """Some steps of a record: the arrays of `WheelSteps`."""
+class _Found(NamedTuple):
+    """The steps that were found, at the rows of the record at which they end."""
 
-    row: NDArray[np.intp]
-    time: Floats
-    duration: Floats
-    left: Floats
-    right: Floats
-    left_lost: Floats
-    right_lost: Floats
+    taken: NDArray[np.bool_]
+    columns: Floats
+    """Duration, and travel of the wheels, shape (3, rows)."""
+    lost: dict[int, tuple[float, float]]
+    """Variances of travel that no counter saw [m²], by the row."""
+
+    @classmethod
+    def of(cls, rows: int) -> _Found:
+        """None yet."""
+        return cls(np.zeros(rows, dtype=np.bool_), np.empty((3, rows)), {})
+
+    def steps(self, record: _Record, tally: EncoderTally) -> WheelSteps:
+        """All of them; where no row in between was refused, without a copy."""
+        rows = np.flatnonzero(self.taken)
+        whole = rows.size > 0 and rows.size == rows[-1] - rows[0] + 1
+        at = slice(int(rows[0]), int(rows[-1]) + 1) if whole else rows
+        left_lost, right_lost = np.zeros((2, rows.size))
+        for row, (left, right) in self.lost.items():
+            place = np.searchsorted(rows, row)
+            left_lost[place], right_lost[place] = left, right
+        duration, left, right = (column[at] for column in self.columns)
+        return WheelSteps(
+            record.first_row(),
+            rows,
+            record.time[at],
+            duration,
+            left,
+            right,
+            left_lost,
+            right_lost,
+            tally,
+        )
 
 
-def _joined(parts: list[_Part]) -> _Part:
-    none = np.empty(0)
-    rows = np.concatenate([np.empty(0, dtype=np.intp), *(part.row for part in parts)])
-    columns = zip(*((none,) * 4, *(part[1:5] for part in parts)), strict=True)
-    lost = _no_loss(rows.size)  # memory that nobody writes to is none, and few parts lose anything
-    begin = 0
-    for part in parts:
-        for whole, some in zip(lost, part[5:], strict=True):
-            if some.any():
-                whole[begin : begin + some.size] = some
-        begin += part.row.size
-    time, duration, left, right = (np.concatenate(column) for column in columns)
-    return _Part(rows, time, duration, left, right, *lost)
-
-
-def _no_loss(count: int) -> tuple[Floats, Floats]:
-    return np.zeros(count), np.zeros(count)
-
-
-def _judged_steps(encoder: Encoder, record: _Record, row: int) -> tuple[_Part, int]:
-    """A stretch from `row` on, one by one; and the row after it, which follows an accepted one."""
-    rows: list[int] = []
-    steps: list[WheelStep] = []
+def _judged_steps(encoder: Encoder, record: _Record, found: _Found, row: int) -> int:
+    """A stretch from `row` on, one by one; the row after it, which follows an accepted one."""
     least = row + _STRETCH
     accepted = False
     while row < record.rows and not (accepted and row >= least):
@@ -153,15 +166,43 @@ def _judged_steps(encoder: Encoder, record: _Record, row: int) -> tuple[_Part, i
         step = encoder.step(*record.reading(row))
         accepted = encoder.tally.accepted > before
         if step is not None:
-            rows.append(row)
-            steps.append(step)
+            found.taken[row] = True
+            found.columns[:, row] = step.duration, step.left, step.right
+            if step.left_lost > 0.0 or step.right_lost > 0.0:
+                found.lost[row] = step.left_lost, step.right_lost
         row += 1
-    columns = np.array(steps, dtype=np.float64).reshape(-1, len(WheelStep._fields)).T
-    return _Part(np.array(rows, dtype=np.intp), *columns), row
+    return row
 
 
-def _quiet_steps(encoder: Encoder, record: _Record, row: int) -> _Part:
-    """Steps to the rows from `row` on that leave no doubt, a block at the most.
+def _read_on(
+    machine: Callable[..., tuple[int, Heard, float]],
+    encoder: Encoder,
+    record: _Record,
+    found: _Found,
+    row: int,
+) -> int:
+    """The same as `_quiet_steps` by machine code of `read_on`, and however many they are."""
+    pace = encoder.pace
+    heard = Heard(pace.usual, *pace.speeds())
+    end, heard, lasted = machine(
+        encoder.rule, *record, row, pace.stamps(), heard, encoder.lasted, found.columns
+    )
+    if end > row:
+        pace.have_seen(record.time[row:end], *heard)
+        _take(encoder, record, found, slice(row, end), lasted)
+    return end
+
+
+def _take(encoder: Encoder, record: _Record, found: _Found, rows: slice, lasted: float) -> None:
+    """Let the encoder stand as if it had taken some rows itself; their columns are written."""
+    found.taken[rows] = True
+    durations, left, right = found.columns[:, rows]
+    last = record.reading(rows.stop - 1)
+    encoder.have_taken(durations, float(left[-1]), float(right[-1]), lasted, last)
+
+
+def _quiet_steps(encoder: Encoder, record: _Record, found: _Found, row: int) -> int:
+    """Take the rows from `row` on that leave no doubt, a block at the most; the row after them.
 
     The row before must be the last one that `encoder` accepted; afterwards it stands as if it had
     taken these steps itself.
@@ -170,7 +211,7 @@ def _quiet_steps(encoder: Encoder, record: _Record, row: int) -> _Part:
     rows = slice(row - 1, row + _BLOCK)
     time, left, right = record.time[rows], record.left[rows], record.right[rows]
     if _is_huge(left) or _is_huge(right):
-        return _joined([])
+        return row
     per_left, per_right = robot.left_ticks_per_revolution, robot.right_ticks_per_revolution
     limit = limits.max_wheel_speed
     with np.errstate(all="ignore"):  # numbers that are not finite are in doubt, and so not used
@@ -186,32 +227,22 @@ def _quiet_steps(encoder: Encoder, record: _Record, row: int) -> _Part:
         doubt |= (left[1:] == 0) & (right[1:] == 0) & (rate > 0.0)
         # Beyond the least, and not beyond the most, that a wheel may be believed to reach.
         fastest = max(encoder.pace.fastest, float(rate.max(initial=0.0, where=~doubt)))
-        least, most = (lasted * reach_rate(robot, limits, each) for each in (0.0, fastest))
+        least, most = (lasted * reach_rate(encoder.rule, each) for each in (0.0, fastest))
         for now, steps in ((left / per_left, left_turns), (right / per_right, right_turns)):
             doubt |= (np.abs(now[1:]) <= most) & (np.abs(steps) > least)
         if limit > 0.0:
             doubt |= np.maximum(np.abs(left_travel), np.abs(right_travel)) > limit * duration
     count = int(doubt.argmax()) if doubt.any() else doubt.size
-    part = _Part(
-        np.arange(row, row + count),
-        time[1 : count + 1],
-        duration[:count],
-        left_travel[:count],
-        right_travel[:count],
-        *_no_loss(count),
-    )
-    if count:
-        encoder.tally.wraps += int(np.count_nonzero(left_wraps[:count]))
-        encoder.tally.wraps += int(np.count_nonzero(right_wraps[:count]))
-        encoder.pace.have_heard(part.time, usual[count], rate[:count])
-        encoder.have_taken(
-            part.duration,
-            float(part.left[-1]),
-            float(part.right[-1]),
-            float(lasted[count - 1]),
-            record.reading(row + count - 1),
-        )
-    return part
+    if not count:
+        return row
+    encoder.tally.wraps += int(np.count_nonzero(left_wraps[:count]))
+    encoder.tally.wraps += int(np.count_nonzero(right_wraps[:count]))
+    encoder.pace.have_heard(time[1 : count + 1], usual[count], rate[:count])
+    some = slice(row, row + count)
+    for column, part in zip(found.columns, (duration, left_travel, right_travel), strict=True):
+        column[some] = part[:count]
+    _take(encoder, record, found, some, float(lasted[count - 1]))
+    return row + count
 
 
 def _is_huge(counts: Counts) -> bool:

@@ -20,7 +20,9 @@ from werrimbi_odom.model.covariance import (
     after_stretch,
     path_noise_of,
 )
+from werrimbi_odom.model.encoder import CountRule, Counts, Reading, undoubted
 from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
+from werrimbi_odom.model.pace import REMEMBERED, seen
 from werrimbi_odom.model.pieces_online import NOTHING, PieceRule, PieceSums, extended
 from werrimbi_odom.model.pose import Floats, Pose
 from werrimbi_odom.model.robot import WheelNoise
@@ -41,11 +43,74 @@ class Marching(NamedTuple):
     stretch: PieceSums
 
 
+class Heard(NamedTuple):
+    """How often messages come and how fast wheels turn of late, as in `Pace`."""
+
+    usual: float
+    """The usual interval [s]."""
+    fastest: float
+    """The fastest turning of a wheel [turns/s]; and that of the newer messages."""
+    newer: float
+    room: int
+    """Messages before only the newer are remembered."""
+
+
+def read_on(
+    rule: CountRule,
+    time: Floats,
+    left: Counts,
+    right: Counts,
+    row: int,
+    stamps: Floats,
+    heard: Heard,
+    lasted: float,
+    steps: Floats,
+) -> tuple[int, Heard, float]:
+    """Rows of a record from `row` on that leave no doubt, as an `Encoder` takes them.
+
+    Parameters
+    ----------
+    time, left, right : ndarray, shape (rows,)
+    row : int
+        The row before is the last that was accepted.
+    stamps : ndarray, shape (k,)
+        Stamps that are remembered, the last accepted one among them.
+    heard, lasted : Heard and float
+        Up to there, and over how many seconds the last step was judged.
+    steps : ndarray, shape (3, rows)
+        Written, for each of these rows: duration and travel of the wheels.
+
+    Returns
+    -------
+    int, Heard, float
+        The first row in doubt, or how many there are; and what was heard up to there.
+    """
+    usual, fastest, newer, room = heard
+    at = row
+    while at < time.size:
+        now = Reading(time[at], left[at], right[at])
+        last = Reading(time[at - 1], left[at - 1], right[at - 1])
+        plain, step = undoubted(rule, now, last, usual, fastest)
+        if not plain:
+            break
+        steps[0, at] = now.time - last.time
+        steps[1, at], steps[2, at] = step.left, step.right
+        known = stamps.size + at - row + 1
+        first = max(known - REMEMBERED - 1, 0)
+        oldest = stamps[first] if first < stamps.size else time[row + first - stamps.size]
+        usual = (now.time - oldest) / (known - first - 1)
+        fastest, newer, room = seen(step.rate, fastest, newer, room)
+        lasted = step.lasted
+        at += 1
+    return at, Heard(usual, fastest, newer, room), lasted
+
+
 def march(
     rule: PieceRule,
     wheels: WheelNoise,
     at: Marching,
-    steps: Floats,
+    travels: WheelTravel[Floats],
+    motions: BodyMotion[Floats],
     poses: Floats,
     covariances: Floats,
     starts: NDArray[np.intp],
@@ -57,13 +122,14 @@ def march(
 
     Parameters
     ----------
-    steps : ndarray, shape (5, n)
-        Travel of the wheels, and motion along, sideways and in turn.
+    travels, motions : arrays of shape (n,)
+        The steps.
     poses, covariances : ndarray, shape (3, n) and (6, n)
         Written: x, y, yaw and the covariance after each step.
     starts, sums : ndarray, shape (m,) and (5, m)
         Written from `pieces` on: the first step of each piece that these steps begin, counted from
-        the run's beginning; and the sums of `steps` over each piece that they end.
+        the run's beginning; and the sums over each piece that they end: travel of the wheels, and
+        motion along, sideways and in turn.
     pieces, done : int
         How many pieces have been begun, and how many steps gone.
 
@@ -73,9 +139,9 @@ def march(
         Where that leads, and how many pieces have been begun then.
     """
     pose, covariance, start, covariance_start, earlier, stretch = at
-    for step in range(steps.shape[1]):
-        travel = WheelTravel(steps[0, step], steps[1, step])
-        motion = BodyMotion(steps[2, step], steps[3, step], steps[4, step])
+    for step in range(motions.turn.size):
+        travel = WheelTravel(travels.left[step], travels.right[step])
+        motion = BodyMotion(motions.along[step], motions.sideways[step], motions.turn[step])
         dx, dy = displacement(motion, pose.yaw)
         after = Pose(pose.x + dx, pose.y + dy, pose.yaw + motion.turn)
         goes_on, longer = extended(rule, start, earlier, stretch, travel, motion, after)
