@@ -45,6 +45,10 @@ OWN_SCALE = frozenset({"reference_scale", "track_width", "wheel_radius_scale"})
 ON_THE_FLOOR = frozenset({"floor_slope", "anisotropic_floor"})
 """By scans nobody is asked for these, and an unknown says so: axes begin anew in each drive."""
 
+NOT_IN_SCANS = frozenset({"reference_heading_delay", "reference_gyro_drift"})
+"""A scan tells place and heading of one instant, and no gyro has a part in it: bags that hide these
+hide nothing in their scans."""
+
 DELAYS = frozenset({"reference_delay", "reference_heading_delay"})
 """Of headings alone they are one."""
 
@@ -266,7 +270,9 @@ def how(hidden: Sequence[str], name: str, said: Line) -> str:
     return "ambiguous" if any(each & right for each in one_of) else "missed"
 
 
-def could_be_seen(hidden: str, strength: float, said: Line) -> bool:
+def could_be_seen(hidden: str, strength: float, name: str, said: Line) -> bool:
     """Whether the diagnosis itself says that an effect of this size would have been seen."""
+    if name == "scans" and hidden in NOT_IN_SCANS:
+        return False
     seen_from = said["seen_from"].get(hidden)
     return seen_from is not None and abs(strength - hideable(hidden).null) >= seen_from

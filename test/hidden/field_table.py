@@ -17,7 +17,7 @@ WORDS = (
     "Sets made by `werrimbi simulate --like field`: wheels at 20 Hz with stamps that jitter, a "
     "gyro with a scale of its own, a localiser that wanders and jumps, the robot held and carried "
     "in each drive. {by} *Small*: not told, and the diagnosis itself says that one of this size "
-    "would not have been seen."
+    "would not have been seen, or the reference holds none of it."
 )
 BY_EACH = "The same bags are judged by five references."
 BY_SCANS = "Other such sets, judged by their scans, and by nothing else."
@@ -101,14 +101,14 @@ def _effects(results: Mapping[str, Line], title: str) -> Table:
 def _counted(own: list[tuple[str, Line, str, Line, str]], effect: str, name: str) -> list[str]:
     """Verdicts by one reference, in words."""
 
-    def word(line: Line, said: Line, worth: str) -> str:
+    def word(line: Line, seen: str, said: Line, worth: str) -> str:
         if not effect and worth == "named":
             return "none"
-        if worth == "missed" and not could_be_seen(effect, line["strength"], said):
+        if worth == "missed" and not could_be_seen(effect, line["strength"], seen, said):
             return "small"
         return "WRONG" if worth == "wrong" else worth
 
-    counts = Counter(word(line, said, worth) for _, line, seen, said, worth in own if seen == name)
+    counts = Counter(word(*each[1:]) for each in own if each[2] == name)
     order: Callable[[str], int] = (["named", "none", "ambiguous", "small", "missed", "WRONG"]).index
     return [f"{counts[each]} {each}" for each in sorted(counts, key=order)]
 

@@ -343,15 +343,26 @@ def test_of_ordinary_recordings_each_rule_counts_what_it_speaks_of() -> None:
 
 
 def test_where_a_lidar_is_all_that_there_is_the_table_has_its_column_alone() -> None:
-    """What nobody can be asked for by scans is missed and no wrong name, if it is unknown."""
+    """What scans hold nothing of is missed and no wrong name; the floor's also if it is unknown."""
+    given = {"floor_slope": "unknown", "track_width": "unknown", "reference_heading_delay": "none"}
     lines = {
-        name: {"hidden": [name], "strength": 0.01, "said": {"scans": given | {"seen_from": {}}}}
-        for name, given in (("floor_slope", said("unknown")), ("track_width", said("unknown")))
+        name: {
+            "hidden": [name],
+            "strength": 0.01,
+            "said": {
+                "scans": said(verdict, seen_from=dict.fromkeys({*given} - {"floor_slope"}, 0.001))
+            },
+        }
+        for name, verdict in given.items()
     }
     rules, effects, wrongs = field_table.tables_by_scans(lines)
     assert effects.columns == ("hidden", "a lidar's scans")
-    assert effects.rows == (("track_width", "1 WRONG"), ("floor_slope", "1 small"))
-    assert [(row[0], row[1]) for row in rules.rows] == [("no wrong name", "1 of 2")]
+    assert effects.rows == (
+        ("track_width", "1 WRONG"),
+        ("floor_slope", "1 small"),
+        ("reference_heading_delay", "1 small"),
+    )
+    assert [(row[0], row[1]) for row in rules.rows] == [("no wrong name", "2 of 3")]
     assert [row[0] for row in wrongs.rows] == ["`track_width`"]
 
 

@@ -13,7 +13,7 @@ from test.scans.drives import ahead, hops, in_circles, matched, of_sweeps, rms, 
 from werrimbi_odom.scans.path import ScanMatcher
 from werrimbi_odom.scans.sweep import sweep_of
 from werrimbi_odom.simulation import rooms
-from werrimbi_odom.simulation.engine import TruePath
+from werrimbi_odom.simulation.engine import PERIOD, Pose, TruePath
 from werrimbi_odom.simulation.lidar import Lidar, Room
 
 
@@ -139,3 +139,28 @@ def test_scans_of_varying_beams_and_stamps_that_go_back() -> None:
     found = matcher.path()
     assert found.time.size > 0.95 * found.scans
     assert (np.diff(found.time) > 0.0).all()
+
+
+@pytest.mark.evidence
+def test_where_it_spins_the_lidars_arc_tells_how_far_behind_it_sits() -> None:
+    """A radian on the spot, as a TurtleBot3 turned; its lidar's turns begin anywhere (4 mrad)."""
+    t = np.arange(0.0, 9.0, PERIOD)
+    yaw, still = -0.215 * np.clip(t - 3.0, 0.0, 5.0), np.zeros(t.size)
+    lidar = Lidar(mount=Pose(-0.032, 0.0, 0.0))
+    levers = []
+    for seed in range(5):
+        rng = np.random.default_rng(seed)
+        x, y, heading = rng.uniform([-1.5, -1.0, -3.0], [1.5, 1.0, 3.0])
+        path = TruePath(t, x + still, y + still, heading + yaw, still, still)
+        matcher = ScanMatcher()
+        for sweep in seen(path, rooms.living_room(), lidar, seed)[1]:
+            turn = np.exp(-4e-3j * rng.standard_normal()) * (sweep.points @ [1.0, 1.0j])
+            matcher.take(replace(sweep, points=np.column_stack([turn.real, turn.imag])))
+        found = matcher.path()
+        spins = (found.time > 3.2) & (found.time < 7.8)
+        time, (x, y, yaws) = found.time[spins], found.poses[spins].T
+        smooth = np.polyval(np.polyfit(time - 5.5, np.unwrap(yaws), 3), time - 5.5)
+        arc = np.column_stack([np.ones(time.size), np.exp(1j * smooth)])
+        levers.append(np.linalg.lstsq(arc, x + 1j * y, rcond=None)[0][1])
+    assert np.mean(levers) == pytest.approx(-0.032, abs=1.5e-3)
+    assert np.abs(np.array(levers) + 0.032).max() < 4e-3

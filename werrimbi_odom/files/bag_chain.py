@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.bag import Message, stamp_of
 from werrimbi_odom.files.frames import MOVED, Chain, Edge, frame, is_static
-from werrimbi_odom.files.run import Reference, ReferenceKind
+from werrimbi_odom.files.run import Collected, Reference, ReferenceKind
 from werrimbi_odom.model.pose import Floats
 
 if TYPE_CHECKING:
@@ -61,7 +61,7 @@ class ChainCollector:
                 where, turn = each.transform.translation, each.transform.rotation
                 found.extend((time, where.x, where.y, where.z, turn.x, turn.y, turn.z, turn.w))
 
-    def reference(self) -> tuple[Reference, str]:
+    def reference(self) -> Collected:
         """The reference, and in words the frames it is about.
 
         Raises
@@ -100,7 +100,7 @@ class ChainCollector:
             # that of the one before.
             kind = "local_map"
         x, y = where[:, 0].copy(), where[:, 1].copy()
-        return Reference(time, x, y, yaw, kind=kind), told
+        return Collected(Reference(time, x, y, yaw, kind=kind), told)
 
     def _moved(self, edge: Edge) -> _Moved:
         from scipy.spatial.transform import Rotation

@@ -13,7 +13,7 @@ from werrimbi_odom.files.bag import Message, stamp_of
 from werrimbi_odom.files.bag_contents import Measured
 from werrimbi_odom.files.frames import Chain
 from werrimbi_odom.files.mounting import Mount, MountingCollector
-from werrimbi_odom.files.run import Reference
+from werrimbi_odom.files.run import Collected, Reference
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.beam_order import AnyOrder, Order
 from werrimbi_odom.scans.limits import LONGEST_SWEEP
@@ -49,10 +49,6 @@ class LidarCollector:
         self._matcher = AnyOrder()
         self._echoes, self._reach = 0, (0.0, np.inf)
         self.topics = (source.name, *(self._mounting.topics if self._mounting else ()))
-        self.taken_out: tuple[tuple[float, float], ...] = ()
-        """Between two pieces of the path, from and to [s]; known when the reference is."""
-        self.damage: tuple[str, ...] = ()
-        """That it is in pieces, in words for the user; known when the reference is."""
 
     def take(self, message: Message) -> None:
         """Take a message of one of the topics."""
@@ -73,8 +69,8 @@ class LidarCollector:
         self._echoes, self._reach = self._echoes + len(sweep.points), limits
         self._matcher.take(sweep)
 
-    def reference(self) -> tuple[Reference, str]:
-        """The reference, and in words what it is.
+    def reference(self) -> Collected:
+        """The reference, in words what it is, and where it is cut.
 
         Raises
         ------
@@ -87,9 +83,7 @@ class LidarCollector:
             raise InputError(f"{self._place}: {words}")
         mount = self._mounting.mount(self._place) if self._mounting else Mount(0.0, 0.0, 0.0, False)
         poses, sigma_xy, sigma_yaw = _of_base(found, mount)
-        self.taken_out = tuple(found.cuts)
-        if found.cuts:
-            self.damage = (f"the path by {self._name} is in pieces: {_unmatched(found)}",)
+        damage = f"the path by {self._name} is in pieces: {_unmatched(found)}"
         told = f"{self._mounted(mount)}; {_in_words(found, sigma_xy, sigma_yaw)}"
         if self._matcher.order != "stated":
             told += (
@@ -103,7 +97,7 @@ class LidarCollector:
         reference = Reference(
             found.time, x, y, yaw, sigma_xy, sigma_yaw, kind="absolute", own_axes=True
         )
-        return reference, told
+        return Collected(reference, told, (damage,) if found.cuts else (), tuple(found.cuts))
 
     def _mounted(self, mount: Mount) -> str:
         if self._mounting is None:

@@ -18,7 +18,7 @@ from werrimbi_odom.files.bag_contents import FIX, IMU, SCAN, Measured
 from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.gyro import yaw_rate
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Reference, ReferenceKind
+from werrimbi_odom.files.run import Collected, Reference, ReferenceKind
 from werrimbi_odom.model.pose import Floats
 
 NAN = math.nan
@@ -65,7 +65,7 @@ class ReferenceCollector:
         for row in self._rows(message):
             self._found.setdefault(row.frames, array("d")).extend(row.values)
 
-    def reference(self) -> tuple[Reference, str]:
+    def reference(self) -> Collected:
         """The reference, and in words the frames it is about.
 
         Raises
@@ -92,7 +92,7 @@ class ReferenceCollector:
             kind = "local_map"  # AMCL, SLAM: what they err by wanders
         if self._source.kind == FIX:
             kind = "local_map"  # air and echoes: what satellites err by lasts for a minute
-        return Reference(time, x, y, yaw, *sigmas, kind=kind), told
+        return Collected(Reference(time, x, y, yaw, *sigmas, kind=kind), told)
 
     def _frames(self) -> tuple[str, str]:
         wished = self._child

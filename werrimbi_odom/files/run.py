@@ -166,6 +166,18 @@ class Run:
     which no law explains. Legs go through it, and nothing is told of their errors."""
 
 
+class Collected(NamedTuple):
+    """A reference from the messages of one topic."""
+
+    reference: Reference
+    told: str
+    """In words what it is about."""
+    damage: tuple[str, ...] = ()
+    """See `Run.damage`."""
+    taken_out: tuple[tuple[float, float], ...] = ()
+    """See `Run.taken_out`."""
+
+
 def counts_of(values: Floats) -> Counts:
     """Counts as int64 where all of them are whole numbers that a float64 tells apart."""
     exact = np.abs(values) < EXACT

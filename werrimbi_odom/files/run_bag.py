@@ -169,11 +169,10 @@ def _put_together(
     cuts: tuple[tuple[float, float], ...] = ()
     damage: tuple[str, ...] = ()
     for (named, _), collector in zip(chosen, collectors, strict=True):
-        reference, frames = collector.reference()
-        references.append(reference)
-        if isinstance(collector, LidarCollector):
-            cuts, damage = collector.taken_out, collector.damage
-        notes.append(f"reference from {collector.topics[0]} ({named.kind}), {frames}")
+        found = collector.reference()
+        references.append(found.reference)
+        cuts, damage = (*cuts, *found.taken_out), (*damage, *found.damage)
+        notes.append(f"reference from {collector.topics[0]} ({named.kind}), {found.told}")
         if not named.independent:
             topics = source.name.split(",")
             others = [each for each in held.independent if each.name not in topics]
