@@ -32,6 +32,8 @@ class Manoeuvre:
     """What to drive, or to do."""
     minutes: float
     """How long it should take; 0 where it is no drive."""
+    chance: float | None = None
+    """Share of cases in which so long a drive tells rivals apart."""
 
 
 _VARYING = {
