@@ -20,7 +20,7 @@ import rclpy
 from geometry_msgs.msg import PoseStamped
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
-from matplotlib.patches import Ellipse, FancyArrow
+from matplotlib.patches import Ellipse, FancyArrow, Patch
 from matplotlib.ticker import MultipleLocator
 from nav_msgs.msg import Odometry
 from rclpy.qos import DurabilityPolicy, QoSProfile
@@ -37,7 +37,9 @@ LINES, ELLIPSES = 2, 3
 """What lies above what: all of it is on the floor."""
 KINDS = {"MarkerArray": MarkerArray, "Marker": Marker, "Odometry": Odometry, "Pose": PoseStamped}
 """Displays that listen to a topic; the grid does not, and /tf is left out."""
-ROBOT = {"hide": "track_width=1.05", "publish_clock": True}
+PACE = 0.5
+"""Simulated seconds in a second, so that a busy machine keeps up."""
+ROBOT = {"hide": "track_width=1.05", "publish_clock": True, "real_time_factor": PACE}
 DRIVE: dict[str, object] = {
     "manoeuvre": "umbmark_ccw",
     "length": 2.0,
@@ -71,26 +73,28 @@ class Shown:
                 self.markers[marker.ns, marker.id] = marker
 
     def draw(self, axes: Axes) -> None:
-        """As RViz draws it from above."""
-        wanted = self.display.get("Namespaces", {})
+        """As RViz draws it from above, each kind of thing with a label."""
+        name, wanted = self.display["Name"], self.display.get("Namespaces", {})
         for (namespace, _), marker in self.markers.items():
             if wanted.get(namespace, not wanted):
-                _marker(axes, marker)
+                # What is still open has the colour of its kind.
+                of_kind = "" if namespace == "open" else f"Driven: a {namespace}"
+                _marker(axes, marker, of_kind if wanted else name)
         if self.kind == "Odometry":
             _position(axes, self.last.pose.covariance, self.last.pose.pose, self.display)
-            _arrow(axes, self.last.pose.pose, self.display["Shape"])
+            _arrow(axes, self.last.pose.pose, self.display["Shape"], name)
         elif self.kind == "Pose":
-            _arrow(axes, self.last.pose, self.display)
+            _arrow(axes, self.last.pose, self.display, name)
 
 
-def _marker(axes: Axes, marker: Any) -> None:
+def _marker(axes: Axes, marker: Any, label: str) -> None:
     of = marker.color
     colour, place = (of.r, of.g, of.b), marker.pose.position
     if marker.type == Marker.LINE_STRIP:
         x, y = [point.x for point in marker.points], [point.y for point in marker.points]
         pixels = axes.transData.transform([(0.0, 0.0), (marker.scale.x, 0.0)])
         points = (pixels[1, 0] - pixels[0, 0]) * 72.0 / axes.figure.get_dpi()
-        axes.plot(x, y, color=colour, alpha=of.a, linewidth=points, zorder=LINES)
+        axes.plot(x, y, color=colour, alpha=of.a, linewidth=points, zorder=LINES, label=label)
     elif marker.type == Marker.CYLINDER:
         angle = math.degrees(_yaw(marker.pose))
         size = marker.scale.x, marker.scale.y
@@ -110,7 +114,7 @@ def _position(axes: Axes, covariance: Any, pose: Any, display: Any) -> None:
     axes.add_patch(shape).set_zorder(ELLIPSES)
 
 
-def _arrow(axes: Axes, pose: Any, shape: Any) -> None:
+def _arrow(axes: Axes, pose: Any, shape: Any, label: str) -> None:
     length, yaw = shape["Shaft Length"] + shape["Head Length"], _yaw(pose)
     arrow = FancyArrow(
         pose.position.x,
@@ -122,6 +126,7 @@ def _arrow(axes: Axes, pose: Any, shape: Any) -> None:
         head_length=shape["Head Length"],
         length_includes_head=True,
         color=_colour(shape["Color"]),
+        label=label,
     )
     axes.add_patch(arrow).set_zorder(LINES)
 
@@ -162,27 +167,47 @@ def driven() -> list[Shown]:
         stage.start("drive_node", DRIVE)
         stage.until(lambda: stage.ask("drive_node/check").success, "robot that could start")
         stage.ask("drive_node/start")
-        stage.until(ended, "end of the drive", 240.0)
+        stage.until(ended, "end of the drive", 240.0 / PACE)
         print(stage.told("drive_node: drive"))
         viewer.destroy_node()
     return shown
 
 
+def ended_at(shown: Sequence[Shown]) -> tuple[float, float, float]:
+    """Middle and half a side of a square with both, where the robot is and where it says to be."""
+    poses = [each.last.pose for each in shown if each.kind in ("Odometry", "Pose")]
+    places = [getattr(pose, "pose", pose).position for pose in poses]
+    x, y = (np.array([getattr(place, axis) for place in places]) for axis in "xy")
+    return float(x.mean()), float(y.mean()), 0.5 + 0.5 * float(max(np.ptp(x), np.ptp(y)))
+
+
 def draw(shown: Sequence[Shown], path: Path) -> None:
     """A PNG, from above: all of it, and where the drive ended."""
-    figure = Figure(figsize=(13.0, 6.5), dpi=100, facecolor=GROUND)
-    for left, (x, y, half) in zip((0.04, 0.53), ((1.0, 1.0, 1.5), (0.0, 0.1, 0.25)), strict=True):
-        axes = figure.add_axes((left, 0.06, 0.45, 0.9), facecolor=GROUND)
-        axes.set_xlim(x - half, x + half)
-        axes.set_ylim(y - half, y + half)
-        step = 1.0 if half > 1.0 else 0.1
+    figure = Figure(figsize=(13.0, 7.0), dpi=100, facecolor=GROUND)
+    labelled: dict[str, Any] = {}
+    for left, title, (x, y, half) in (
+        (0.05, "The whole drive", (1.0, 1.0, 1.5)),
+        (0.54, "Where it ended", ended_at(shown)),
+    ):
+        axes = figure.add_axes((left, 0.16, 0.44, 0.78), facecolor=GROUND)
+        axes.set(xlim=(x - half, x + half), ylim=(y - half, y + half), aspect="equal")
+        axes.set(title=title, xlabel="x [m]", ylabel="y [m]")
+        step = 1.0 if half > 1.0 else 0.2
         axes.xaxis.set_major_locator(MultipleLocator(step))
         axes.yaxis.set_major_locator(MultipleLocator(step))
         axes.grid(color="#c8c8c8")  # RViz's own is of 1 m
         axes.set_axisbelow(True)
         for each in reversed(shown):
             each.draw(axes)
+        labelled |= dict(zip(*reversed(axes.get_legend_handles_labels()), strict=True))
+    of_same_width = [Patch(color=_drawn(handle), label=label) for label, handle in labelled.items()]
+    figure.legend(handles=of_same_width, loc="lower center", ncols=3, frameon=False)
     figure.savefig(path)
+
+
+def _drawn(handle: Any) -> Any:
+    """The colour of a line or a patch."""
+    return handle.get_facecolor() if isinstance(handle, Patch) else handle.get_color()
 
 
 def main() -> None:

@@ -79,8 +79,13 @@ class Closed:
 
     @property
     def open_at_first(self) -> bool:
-        """Whether there was something for the robot to do."""
-        return bool(self.driven)
+        """Whether plain driving told what it is."""
+        return self.verdicts[0] == "ambiguous"
+
+    @property
+    def no_drive(self) -> bool:
+        """Left open in the end for want of a drive that tells in reasonable time."""
+        return self.verdicts[-1] == "ambiguous" and not self.twins and len(self.driven) < MOST
 
     @property
     def right(self) -> bool:
@@ -162,15 +167,20 @@ def table(found: Sequence[Closed]) -> str:
     for each in found:
         if each.open_at_first:
             rows[each.effect].append(each)
-    lines = ["| hidden | left open | named then, and right | driven |", "| --- | --- | --- | --- |"]
+    lines = [
+        "| hidden | left open | named then, right | beside its twin | no drive tells | driven |",
+        "| --- | --- | --- | --- | --- | --- |",
+    ]
     for effect, those in sorted(rows.items()):
-        right = sum(each.right or each.twins for each in those)
         names = sorted({name for each in those for name in each.driven})
-        lines.append(f"| `{effect}` | {len(those)} | {right} | {', '.join(names)} |")
-    everything = [each for those in rows.values() for each in those]
-    right = sum(each.right or each.twins for each in everything)
-    lines.append(f"| all | {len(everything)} | {right} | |")
+        lines.append(f"| `{effect}` | {_counts(those)} | {', '.join(names)} |")
+    lines.append(f"| all | {_counts([each for those in rows.values() for each in those])} | |")
     return "\n".join(lines)
+
+
+def _counts(those: Sequence[Closed]) -> str:
+    ends = ([each.right, each.twins, each.no_drive] for each in those)
+    return " | ".join(map(str, (len(those), *map(sum, zip(*ends, strict=True)))))
 
 
 def main() -> None:

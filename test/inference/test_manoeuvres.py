@@ -22,7 +22,7 @@ from werrimbi_odom.inference.fitting.prediction import legs_shown
 from werrimbi_odom.inference.legs.cutting import match
 from werrimbi_odom.inference.linear import nuisance
 from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, Pace, ideal_run
-from werrimbi_odom.inference.manoeuvres.proposal import next_manoeuvre
+from werrimbi_odom.inference.manoeuvres.proposal import Discrimination, next_manoeuvre, quickest
 from werrimbi_odom.inference.manoeuvres.rivals import (
     Experiment,
     best_alias,
@@ -198,3 +198,19 @@ def test_a_lever_arm_and_a_delay_at_one_speed_are_ambiguous_and_the_manoeuvre_re
     then = diagnosed([*runs, *more])
     assert (then.verdict, then.effect) == ("named", truth)
     assert next_manoeuvre(then) is None
+
+
+def weighed(name: str, minutes: float, rise: float) -> Discrimination:
+    return Discrimination(BY_NAME[name], minutes, rise, rise, "other", np.zeros((3, 3)))
+
+
+def test_what_takes_longer_than_one_may_ask_for_is_begun_if_it_tells_as_likely_as_not() -> None:
+    sure = quickest(("first", "other"), [weighed("spins", 1.5, 3.0)])
+    assert sure is not None
+    assert (sure.name, sure.minutes) == ("spins", 15.0)
+    assert sure.chance == pytest.approx(0.966, abs=0.001)  # 30 are promised, and 10 needed
+    begun = quickest(("first", "other"), [weighed("spins", 1.5, 0.7), weighed("arcs", 5.0, 1.2)])
+    assert begun is not None
+    assert (begun.name, begun.minutes) == ("spins", 30.0)
+    assert begun.chance == pytest.approx(0.70, abs=0.01)  # of 14 +- 7.5
+    assert quickest(("first", "other"), [weighed("spins", 1.5, 0.4)]) is None

@@ -15,6 +15,7 @@ from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
+from scipy.special import ndtr
 
 from werrimbi_odom.effects import find
 from werrimbi_odom.inference.calibration_sizes import sizes_of
@@ -36,7 +37,14 @@ from werrimbi_odom.inference.manoeuvres.rivals import (
     trace_at,
 )
 from werrimbi_odom.inference.manoeuvres.unknown import Manoeuvre, for_the_unknown, strongest
-from werrimbi_odom.inference.rules import APART_HEADING, APART_POSITION, ENOUGH, LONGEST_DRIVE
+from werrimbi_odom.inference.rules import (
+    APART_HEADING,
+    APART_POSITION,
+    AS_LIKELY_AS_NOT,
+    ENOUGH,
+    LONGEST_DRIVE,
+    RIVAL,
+)
 from werrimbi_odom.model.effect import AppliedEffect
 from werrimbi_odom.model.pose import Floats
 
@@ -64,6 +72,11 @@ class Discrimination:
         """Duration for the required evidence, if each repetition of the manoeuvre adds `rise`."""
         return max(ENOUGH * self.minutes / rise, 1.0) if rise > 0.0 else np.inf
 
+    def chance_in(self, minutes: float) -> float:
+        """Share of cases in which driving for so long tells the first from each of the others."""
+        rise = self.rise * minutes / self.minutes
+        return float(ndtr((rise - RIVAL) / (2.0 * np.sqrt(rise)))) if rise > 0.0 else 0.0
+
 
 def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
     """The next thing to do; None if the diagnosis leaves nothing open that could be resolved."""
@@ -73,7 +86,7 @@ def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
         if by_hand is not None:
             return by_hand
         weighed = discriminations(diagnosis)
-        return _best(diagnosis.rivals, weighed) if weighed else None
+        return quickest(diagnosis.rivals, weighed) if weighed else None
     if diagnosis.verdict == "unknown":
         return for_the_unknown(diagnosis)
     return None
@@ -129,20 +142,26 @@ def _gained(
     return separation([known, ahead], rival) - separation([known], rival)
 
 
-def _best(rivals: Sequence[str], weighed: Sequence[Discrimination]) -> Manoeuvre | None:
-    """The quickest manoeuvre that leaves one rival; else that tells the first from all others."""
+def quickest(rivals: Sequence[str], weighed: Sequence[Discrimination]) -> Manoeuvre | None:
+    """The quickest manoeuvre that leaves one rival; else that tells the first from all others.
+
+    If none is sure to within the longest drive, that long a drive, if it tells at least as often as
+    not.
+    """
     best = min(weighed, key=lambda item: item.minutes_for(item.every))
     minutes = best.minutes_for(best.every)
     if minutes > LONGEST_DRIVE:
         best = weighed[0]
-        minutes = best.minutes_for(best.rise)
-    if minutes > LONGEST_DRIVE:
+        minutes = min(best.minutes_for(best.rise), LONGEST_DRIVE)
+    chance = best.chance_in(minutes)
+    if chance < AS_LIKELY_AS_NOT:
         return None
     why = (
         f"{rivals[0]} and {best.against} look alike on these drives, but {best.ideal.where} "
         f"they differ by {_size(best.apart)}"
     )
-    return Manoeuvre(best.ideal.name, why, f"drive {best.ideal.words}", float(np.ceil(minutes)))
+    do = f"drive {best.ideal.words}"
+    return Manoeuvre(best.ideal.name, why, do, float(np.ceil(minutes)), chance)
 
 
 def _size(apart: Floats) -> str:

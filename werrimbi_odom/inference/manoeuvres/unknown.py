@@ -32,6 +32,8 @@ class Manoeuvre:
     """What to drive, or to do."""
     minutes: float
     """Duration in minutes; 0 if it is no drive."""
+    chance: float | None = None
+    """Share of cases in which so long a drive tells the rivals apart."""
 
 
 _VARYING = {

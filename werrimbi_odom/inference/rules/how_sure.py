@@ -42,8 +42,12 @@ RIVAL = 10.0
 strong" from there on (Kass and Raftery, J. Am. Stat. Assoc. 90, 1995)."""
 
 ENOUGH = 3.0 * RIVAL
-"""Difference of costs that a proposed drive must promise. Where r is promised, the drive shows r
+"""Difference of costs that a proposed drive is to promise. Where r is promised, the drive shows r
 with a standard deviation of 2 sqrt(r): of 30 it shows `RIVAL` or more in 97 % of cases."""
+
+AS_LIKELY_AS_NOT = 0.5
+"""Share of cases in which a drive that cannot promise so much within `LONGEST_DRIVE` must tell
+rivals apart to be proposed all the same: what it shows counts, and can be driven on."""
 
 CALIBRATION_WORTH = 2.0
 """Penalties that one number of the calibration must be worth to be called a finding, and not only

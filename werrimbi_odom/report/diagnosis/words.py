@@ -5,7 +5,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
@@ -16,6 +16,8 @@ from werrimbi_odom.inference.diagnosis.estimated_values import (
 )
 from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
 from werrimbi_odom.inference.manoeuvres.advice import Told, significant
+from werrimbi_odom.inference.manoeuvres.unknown import Manoeuvre
+from werrimbi_odom.inference.rules import POWER
 from werrimbi_odom.model.effect import always_twins
 from werrimbi_odom.report.changes import changes_words
 from werrimbi_odom.report.diagnosis.dependence import dependence_words
@@ -200,13 +202,7 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
     move = told.manoeuvre
     if move is not None:
         lines.append(f"Why: {move.why}.")
-        time = ""
-        if move.minutes:
-            time = (
-                f" About {move.minutes:.0f} min of it are enough. Then give that drive to "
-                f"`{steps.diagnose}` together with these."
-            )
-        lines.append(f"Next: {move.do} ({move.name}).{time}")
+        lines.append(" ".join((f"Next: {move.do} ({move.name}).", *how_long(move, steps.diagnose))))
     else:
         lines.append(
             "No manoeuvre of the library tells them apart in reasonable time; a ruler may."
@@ -220,6 +216,17 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
         if other not in rivals and other not in mistakes(diagnosis):
             lines += also(told, other)
     return [*lines, *law(told), *scatter(told), *at_bounds_told(diagnosis)]
+
+
+def how_long(move: Manoeuvre, diagnose: str) -> Iterator[str]:
+    """Of a drive that tells rivals apart: for how long, how surely, and what then."""
+    if not move.minutes:
+        return
+    enough = "are enough"
+    if move.chance is not None and move.chance < POWER:
+        enough = f"tell them apart in {100.0 * move.chance:.0f} % of cases"
+    yield f"About {move.minutes:.0f} min of it {enough}."
+    yield f"Then give that drive to `{diagnose}` together with these."
 
 
 def _unknown(told: Told, steps: NextSteps) -> list[str]:
