@@ -52,6 +52,8 @@ class Held:
     """By how much the ticks' stamps are put right (`legs.even_stamps`), rms [s]."""
     scans_restamped: float = 0.0
     """The same of scans."""
+    gyro_bias: float = 0.0
+    """Rate of headings at rest that is taken off (`legs.gyro_bias`) [rad/s]."""
 
 
 @dataclass(frozen=True)

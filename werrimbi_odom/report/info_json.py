@@ -63,6 +63,7 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
         "left_out": left_out_json(held.left_out),
         "restamped_s": held.restamped,
         "scans_restamped_s": held.scans_restamped,
+        "gyro_bias_rad_per_s": held.gyro_bias,
         "can_show": can,
         "cannot_show": cannot,
     }
