@@ -240,6 +240,18 @@ def test_a_run_folder_is_looked_at_too(capsys: pytest.CaptureFixture[str]) -> No
     assert "werrimbi compare --robot" in printed
 
 
+def test_the_bias_of_a_gyro_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    counts = [100.0 * max(0.0, 0.1 * n - 3.0) for n in range(90)]
+    rows = [f"{0.1 * n},{each:.0f},{each:.0f}" for n, each in enumerate(counts)]
+    (tmp_path / "ticks.csv").write_text("t_s,left_ticks,right_ticks\n" + "\n".join(rows))
+    turned = [f"{0.1 * n},,,{-0.002 * n}" for n in range(90)]
+    (tmp_path / "reference.csv").write_text("t_s,x_m,y_m,yaw_rad\n" + "\n".join(turned))
+    robot = Path(wo.__file__).parent / "recordings" / "square" / "robot.yaml"
+    assert main(["info", str(tmp_path), "--robot", str(robot)]) == 0
+    printed = " ".join(capsys.readouterr().out.split())
+    assert "Its headings turn by -1.1°/s while the wheels stand: a gyro's bias" in printed
+
+
 @pytest.mark.parametrize("yaw", [0.0, 0.3])
 def test_sizes_of_a_urdf(yaw: float) -> None:
     found = of_urdf(urdf(yaw), JOINTS)

@@ -237,9 +237,13 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
         left_out = record_of(run, robot, limits).left_out if run.reference is not None else ()
     except InputError as error:
         return replace(held, problem=str(error))
-    scans = 0.0
+    scans = bias = 0.0
     if held.run.reference is not None and run.reference is not None:
-        scans = float(np.std(run.reference.time - held.run.reference.time))
+        given, used = held.run.reference, run.reference
+        scans = float(np.std(used.time - given.time))
+        if used.has_yaw.any():
+            last = int(np.flatnonzero(used.has_yaw)[-1])
+            bias = float(given.yaw[last] - used.yaw[last]) / float(np.ptp(used.time[: last + 1]))
     return replace(
         held,
         run=run,
@@ -247,6 +251,7 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
         left_out=left_out,
         restamped=counters.restamped,
         scans_restamped=scans,
+        gyro_bias=bias,
     )
 
 

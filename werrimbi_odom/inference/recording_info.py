@@ -52,6 +52,8 @@ class Held:
     """Correction of the tick stamps (`legs.even_stamps`), rms [s]."""
     scans_restamped: float = 0.0
     """Correction of the scan stamps, rms [s]."""
+    gyro_bias: float = 0.0
+    """Rate of the headings at rest, which is removed (`legs.gyro_bias`) [rad/s]."""
 
 
 @dataclass(frozen=True)

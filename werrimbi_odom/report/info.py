@@ -69,6 +69,7 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
         "turned_rad": drive.turned if drive is not None and found.sizes else None,
         "left_out": left_out_json(held.left_out),
         **picked(held, "restamped_s:restamped scans_restamped_s:scans_restamped"),
+        "gyro_bias_rad_per_s": held.gyro_bias,
         "can_show": can,
         "cannot_show": cannot,
     }

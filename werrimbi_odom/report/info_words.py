@@ -51,6 +51,11 @@ def _lines(held: Held, found: Info) -> Iterator[str]:
             "By its path, the lidar turned evenly, and its scans are not stamped so: they are put "
             f"back by {_ms(held.scans_restamped)} (rms)."
         )
+    if held.gyro_bias:
+        yield (
+            f"Its headings turn by {math.degrees(held.gyro_bias):.2g}°/s while the wheels stand: "
+            "a gyro's bias, which is taken off."
+        )
     if held.problem:
         yield f"It cannot be used as it is: {held.problem}{'' if held.problem[-1] == '?' else '.'}"
     if held.driven is not None:

@@ -22,6 +22,8 @@ from werrimbi_odom.inference.chances import MEDIAN_TO_SIGMA
 from werrimbi_odom.inference.legs.agreement import Agreement, turns_agree, ways_agree
 from werrimbi_odom.inference.legs.counters import Counters, counters_of
 from werrimbi_odom.inference.legs.even_stamps import evened_scans, stamped_together
+from werrimbi_odom.inference.legs.gyro_bias import without_bias
+from werrimbi_odom.inference.legs.spans import driven
 from werrimbi_odom.inference.legs.windows import Windows, windows_of
 from werrimbi_odom.inference.rules import (
     NO_DRIVING_AT_ONCE,
@@ -89,7 +91,7 @@ class _Seen:
 def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Run:
     """Attach to a run its stretches without driving, found once and kept by its parts.
 
-    Scan stamps are corrected first (`even_stamps`).
+    Scan stamps are corrected first (`even_stamps`); a gyro's bias is removed last (`gyro_bias`).
     """
     if run.no_driving is not None or run.reference is None:
         return run
@@ -99,7 +101,9 @@ def looked_at(run: Run, robot: Robot, limits: EncoderLimits | None = None) -> Ru
         counters = counters_of(run, robot, limits)
     except InputError:
         return run  # cutting into legs raises the error
-    return replace(run, no_driving=no_driving(counters, seen, robot))
+    found = no_driving(counters, seen, robot)
+    seen = without_bias(seen, driven(counters, robot, found).spans)
+    return replace(run, reference=seen, no_driving=found)
 
 
 def no_driving(counters: Counters, reference: Reference, robot: Robot) -> tuple[NoDriving, ...]:

@@ -162,3 +162,15 @@ NO_DRIVING_TREMBLES = 1e-3
 
 REST_LASTS = 0.5
 """Shortest rest [s] that is told as standing: less is a change of direction."""
+
+# ------------------------------------------------------------------------------- a gyro at rest
+
+BIAS_REST = 1.0
+"""Least time that the wheels must stand for a gyro's bias to be told by it [s]."""
+
+BIAS_EDGE = 0.25
+"""Time at the beginning and the end of a rest that does not count [s]: twice by how much gyros
+were late in recordings, so that no turning is in it."""
+
+BIAS_SURE = 4.0
+"""Standard deviations from none that a bias must be to be taken off: 6 of 100,000 without one."""

@@ -1,0 +1,83 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A gyro's bias that no driver took off is told where the wheels stand, and is no error."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from test.model.drives import ROBOT, read
+from werrimbi_odom.effects import LIBRARY
+from werrimbi_odom.files.evaluation import EvaluationOptions
+from werrimbi_odom.files.run import Reference, Run, Ticks
+from werrimbi_odom.inference.comparison.compare import compare
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose
+from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.rules import DRIFT_LEGS
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.trajectory import trajectory
+
+BIAS = 0.02
+INCREMENTAL = EvaluationOptions(reference_kind="incremental")
+
+
+def short_drive(base: float = 1.0, bias: float = BIAS, seed: int = 1) -> Run:
+    """Half a turn on the spot and half a metre, with rests of three seconds between."""
+    still = np.zeros(60)
+    turning = np.concatenate([still, 0.5 * np.ones(126), still, np.zeros(20), still])
+    speed = np.concatenate([still, np.zeros(126), still, 0.5 * np.ones(20), still])
+    return by_gyro(speed, turning, base, bias, seed)
+
+
+def by_gyro(speed: np.ndarray, turning: np.ndarray, base: float, bias: float, seed: int) -> Run:
+    ticks = read(ROBOT, 20.0, speed, turning)
+    turns: Robot = replace(ROBOT, wheel_separation_multiplier=base)
+    truth = trajectory(turns, *ticks)
+    walk = np.cumsum(np.random.default_rng(seed).normal(0.0, 2e-4, truth.yaw.size))
+    nothing = np.full_like(truth.x, np.nan)
+    reference = Reference(truth.time, nothing, nothing, truth.yaw + bias * truth.time + walk)
+    record = Ticks(ticks.time, ticks.left.astype(float), ticks.right.astype(float))
+    return Run(f"drive_{seed}", Path(f"drive_{seed}"), record, reference)
+
+
+@pytest.mark.parametrize("base", [1.0, 1.1])
+def test_a_few_legs_err_by_what_the_robot_errs(base: float) -> None:
+    legs = compare([short_drive(base)], ROBOT, INCREMENTAL).main.all
+    assert legs.figures.count < DRIFT_LEGS
+    turned = 0.5 * 6.3 * (1.0 - 1.0 / base) / legs.figures.count
+    assert legs.figures.rmse_yaw_rad == pytest.approx(turned, abs=0.01)
+
+
+def test_parts_that_are_put_aside_know_it_too() -> None:
+    """They hold a leg or two and no rest: 5.5 degrees were left, and were told as a verdict."""
+    runs = [short_drive(seed=seed, bias=sign * BIAS) for seed, sign in enumerate((1.0, -1.0, 0.5))]
+    found = diagnose(runs, ROBOT, LIBRARY, INCREMENTAL)
+    assert found.verdict == "none"
+    assert found.train.before < 0.005
+    assert found.holdout.before < 0.005
+
+
+def test_who_turns_a_robot_by_hand_is_no_bias() -> None:
+    run = short_drive(bias=0.0)
+    assert run.reference is not None
+    time = run.reference.time
+    by_hand = 1.2 * np.clip((time - time[-1] + 2.5) / 1.5, 0.0, 1.0)
+    turned = replace(run, reference=replace(run.reference, yaw=run.reference.yaw + by_hand))
+    seen = looked_at(turned, ROBOT).reference
+    assert seen is not None
+    assert np.abs(seen.yaw - turned.reference.yaw).max() < 0.02
+
+
+def test_headings_that_scatter_about_the_truth_have_none() -> None:
+    run = short_drive(bias=0.0)
+    assert run.reference is not None
+    noise = np.random.default_rng(5).normal(0.0, 0.01, run.reference.yaw.size)
+    absolute = replace(run, reference=replace(run.reference, yaw=run.reference.yaw + noise))
+    seen = looked_at(absolute, ROBOT).reference
+    assert seen is not None
+    assert absolute.reference is not None
+    np.testing.assert_array_equal(seen.yaw, absolute.reference.yaw)

@@ -1,0 +1,47 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""A gyro's bias, as it is seen while the wheels stand."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from werrimbi_odom.files.run import Reference
+from werrimbi_odom.inference.legs.spans import Span
+from werrimbi_odom.inference.rules import BIAS_EDGE, BIAS_REST, BIAS_SURE
+from werrimbi_odom.model.pose import wrap_all
+
+
+def without_bias(reference: Reference, spans: Sequence[Span]) -> Reference:
+    """Headings alone without the rate that they have at rest; as they are where none is sure.
+
+    No model of the robot takes part in that, so it is the same for all parts of a drive. What a
+    bias changes by as the robot drives is left to the fits, which have a drift of every run free.
+
+    Parameters
+    ----------
+    spans
+        What the robot did when, in its order.
+    """
+    if reference.has_position.any() or not reference.has_yaw.any():
+        return reference
+    seen = reference.has_yaw
+    time, turned = reference.time[seen], wrap_all(np.diff(reference.yaw[seen]))
+    duration = np.diff(time)
+    rest = np.zeros(duration.size, dtype=np.bool_)
+    for span in spans:
+        if span.what == "stood":
+            inside = (time >= span.begin + BIAS_EDGE) & (time <= span.end - BIAS_EDGE)
+            rest |= inside[:-1] & inside[1:]
+    seconds = float(duration[rest].sum())
+    if seconds < BIAS_REST:
+        return reference
+    bias = float(turned[rest].sum()) / seconds
+    scatter = turned[rest] - bias * duration[rest]
+    unsure = float(np.sqrt(scatter @ scatter)) / seconds  # as of a random walk: the larger one
+    if abs(bias) < BIAS_SURE * unsure:
+        return reference
+    return replace(reference, yaw=reference.yaw - bias * (reference.time - reference.time[0]))
