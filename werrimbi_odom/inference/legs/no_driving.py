@@ -29,6 +29,7 @@ from werrimbi_odom.inference.rules import (
     NO_DRIVING_FEWEST,
     NO_DRIVING_FEWEST_FIRM,
     NO_DRIVING_FIRM,
+    NO_DRIVING_GENTLE,
     NO_DRIVING_GOES,
     NO_DRIVING_JOINED,
     NO_DRIVING_LATE,
@@ -149,7 +150,11 @@ def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> 
     keeps = rolls & (gross > 0.0) & (found.off <= NO_DRIVING_EDGE * gross)
     noise = float(np.median(found.off[keeps]))
     rough = NO_DRIVING_ROUGH * float(np.median(found.off[keeps] / gross[keeps]))
-    least = max(NO_DRIVING_NOISE * noise, slowest)
+    # How roughly wheels follow their law says nothing of a robot whose wheels stand. (And what is
+    # measured at rest may all be of one carry.)
+    gentle = keeps & (gross <= np.quantile(gross[keeps], NO_DRIVING_GENTLE))
+    scatter = np.where(rolls, noise, min(noise, float(np.median(found.off[gentle]))))
+    least = np.maximum(NO_DRIVING_NOISE * scatter, slowest)
     beyond = off / np.maximum(max(NO_DRIVING_OFF, rough) * maximum_filter1d(gross, reach), least)
     if turns:  # of a way even a gentle one is most of what both wheels could do
         beyond = np.where(_stopped(found, low, high, least), np.maximum(beyond, 1.01), beyond)
@@ -178,15 +183,15 @@ def _standing(found: Agreement) -> Agreement:
     return replace(found, expected=np.where(creeps, found.expected, expected), gross=gross)
 
 
-def _stopped(found: Agreement, low: Floats, high: Floats, least: float) -> NDArray[np.bool_]:
+def _stopped(found: Agreement, low: Floats, high: Floats, least: Floats) -> NDArray[np.bool_]:
     """Windows of those in a row in which the robot should move, clearly, and does nothing; (k,).
 
     Parameters
     ----------
     low, high
         Of what is expected of a window and those beside it, (k,).
-    least : float
-        What is clear.
+    least
+        What is clear, (k,).
     """
     windows = found.windows
     expected = np.where(low * high > 0.0, np.minimum(np.abs(low), np.abs(high)), 0.0)
