@@ -217,6 +217,7 @@ def test_a_gyro_gives_base_and_delay_and_nothing_else_at_any_rate(
     assert set(found.found) == {"reference_delay", "track_width"}
     first = found.effect == "track_width"
     assert found.rivals == (("track_width", "reference_scale") if first else ())
+    assert found.rivals_of_others == ({} if first else {"track_width": ("reference_scale",)})
     assert found.final.held == ("wheel_radius_scale",)
     assert found.holdout.unit == "rad"
     assert found.holdout.after < 0.2 * found.holdout.before
