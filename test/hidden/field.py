@@ -40,7 +40,8 @@ TURNED = 0.5
 """Turn of a held robot's wheels [rad] from which on a gyro can see that it was held."""
 
 OWN_SCALE = frozenset({"reference_scale", "track_width", "wheel_radius_scale"})
-"""A gyro has a scale of its own, and headings alone cannot tell it from the base."""
+"""A gyro has a scale of its own, and headings alone cannot tell it from the base: it is no wrong
+name where it is told as one of rivals."""
 
 ON_THE_FLOOR = frozenset({"floor_slope", "anisotropic_floor"})
 """By scans nobody is asked for these, and an unknown says so: axes begin anew in each drive."""
@@ -259,11 +260,11 @@ def how(hidden: Sequence[str], name: str, said: Line) -> str:
     if said["verdict"] in ("refused", "unknown"):
         return "wrong"
     right = expected(hidden, name)
-    allowed = right | (OWN_SCALE if name == "gyro" else set())
     one_of = [{name, *near} for name, near in said.get("rivals_of_others", {}).items()]
     one_of += [set(said["rivals"])] if said["rivals"] else []
     sure = set(said["found"]).difference(*one_of)
-    if sure - allowed or any(not each & allowed for each in one_of):
+    own = OWN_SCALE if name == "gyro" else set()
+    if sure - right or any(not each & (right | own) for each in one_of):
         return "wrong"
     if not hidden or sure & right:
         return "named"

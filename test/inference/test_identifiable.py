@@ -222,6 +222,15 @@ def test_a_gyro_gives_base_and_delay_and_nothing_else_at_any_rate(
     assert found.holdout.after < 0.2 * found.holdout.before
 
 
+def test_a_gyros_own_scale_is_told_beside_a_base_that_is_found_second() -> None:
+    """A base of the file that is 2 % off, and a gyro that is much too late."""
+    near = replace(NOMINAL, wheel_separation_multiplier=1.08)
+    runs = [gyro_drive(seed, late=0.08) for seed in (20, 21)]
+    found = diagnose(runs, near, LIBRARY, EvaluationOptions(reference_kind="incremental"))
+    assert found.found == ("reference_delay", "track_width")
+    assert found.rivals_of_others == {"track_width": ("reference_scale",)}
+
+
 @pytest.mark.parametrize("scale", [1.02, pytest.param(0.85, marks=pytest.mark.evidence)])
 def test_a_gyros_own_scale_is_told_beside_the_base_and_not_as_certain(scale: float) -> None:
     """By headings alone no drive can tell them; where positions are measured too, it can."""

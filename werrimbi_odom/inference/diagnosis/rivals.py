@@ -49,9 +49,17 @@ def rivals_of(
 
 
 def rivals_of_others(
-    found: Sequence[str], rivals: Sequence[str], rounds: tuple[Round, ...], final: Fitted
+    found: Sequence[str],
+    rivals: Sequence[str],
+    rounds: tuple[Round, ...],
+    final: Fitted,
+    given: Robot,
+    laid: Concatenated,
 ) -> dict[str, tuple[str, ...]]:
-    """Rivals of each further effect, in the round that accepted it; without those found as well."""
+    """Rivals of each further effect, in the round that accepted it; without those found as well.
+
+    Effects of the reference that do the same as a size of the robot are among them.
+    """
     others = {}
     for name in found[1:]:
         if name in rivals:
@@ -60,7 +68,10 @@ def rivals_of_others(
         if name in final.names:
             near = _near(name, rounds[final.names.index(name)])
         elif name in CALIBRATED:
-            near = _sizes_in_place_of(name, final)
+            near = (
+                *_sizes_in_place_of(name, final),
+                *own_scale_instead(name, final, given, laid),
+            )
         others[name] = tuple(other for other in near if other not in (*found, *rivals))
     return {name: near for name, near in others.items() if near}
 

@@ -213,7 +213,7 @@ def told(
             Sides(start.quiet[0], last.quiet[0], start.unit),
             Sides(start.quiet[1], last.quiet[1], start.unit),
         ),
-        rivals_of_others(found, rivals, rounds, final),
+        rivals_of_others(found, rivals, rounds, final, given, laid),
         judge.left_out,
         (ReferenceRemark("another_drive", 0.0),) if another else remarks_on(judge.train),
     )

@@ -31,6 +31,7 @@ from werrimbi_odom.inference.rules import (
     NO_DRIVING_FEWEST,
     NO_DRIVING_FEWEST_FIRM,
     NO_DRIVING_FIRM,
+    NO_DRIVING_GENTLE,
     NO_DRIVING_GOES,
     NO_DRIVING_JOINED,
     NO_DRIVING_LATE,
@@ -153,7 +154,11 @@ def _judged(found: Agreement, slowest: float, enough: float, *, turns: bool) -> 
     keeps = rolls & (gross > 0.0) & (found.off <= NO_DRIVING_EDGE * gross)
     noise = float(np.median(found.off[keeps]))
     rough = NO_DRIVING_ROUGH * float(np.median(found.off[keeps] / gross[keeps]))
-    least = max(NO_DRIVING_NOISE * noise, slowest)
+    # How roughly wheels follow their law says nothing of a robot whose wheels stand. (And what is
+    # measured at rest may all be of one carry.)
+    gentle = keeps & (gross <= np.quantile(gross[keeps], NO_DRIVING_GENTLE))
+    scatter = np.where(rolls, noise, min(noise, float(np.median(found.off[gentle]))))
+    least = np.maximum(NO_DRIVING_NOISE * scatter, slowest)
     beyond = off / np.maximum(max(NO_DRIVING_OFF, rough) * maximum_filter1d(gross, reach), least)
     if turns:  # a gentle path is already most of what both wheels could do
         beyond = np.where(_stopped(found, low, high, least), np.maximum(beyond, 1.01), beyond)
@@ -182,14 +187,14 @@ def _standing(found: Agreement) -> Agreement:
     return replace(found, expected=np.where(creeps, found.expected, expected), gross=gross)
 
 
-def _stopped(found: Agreement, low: Floats, high: Floats, least: float) -> NDArray[np.bool_]:
+def _stopped(found: Agreement, low: Floats, high: Floats, least: Floats) -> NDArray[np.bool_]:
     """Windows in a row in which the robot should clearly move and does not; (k,).
 
     Parameters
     ----------
     low, high : ndarray, shape (k,)
         Range of the prediction over a window and its neighbours.
-    least : float
+    least : ndarray, shape (k,)
         Threshold for clear motion.
     """
     windows = found.windows

@@ -100,6 +100,11 @@ NO_DRIVING_NOISE = 5.0
 """Times the usual scatter, below which nothing is too far: of Gaussian noise 5.7 times its median
 are beyond 3.8 sigma, and a stretch is many windows."""
 
+NO_DRIVING_GENTLE = 0.25
+"""Share of the windows that keep to a law, the slowest ones, whose scatter is that of a robot at
+rest. Chosen: a law that is off by a twelfth (an arm that no turn has shown) scatters by that of
+what is driven, five times which is more than a slow carry goes in half a second."""
+
 NO_DRIVING_TURNS = math.radians(3.0)
 """Slowest turning [rad/s] that is one: a cheap gyro drifts by less than a degree a second."""
 

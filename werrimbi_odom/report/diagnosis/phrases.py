@@ -54,7 +54,7 @@ def also(told: Told, name: str) -> list[str]:
         what += f" Headings alone cannot tell it from {listed(own, 'or')}."
     twins = effect.twins if effect is not None else ()
     near = told.diagnosis.rivals_of_others.get(name, ())
-    if rivals := [each for each in near if each not in twins]:
+    if rivals := [each for each in near if each not in (*twins, *own)]:
         what += f" These drives cannot tell it from {listed(rivals, 'or')}, in its place."
     if twins:
         what += f" To the reference it is one with {listed(twins, 'or')}, on any drive."
