@@ -9,8 +9,9 @@ no effect explains, a drive that varies what the error depends on, and holds the
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -50,6 +51,9 @@ from werrimbi_odom.model.pose import Floats
 __all__ = ["Discrimination", "Manoeuvre", "discriminations", "next_manoeuvre", "strongest"]
 
 
+Pair = tuple[str, str]
+
+
 @dataclass(frozen=True, slots=True)
 class Discrimination:
     """What a manoeuvre of the library would show."""
@@ -57,24 +61,28 @@ class Discrimination:
     ideal: Ideal
     minutes: float
     """Duration."""
-    rise: float
-    """Of the cost of the wrong rival: the first against the others, the least sure of these pairs
-    and the lesser way round."""
-    every: float
-    """The same of all pairs of rivals: with it a single drive leaves one alone."""
-    against: str
-    """The rival that is the hardest to tell from the first one."""
-    apart: Floats
-    """By how much the legs differ between the first one and that, (m, 3)."""
+    rises: Mapping[Pair, float]
+    """Of the cost of the wrong one of two rivals, the lesser way round; of all but twins."""
+    apart: Callable[[Pair], Floats]
+    """By how much the legs differ between two rivals, (m, 3)."""
 
-    def minutes_for(self, rise: float) -> float:
-        """How long to drive, if `rise` comes with every turn of the manoeuvre."""
+    def minutes_for(self, pairs: Sequence[Pair]) -> float:
+        """How long to drive to tell all of them, if as much comes with every turn of it."""
+        rise = self.rises[self.hardest(pairs)]
         return max(ENOUGH * self.minutes / rise, 1.0) if rise > 0.0 else np.inf
 
-    def chance_in(self, minutes: float) -> float:
-        """Share of cases in which driving for so long tells the first from each of the others."""
-        rise = self.rise * minutes / self.minutes
+    def hardest(self, pairs: Sequence[Pair]) -> Pair:
+        """Of which it tells the least."""
+        return min(pairs, key=lambda pair: self.rises[pair])
+
+    def chance_in(self, minutes: float, pairs: Sequence[Pair]) -> float:
+        """Share of cases in which driving for so long tells the hardest of them."""
+        rise = self.rises[self.hardest(pairs)] * minutes / self.minutes
         return float(ndtr((rise - RIVAL) / (2.0 * np.sqrt(rise)))) if rise > 0.0 else 0.0
+
+    def told(self) -> list[Pair]:
+        """The pairs that it tells in the longest drive."""
+        return [pair for pair in self.rises if self.minutes_for([pair]) <= LONGEST_DRIVE]
 
 
 def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
@@ -85,14 +93,14 @@ def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
         if by_hand is not None:
             return by_hand
         weighed = discriminations(diagnosis)
-        return quickest(diagnosis.rivals, weighed) if weighed else None
+        return quickest(diagnosis.rivals, weighed) if weighed[0].rises else None
     if diagnosis.verdict == "unknown":
         return for_the_unknown(diagnosis)
     return None
 
 
 def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
-    """What each manoeuvre of the library would tell of the rivals, the best first."""
+    """What each manoeuvre of the library would tell of the rivals; the simplest first."""
     this = _round_of(diagnosis)
     rivals = [_candidate(name, this, diagnosis) for name in diagnosis.rivals]
     first = _as_fitted(rivals[0], this, diagnosis)
@@ -103,6 +111,7 @@ def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
     sizes = {item.name: best_alias(before, target, item) for item in rivals[1:]}
     pace = pace_of(diagnosis.runs, point.model.robot)
     positions = measured_in(diagnosis.runs)[0]
+    by_name = {item.name: item for item in rivals}
     found = []
     for ideal in MANOEUVRES:
         drives, minutes = imagined(ideal, diagnosis.runs, point, pace)
@@ -122,16 +131,17 @@ def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
             for one, other in combinations(rivals, 2)
             if twin_where(one.effect, other.effect, positions) is None
         }
-        of_first = {pair[1]: rise for pair, rise in rises.items() if pair[0] == rivals[0].name}
-        if not of_first:  # twins by algebra: no drive tells
-            continue
-        against = min(of_first, key=lambda name: of_first[name])
-        rival = next(item for item in rivals if item.name == against)
-        apart = difference(*stands[rivals[0].name], rival)
-        found.append(
-            Discrimination(ideal, minutes, of_first[against], min(rises.values()), against, apart)
-        )
-    return sorted(found, key=lambda item: -item.rise / item.minutes)
+        found.append(Discrimination(ideal, minutes, rises, partial(_apart, stands, by_name)))
+    return found
+
+
+Stands = Mapping[str, tuple[tuple[Sensitivities, Trace], tuple[Sensitivities, Trace]]]
+"""What each rival does to the drives so far, and to one ahead."""
+
+
+def _apart(stands: Stands, rivals: Mapping[str, Candidate], pair: Pair) -> Floats:
+    known, ahead = stands[pair[0]]
+    return difference(known, ahead, rivals[pair[1]])
 
 
 def _gained(
@@ -144,20 +154,39 @@ def _gained(
 def quickest(rivals: Sequence[str], weighed: Sequence[Discrimination]) -> Manoeuvre | None:
     """The quickest to leave one rival alone; else to tell the first from all others.
 
-    Where none is sure to in the longest drive, that long, if it tells as likely as not.
+    Where none does in the longest drive, the one that tells most pairs, those of the first before
+    others: the next proposal has fewer left. Where none tells any, the longest drive, if it tells
+    the first from all others as likely as not: what it shows counts, and can be driven on.
     """
-    best = min(weighed, key=lambda item: item.minutes_for(item.every))
-    minutes = best.minutes_for(best.every)
-    if minutes > LONGEST_DRIVE:
-        best = weighed[0]
-        minutes = min(best.minutes_for(best.rise), LONGEST_DRIVE)
-    chance = best.chance_in(minutes)
-    if chance < AS_LIKELY_AS_NOT:
+    pairs = list(weighed[0].rises)
+    of_first = [pair for pair in pairs if rivals[0] in pair]
+    for goal in filter(None, (pairs, of_first)):
+        best = min(weighed, key=lambda item: item.minutes_for(goal))
+        if best.minutes_for(goal) <= LONGEST_DRIVE:
+            return _proposed(best, goal, rivals[0])
+    best = max(weighed, key=lambda item: _tells(item, rivals[0]))
+    if best.told():
+        return _proposed(best, best.told(), rivals[0])
+    best = min(weighed, key=lambda item: item.minutes_for(of_first or pairs))
+    if best.chance_in(LONGEST_DRIVE, of_first or pairs) < AS_LIKELY_AS_NOT:
         return None
+    return _proposed(best, of_first or pairs, rivals[0])
+
+
+def _tells(item: Discrimination, first: str) -> tuple[int, int, float]:
+    """How many pairs, those of the first rival before all; of equals the quickest."""
+    told = item.told()
+    return sum(first in pair for pair in told), len(told), -item.minutes_for(told) if told else 0.0
+
+
+def _proposed(best: Discrimination, pairs: Sequence[Pair], first: str) -> Manoeuvre:
+    one, other = best.hardest([pair for pair in pairs if first in pair] or pairs)
     why = (
-        f"{rivals[0]} and {best.against} look alike on these drives, but {best.ideal.where} "
-        f"they differ by {_size(best.apart)}"
+        f"{one} and {other} look alike on these drives, but {best.ideal.where} "
+        f"they differ by {_size(best.apart((one, other)))}"
     )
+    minutes = min(best.minutes_for(pairs), LONGEST_DRIVE)
+    chance = best.chance_in(minutes, pairs)
     do = f"drive {best.ideal.words}"
     return Manoeuvre(best.ideal.name, why, do, float(np.ceil(minutes)), chance)
 
