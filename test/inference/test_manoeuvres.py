@@ -5,6 +5,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -200,8 +201,11 @@ def test_a_lever_arm_and_a_delay_at_one_speed_are_ambiguous_and_the_manoeuvre_re
     assert next_manoeuvre(then) is None
 
 
-def weighed(name: str, minutes: float, rise: float) -> Discrimination:
-    return Discrimination(BY_NAME[name], minutes, rise, rise, "other", np.zeros((3, 3)))
+def weighed(name: str, minutes: float, *rises: float) -> Discrimination:
+    """Of the first rival against the others, then of these among themselves."""
+    names = ("first", "other", "third")[: 2 if len(rises) == 1 else 3]
+    pairs = dict(zip(combinations(names, 2), rises, strict=True))
+    return Discrimination(BY_NAME[name], minutes, pairs, lambda pair: np.zeros((3, 3)))
 
 
 def test_what_takes_longer_than_one_may_ask_for_is_begun_if_it_tells_as_likely_as_not() -> None:
@@ -214,3 +218,15 @@ def test_what_takes_longer_than_one_may_ask_for_is_begun_if_it_tells_as_likely_a
     assert (begun.name, begun.minutes) == ("spins", 30.0)
     assert begun.chance == pytest.approx(0.70, abs=0.01)  # of 14 +- 7.5
     assert quickest(("first", "other"), [weighed("spins", 1.5, 0.4)]) is None
+
+
+def test_a_rival_that_no_drive_tells_keeps_none_from_telling_the_others() -> None:
+    names = ("first", "other", "third")
+    spins, arcs = weighed("spins", 1.5, 0.0, 0.0, 15.0), weighed("arcs", 5.0, 10.0, 0.0, 30.0)
+    some = quickest(names, [spins, arcs])
+    assert some is not None
+    assert (some.name, some.minutes) == ("arcs", 15.0)  # for the first against the other
+    assert some.why.startswith("first and other look alike")
+    all_of_them = quickest(names, [spins, arcs, weighed("square", 2.0, 4.0, 4.0, 4.0)])
+    assert all_of_them is not None
+    assert (all_of_them.name, all_of_them.minutes) == ("square", 15.0)

@@ -1,17 +1,17 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Proposal of what to drive or remount next: the simplest action that tells the rivals apart.
+"""What to drive next, or to remount: the simplest thing that tells apart what these drives cannot.
 
-For rivals, the manoeuvres of the library are ranked by their expected evidence per minute
-(`manoeuvre_rivals`). Observational equivalents are beyond any drive, and need a change of the mount
-or a check by hand. For an error that no effect explains, the proposal is a drive that varies what
-the error depends on, and keeps all else constant.
+For rivals the manoeuvres of the library are weighed by what they would show in a minute
+(`manoeuvre_rivals`). For twins no drive can tell, and the mount or a hand has to. For an error that
+no effect explains, a drive that varies what the error depends on, and holds the rest.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -51,6 +51,9 @@ from werrimbi_odom.model.pose import Floats
 __all__ = ["Discrimination", "Manoeuvre", "discriminations", "next_manoeuvre", "strongest"]
 
 
+Pair = tuple[str, str]
+
+
 @dataclass(frozen=True, slots=True)
 class Discrimination:
     """Expected evidence of a manoeuvre of the library."""
@@ -58,24 +61,29 @@ class Discrimination:
     ideal: Ideal
     minutes: float
     """Duration in minutes."""
-    rise: float
-    """Expected rise of the wrong rival's cost: the first rival against each other one, the minimum
-    over these pairs and over which of the two is true."""
-    every: float
-    """The minimum over all pairs of rivals: with it a single drive leaves only one."""
-    against: str
-    """The rival that is hardest to tell from the first one."""
-    apart: Floats
-    """Difference of the legs between the first rival and that one, (m, 3)."""
+    rises: Mapping[Pair, float]
+    """Expected rise of the wrong rival's cost for each pair that a drive can tell apart: the minimum
+    over which of the two is true."""
+    apart: Callable[[Pair], Floats]
+    """Difference of the legs between two rivals, (m, 3)."""
 
-    def minutes_for(self, rise: float) -> float:
-        """Duration for the required evidence, if each repetition of the manoeuvre adds `rise`."""
+    def minutes_for(self, pairs: Sequence[Pair]) -> float:
+        """Duration that tells all of them, if each repetition adds as much evidence."""
+        rise = self.rises[self.hardest(pairs)]
         return max(ENOUGH * self.minutes / rise, 1.0) if rise > 0.0 else np.inf
 
-    def chance_in(self, minutes: float) -> float:
-        """Share of cases in which driving for so long tells the first from each of the others."""
-        rise = self.rise * minutes / self.minutes
+    def hardest(self, pairs: Sequence[Pair]) -> Pair:
+        """The pair with the least evidence."""
+        return min(pairs, key=lambda pair: self.rises[pair])
+
+    def chance_in(self, minutes: float, pairs: Sequence[Pair]) -> float:
+        """Share of cases in which driving for so long tells the hardest of them."""
+        rise = self.rises[self.hardest(pairs)] * minutes / self.minutes
         return float(ndtr((rise - RIVAL) / (2.0 * np.sqrt(rise)))) if rise > 0.0 else 0.0
+
+    def told(self) -> list[Pair]:
+        """The pairs that it tells in the longest drive."""
+        return [pair for pair in self.rises if self.minutes_for([pair]) <= LONGEST_DRIVE]
 
 
 def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
@@ -86,14 +94,14 @@ def next_manoeuvre(diagnosis: Diagnosis) -> Manoeuvre | None:
         if by_hand is not None:
             return by_hand
         weighed = discriminations(diagnosis)
-        return quickest(diagnosis.rivals, weighed) if weighed else None
+        return quickest(diagnosis.rivals, weighed) if weighed[0].rises else None
     if diagnosis.verdict == "unknown":
         return for_the_unknown(diagnosis)
     return None
 
 
 def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
-    """Expected evidence of each manoeuvre of the library about the rivals, the best first."""
+    """Expected evidence of each manoeuvre of the library about the rivals, the simplest first."""
     this = _round_of(diagnosis)
     rivals = [_candidate(name, this, diagnosis) for name in diagnosis.rivals]
     first = _as_fitted(rivals[0], this, diagnosis)
@@ -104,6 +112,7 @@ def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
     sizes = {item.name: best_alias(before, target, item) for item in rivals[1:]}
     pace = pace_of(diagnosis.runs, point.model.robot)
     positions = measured_in(diagnosis.runs)[0]
+    by_name = {item.name: item for item in rivals}
     found = []
     for ideal in MANOEUVRES:
         drives, minutes = imagined(ideal, diagnosis.runs, point, pace)
@@ -123,43 +132,62 @@ def discriminations(diagnosis: Diagnosis) -> list[Discrimination]:
             for one, other in combinations(rivals, 2)
             if twin_where(one.effect, other.effect, positions) is None
         }
-        of_first = {pair[1]: rise for pair, rise in rises.items() if pair[0] == rivals[0].name}
-        if not of_first:  # observationally equivalent: no drive tells
-            continue
-        against = min(of_first, key=lambda name: of_first[name])
-        rival = next(item for item in rivals if item.name == against)
-        apart = difference(*stands[rivals[0].name], rival)
-        found.append(
-            Discrimination(ideal, minutes, of_first[against], min(rises.values()), against, apart)
-        )
-    return sorted(found, key=lambda item: -item.rise / item.minutes)
+        found.append(Discrimination(ideal, minutes, rises, partial(_apart, stands, by_name)))
+    return found
+
+
+Stands = Mapping[str, tuple[tuple[Sensitivities, Trace], tuple[Sensitivities, Trace]]]
+"""What each rival does to the drives so far, and to one ahead."""
+
+
+def _apart(stands: Stands, rivals: Mapping[str, Candidate], pair: Pair) -> Floats:
+    known, ahead = stands[pair[0]]
+    return difference(known, ahead, rivals[pair[1]])
 
 
 def _gained(
     known: tuple[Sensitivities, Trace], ahead: tuple[Sensitivities, Trace], rival: Candidate
 ) -> float:
-    """Rise of a rival's cost by new drives, if the target is true."""
+    """What new drives add to the cost of a rival that stands for the target."""
     return separation([known, ahead], rival) - separation([known], rival)
 
 
 def quickest(rivals: Sequence[str], weighed: Sequence[Discrimination]) -> Manoeuvre | None:
     """The quickest manoeuvre that leaves one rival; else that tells the first from all others.
 
-    If none is sure to within the longest drive, that long a drive, if it tells at least as often as
-    not.
+    If none does within the longest drive: the one that tells the most pairs, those with the first
+    rival before the rest, so that the next proposal has fewer left. If none tells any pair: the
+    longest drive, if it tells the first from all others at least as often as not.
     """
-    best = min(weighed, key=lambda item: item.minutes_for(item.every))
-    minutes = best.minutes_for(best.every)
-    if minutes > LONGEST_DRIVE:
-        best = weighed[0]
-        minutes = min(best.minutes_for(best.rise), LONGEST_DRIVE)
-    chance = best.chance_in(minutes)
-    if chance < AS_LIKELY_AS_NOT:
+    pairs = list(weighed[0].rises)
+    of_first = [pair for pair in pairs if rivals[0] in pair]
+    for goal in filter(None, (pairs, of_first)):
+        best = min(weighed, key=lambda item: item.minutes_for(goal))
+        if best.minutes_for(goal) <= LONGEST_DRIVE:
+            return _proposed(best, goal, rivals[0])
+    best = max(weighed, key=lambda item: _tells(item, rivals[0]))
+    if best.told():
+        return _proposed(best, best.told(), rivals[0])
+    best = min(weighed, key=lambda item: item.minutes_for(of_first or pairs))
+    if best.chance_in(LONGEST_DRIVE, of_first or pairs) < AS_LIKELY_AS_NOT:
         return None
+    return _proposed(best, of_first or pairs, rivals[0])
+
+
+def _tells(item: Discrimination, first: str) -> tuple[int, int, float]:
+    """How many pairs, those of the first rival before all; of equals the quickest."""
+    told = item.told()
+    return sum(first in pair for pair in told), len(told), -item.minutes_for(told) if told else 0.0
+
+
+def _proposed(best: Discrimination, pairs: Sequence[Pair], first: str) -> Manoeuvre:
+    one, other = best.hardest([pair for pair in pairs if first in pair] or pairs)
     why = (
-        f"{rivals[0]} and {best.against} look alike on these drives, but {best.ideal.where} "
-        f"they differ by {_size(best.apart)}"
+        f"{one} and {other} look alike on these drives, but {best.ideal.where} "
+        f"they differ by {_size(best.apart((one, other)))}"
     )
+    minutes = min(best.minutes_for(pairs), LONGEST_DRIVE)
+    chance = best.chance_in(minutes, pairs)
     do = f"drive {best.ideal.words}"
     return Manoeuvre(best.ideal.name, why, do, float(np.ceil(minutes)), chance)
 
@@ -178,7 +206,7 @@ def _size(apart: Floats) -> str:
 
 
 def _round_of(diagnosis: Diagnosis) -> Round:
-    """The round in which the rivals were compared."""
+    """The round in which the rivals stood against each other."""
     first = diagnosis.rivals[0]
     for this in diagnosis.rounds:
         if any(fit.names[-1] == first for fit in this.tried):
@@ -187,7 +215,7 @@ def _round_of(diagnosis: Diagnosis) -> Round:
 
 
 def _candidate(name: str, this: Round, diagnosis: Diagnosis) -> Candidate:
-    """A rival with the best shape for these drives."""
+    """A rival at the shape that suits these drives best."""
     for score in (*this.scores, *(one for other in diagnosis.rounds for one in other.scores)):
         if score.candidate.name == name:
             return _with_fitted_shape(score.candidate, this)
@@ -203,7 +231,7 @@ def _with_fitted_shape(candidate: Candidate, this: Round) -> Candidate:
 
 
 def _as_fitted(candidate: Candidate, this: Round, diagnosis: Diagnosis) -> AppliedEffect:
-    """The first rival at its fitted size, with the per-run parameters of the first run."""
+    """The first rival at its fitted size; what each run has anew as in the first of them."""
     for fit in this.tried:
         if fit.names[-1] == candidate.name:
             return next(
