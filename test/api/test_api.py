@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 import werrimbi_odom as wo
-from test.cli.written_runs import PLAIN, ROBOT_FILE, write_run
+from test.cli.commands import PLAIN, ROBOT_FILE, write_run
 from test.inference.driven import run_of
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import find

@@ -1,16 +1,21 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Commands as tests give them: to their end, and what they wrote, or the one line of a mistake."""
+"""Commands as tests give them, with what they wrote or their one line; run folders for them."""
 
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
+from test.inference.driven import run_of
 from werrimbi_odom.cli.main import main
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.model.robot import Robot
 
 RECORDING = Path(__file__).parents[2] / "werrimbi_odom" / "recordings" / "square"
 """The drive that the package ships, and its robot file."""
@@ -37,3 +42,46 @@ def complaint(capsys: pytest.CaptureFixture[str], *words: object) -> str:
     assert len(said.err.splitlines()) == 1
     assert said.err.startswith(f"werrimbi {words[0]}: ")
     return said.err
+
+
+PLAIN = Robot(0.35, 0.05, 2000.0, 2000.0, left_wheel_noise=4e-4, right_wheel_noise=4e-4)
+
+ROBOT_FILE = """odom_node:
+  ros__parameters:
+    wheel_separation: 0.35
+    wheel_radius: 0.05
+    left_ticks_per_revolution: 2000.0
+    right_ticks_per_revolution: 2000.0
+    left_wheel_noise: 4.0e-4
+    right_wheel_noise: 4.0e-4
+"""
+
+
+def written(
+    folder: Path,
+    truths: Sequence[Robot],
+    channels: Sequence[Mapping[str, np.ndarray]] | None = None,
+) -> Path:
+    """A run folder for each true robot, and the file of the plain one; returns the folder."""
+    (folder / "robot.yaml").write_text(ROBOT_FILE)
+    for seed, truth in enumerate(truths):
+        measured = None if channels is None else channels[seed]
+        run = run_of(truth, seed, channels=measured)
+        write_run(folder / run.name, run)
+    return folder
+
+
+def write_run(place: Path, run: Run) -> None:
+    """A run as a folder."""
+    assert run.reference is not None
+    place.mkdir()
+    names = ["t_s", "left_ticks", "right_ticks", *run.ticks.channels]
+    columns = [run.ticks.time, run.ticks.left, run.ticks.right, *run.ticks.channels.values()]
+    _table(place / "ticks.csv", names, columns)
+    seen = run.reference
+    names = ["t_s", "x_m", "y_m", "yaw_rad"]
+    _table(place / "reference.csv", names, [seen.time, seen.x, seen.y, seen.yaw])
+
+
+def _table(path: Path, names: Sequence[str], columns: Sequence[np.ndarray]) -> None:
+    np.savetxt(path, np.column_stack(columns), "%.9g", ",", header=",".join(names), comments="")

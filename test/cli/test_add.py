@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from test.cli.written_runs import PLAIN, written
+from test.cli.commands import PLAIN, written
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import find
 from werrimbi_odom.files.robot_file import read_robot_file

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""`werrimbi calibrate` as a command: help, exit codes, one line where something is wrong."""
+"""`werrimbi calibrate` as a command, and `fit`: a new robot file, or the reason why not."""
 
 from __future__ import annotations
 
@@ -8,8 +8,11 @@ from pathlib import Path
 
 import pytest
 
+from test.cli.commands import RECORDING, ROBOT, complaint, written_by
+from test.recorded_robots import ROBOTS, with_recordings
 from werrimbi_odom.cli.calibrate import KINDS
 from werrimbi_odom.cli.main import main
+from werrimbi_odom.files.robot_file import read_robot_file
 
 
 @pytest.mark.parametrize("kind", ["umbmark", "noise"])
@@ -58,3 +61,85 @@ def test_a_package_that_is_not_installed_is_named(
     words = ["calibrate", "noise", "r.csv", "--distance", "1", "--robot", "r", "--out", "n"]
     assert main(words) == 2
     assert "needs the Python package scipy" in capsys.readouterr().err
+
+
+ROOT = Path(__file__).parents[2]
+
+
+def fit(tmp_path: Path, *arguments: str) -> dict[str, object]:
+    words = ("calibrate", "fit", *arguments, "--out", tmp_path / "new.yaml")
+    return written_by(tmp_path / "figures.json", *words)
+
+
+def wrong_robot(tmp_path: Path) -> Path:
+    """The shipped robot's file with base and left radius entered wrongly."""
+    text = (RECORDING / "robot.yaml").read_text()
+    text = text.replace("wheel_separation: 0.35 ", "wheel_separation: 0.36 ")
+    text = text.replace("left_wheel_radius_multiplier: 1.0 ", "left_wheel_radius_multiplier: 1.01 ")
+    assert "0.36" in text
+    assert "1.01" in text
+    path = tmp_path / "wrong.yaml"
+    path.write_text(text)
+    return path
+
+
+def test_a_wrong_base_and_radius_are_found_in_one_drive_of_the_engine(tmp_path: Path) -> None:
+    robot = wrong_robot(tmp_path)
+    page = tmp_path / "page.html"
+    found = fit(tmp_path, "--robot", str(robot), str(RECORDING), "--report", str(page))
+    assert found["trusted"] is True
+    parameters = found["parameters"]
+    assert isinstance(parameters, dict)
+    truth = {
+        "wheel_separation_multiplier": 0.35 / 0.36,
+        "left_wheel_radius_multiplier": 1.0,
+        "right_wheel_radius_multiplier": 1.0,
+    }
+    for name, value in truth.items():
+        assert parameters[name]["value"] == pytest.approx(value, abs=4.0 * parameters[name]["std"])
+    written = read_robot_file(tmp_path / "new.yaml")
+    assert written.robot.wheel_separation_multiplier == pytest.approx(0.9722, abs=2e-3)
+    assert "# m, between the wheels' contact points" in (tmp_path / "new.yaml").read_text()
+    assert page.stat().st_size > 1_000_000
+
+
+@with_recordings
+@pytest.mark.parametrize(
+    ("robot", "runs", "kind"),
+    [
+        ("khepera_laser_to_the_side", ["part_0", "part_1"], "incremental"),
+        ("khepera_laser_moved", ["part_0", "part_1"], "incremental"),
+        ("labyrinth", ["drive"], "absolute"),
+    ],
+)
+def test_where_calibration_is_not_what_is_missing_it_gives_no_error_bars(
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    robot: str,
+    runs: list[str],
+    kind: str,
+) -> None:
+    folder = ROBOTS / robot
+    found = fit(
+        tmp_path,
+        *("--robot", str(folder / "robot.yaml"), "--leg", "0.1", "--reference-kind", kind),
+        *(str(folder / run) for run in runs),
+    )
+    assert found["trusted"] is False
+    assert found["something_else_is_missing"]
+    parameters = found["parameters"]
+    assert isinstance(parameters, dict)
+    assert all(item["std"] is None for item in parameters.values())
+    assert "Something else is missing" in capsys.readouterr().out
+
+
+def test_a_run_without_a_reference_is_one_clear_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = tmp_path / "run"
+    run.mkdir()
+    (run / "ticks.csv").write_text((RECORDING / "ticks.csv").read_text())
+    out = tmp_path / "new.yaml"
+    told = complaint(capsys, "calibrate", "fit", "--robot", ROBOT, run, "--out", out)
+    assert "reference" in told
+    assert not out.exists()

@@ -10,8 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from test.cli.commands import complaint, written_by
-from test.cli.written_runs import PLAIN, written
+from test.cli.commands import PLAIN, complaint, written, written_by
 from test.soft_tyres import soft_tyres
 from werrimbi_odom.cli.main import main
 from werrimbi_odom.effects import load_file

@@ -11,8 +11,7 @@ from pathlib import Path
 import pytest
 
 import werrimbi_odom as wo
-from test.cli.commands import complaint, written_by
-from test.cli.written_runs import PLAIN, ROBOT_FILE, write_run
+from test.cli.commands import PLAIN, ROBOT_FILE, complaint, write_run, written_by
 from test.inference.driven import run_of
 
 BEGAN = 1_700_000_000.0

@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""The command `werrimbi`: its exit codes, its one line for each mistake, its quick start."""
+"""The command `werrimbi`: exit codes, a line for each mistake, its progress, its quick start."""
 
 from __future__ import annotations
 
@@ -15,7 +15,10 @@ from typing import Any
 
 import pytest
 
+from test.cli.commands import RECORDING
 from werrimbi_odom.cli import main as command
+from werrimbi_odom.cli import progress
+from werrimbi_odom.cli.main import main
 from werrimbi_odom.cli.options import EXAMPLES
 from werrimbi_odom.errors import InputError
 
@@ -185,3 +188,15 @@ def test_interrupted_in_mid_work_it_leaves_nothing_half_written(tmp_path: Path) 
     assert working.returncode == 130
     assert (said, err) == (b"", b"")
     assert list(out.iterdir()) == []
+
+
+def test_a_line_now_and_then_on_stderr(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["compare", "--robot", str(RECORDING / "robot.yaml"), str(RECORDING)]
+    assert main(words) == 0
+    assert capsys.readouterr().err == ""
+    monkeypatch.setattr(progress, "EVERY", 1e-4)
+    assert main(words) == 0
+    lines = capsys.readouterr().err.splitlines()
+    assert any(line.startswith("comparing: ") and " %, " in line for line in lines)

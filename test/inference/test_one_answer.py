@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from test.cli.written_runs import write_run
+from test.cli.commands import write_run
 from test.inference.driven import run_of
 from test.inference.test_gaps import parts, silent, without_ticks
 from test.model.drives import ROBOT

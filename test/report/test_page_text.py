@@ -1,18 +1,20 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Parts of a document as text and on a page, and files that cannot be made."""
+"""Parts of a document as text and on a page, what draws it, and files that cannot be made."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
+from plotly.offline import get_plotlyjs_version
 
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.report import save
 from werrimbi_odom.report.document import Document, Paragraph, Shown, Table, paragraphs
-from werrimbi_odom.report.page import as_html, page_html
+from werrimbi_odom.report.page import as_html, drawing_program, page_html
 from werrimbi_odom.report.save import save_report
 from werrimbi_odom.report.terminal import as_text
 
@@ -113,3 +115,10 @@ def test_pictures_for_a_paper_are_a_file_a_figure(tmp_path: Path, kind: str) -> 
     head = {"pdf": b"%PDF-", "png": b"\x89PNG"}[kind]
     assert all(file.read_bytes().startswith(head) for file in files)
     assert sorted(tmp_path.iterdir()) == sorted(files)
+
+
+def test_it_is_of_the_version_that_plotly_makes_figures_for() -> None:
+    head = drawing_program().read_text(encoding="utf-8")[:200]
+    found = re.search(r"plotly\.js \(cartesian - minified\) v([\d.]+)", head)
+    assert found is not None, head
+    assert found[1] == get_plotlyjs_version(), "see werrimbi_odom/report/plotly_js/README.md"

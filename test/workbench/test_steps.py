@@ -10,16 +10,16 @@ from typing import Any, cast
 
 import pytest
 
-from werrimbi_odom.workbench.steps import Diagnosed, Session, Step, begun
+from werrimbi_odom.workbench.steps import Diagnosed, ModelVersion, Session, begun
 
 
 def look(error: float) -> Any:
     return SimpleNamespace(holdout_error=error)
 
 
-def step(name: str, error: float, objection: str | None = None) -> Step:
+def step(name: str, error: float, objection: str | None = None) -> ModelVersion:
     added = SimpleNamespace(name=name, objection=objection)
-    return Step(look(error), cast(Any, added))
+    return ModelVersion(look(error), cast(Any, added))
 
 
 def diagnosis() -> Diagnosed:

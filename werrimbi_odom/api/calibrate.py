@@ -15,19 +15,27 @@ from werrimbi_odom.api.drives import Drives, Options, recordings_of
 from werrimbi_odom.api.result import NewRobot, Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
+from werrimbi_odom.files.results_table import read_results
 from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.inference.calibration.any_driving import Calibration, calibrate, errors_of_legs
+from werrimbi_odom.inference.calibration.noise_likelihood import design
+from werrimbi_odom.inference.calibration.out_and_back import NoiseFit, fit_noise, out_and_back
+from werrimbi_odom.inference.comparison.judged_legs import figures_of
+from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
+from werrimbi_odom.inference.legs.cutting import MatchedRun, match_finely, with_stated_noise
+from werrimbi_odom.inference.legs.gaps import LeftOut
+from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report.calibration.document import calibration_document, leg_figure, noise_figure
+from werrimbi_odom.report.calibration.fit_words import fit_in_words, fit_json
+from werrimbi_odom.report.calibration.noise_words import noise_in_words, noise_json
+from werrimbi_odom.report.document import Document, paragraphs
+from werrimbi_odom.report.phrases import left_out_json, left_out_words
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
     from typing_extensions import Unpack
-
-    from werrimbi_odom.files.run import Run
-    from werrimbi_odom.inference.calibration.any_driving import Calibration
-    from werrimbi_odom.inference.calibration.out_and_back import NoiseFit
-    from werrimbi_odom.inference.legs.cutting import MatchedRun
-    from werrimbi_odom.inference.legs.gaps import LeftOut
-    from werrimbi_odom.model.pose import Floats
-    from werrimbi_odom.report.document import Document
 
 
 def calibrate_fit(
@@ -55,14 +63,6 @@ def calibrate_fit(
 
 def calibrated(given: Recordings) -> Result[Calibration]:
     """`calibrate_fit` for what was read already."""
-    from werrimbi_odom.inference.calibration.any_driving import calibrate
-    from werrimbi_odom.inference.legs.cutting import match_finely, with_stated_noise
-    from werrimbi_odom.inference.legs.no_driving import looked_at
-    from werrimbi_odom.report.calibration.document import calibration_document
-    from werrimbi_odom.report.calibration.fit_words import fit_in_words, fit_json
-    from werrimbi_odom.report.document import paragraphs
-    from werrimbi_odom.report.phrases import left_out_json, left_out_words
-
     source = given.source
     given = replace(
         given, runs=tuple(looked_at(run, source.robot, source.limits) for run in given.runs)
@@ -100,9 +100,6 @@ def calibrated(given: Recordings) -> Result[Calibration]:
 
 
 def _figure(runs: Sequence[MatchedRun], source: RobotFile, result: Calibration) -> go.Figure:
-    from werrimbi_odom.inference.calibration.any_driving import errors_of_legs
-    from werrimbi_odom.report.calibration.document import leg_figure
-
     model = result.fit.point.model
     headings = [model.start_yaw(index) for index in range(len(runs))]
     return leg_figure(
@@ -115,8 +112,6 @@ def _left_out(
     given: Recordings, runs: Sequence[MatchedRun], result: Calibration
 ) -> tuple[LeftOut, ...]:
     """Gaps of the drives, and the short legs on which the reference jumped."""
-    from werrimbi_odom.inference.legs.gaps import LeftOut
-
     found: list[LeftOut] = []
     for run, matched, excluded in zip(given.runs, runs, result.excluded, strict=True):
         found += matched.record.left_out
@@ -132,9 +127,6 @@ def _left_out(
 
 def _judged(runs: Sequence[Run], given: Recordings, result: Calibration) -> dict[str, Any]:
     """Errors over legs before and after, as every verb has them; NaN where not measured."""
-    from werrimbi_odom.inference.comparison.judged_legs import figures_of
-    from werrimbi_odom.inference.comparison.prepared import judged_by, prepare
-
     prepared = prepare(runs, given.source.robot, given.evaluation)
     before, after = (figures_of(prepared, each) for each in (given.source.robot, result.robot))
     return {
@@ -190,11 +182,6 @@ def calibrate_noise(
     InputError
         When the table cannot be used; the message says where.
     """
-    from werrimbi_odom.inference.calibration.noise_likelihood import design
-    from werrimbi_odom.inference.calibration.out_and_back import fit_noise, out_and_back
-    from werrimbi_odom.report.calibration.document import calibration_document, noise_figure
-    from werrimbi_odom.report.calibration.noise_words import noise_in_words, noise_json
-
     track = robot.robot.track
     options = {
         "distance": distance,
@@ -234,8 +221,6 @@ def calibrate_noise(
 
 
 def _errors(results: Path, options: Mapping[str, float]) -> Floats:
-    from werrimbi_odom.files.results_table import read_results
-
     for option, least in (
         ("distance", "above"),
         ("reference_sigma_xy", "from"),

@@ -9,18 +9,36 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from werrimbi_odom.api.result import NewRobot, Result
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.files.read_run import read_run
+from werrimbi_odom.files.results_table import read_results
 from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.inference.calibration.recorded_square import (
+    Record,
+    recorded_square,
+    squares_of,
+)
+from werrimbi_odom.inference.calibration.squares import Squares
+from werrimbi_odom.inference.calibration.umbmark import Umbmark, corrected, recomputed, umbmark
+from werrimbi_odom.model.robot import Robot
 from werrimbi_odom.progress import Show, silent
+from werrimbi_odom.report.calibration.document import (
+    OffsetCloud,
+    calibration_document,
+    umbmark_figure,
+)
+from werrimbi_odom.report.calibration.umbmark_words import (
+    found_in_words,
+    gained_in_words,
+    umbmark_json,
+)
+from werrimbi_odom.report.document import Document, paragraphs
 
 if TYPE_CHECKING:
     import plotly.graph_objects as go
-
-    from werrimbi_odom.inference.calibration.squares import Squares
-    from werrimbi_odom.inference.calibration.umbmark import Umbmark
-    from werrimbi_odom.model.robot import Robot
-    from werrimbi_odom.report.document import Document
 
 
 @dataclass(frozen=True)
@@ -63,19 +81,6 @@ def calibrate_umbmark(
     InputError
         When a table or drive cannot be used; the message says where.
     """
-    from werrimbi_odom.inference.calibration.umbmark import corrected, recomputed, umbmark
-    from werrimbi_odom.report.calibration.document import (
-        OffsetCloud,
-        calibration_document,
-        umbmark_figure,
-    )
-    from werrimbi_odom.report.calibration.umbmark_words import (
-        found_in_words,
-        gained_in_words,
-        umbmark_json,
-    )
-    from werrimbi_odom.report.document import paragraphs
-
     old = robot.robot
     read = _Reading(side, ticks_topic, reference_topic, show)
     squares = _squares(_paths(results), robot, old, read)
@@ -147,11 +152,6 @@ def _squares(paths: Sequence[Path], source: RobotFile, robot: Robot, read: _Read
 
 
 def _from_table(path: Path, side: float) -> Squares:
-    import numpy as np
-
-    from werrimbi_odom.files.results_table import read_results
-    from werrimbi_odom.inference.calibration.squares import Squares
-
     table = read_results(path, ("x_m", "y_m"), word="sense", choices=("cw", "ccw"))
     senses = np.array(table.words, dtype=str)
     try:
@@ -161,13 +161,6 @@ def _from_table(path: Path, side: float) -> Squares:
 
 
 def _recorded(paths: Sequence[Path], source: RobotFile, robot: Robot, read: _Reading) -> Squares:
-    from werrimbi_odom.files.read_run import read_run
-    from werrimbi_odom.inference.calibration.recorded_square import (
-        Record,
-        recorded_square,
-        squares_of,
-    )
-
     found = []
     for number, path in enumerate(paths):
         read.show(number / len(paths), f"reading {path.name}")

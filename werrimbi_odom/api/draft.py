@@ -14,14 +14,19 @@ from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.recordings import Recordings
 from werrimbi_odom.files.robot_file import RobotFile
+from werrimbi_odom.files.text_files import replacing
+from werrimbi_odom.inference.adding.added import Added
+from werrimbi_odom.inference.adding.adding import add_effects
+from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
+from werrimbi_odom.inference.diagnosis.diagnosis import diagnose as search
+from werrimbi_odom.inference.drafting.draft import Draft
+from werrimbi_odom.inference.drafting.of_two import best_draft
+from werrimbi_odom.inference.drafting.package import package_of
 from werrimbi_odom.progress import Show, silent
+from werrimbi_odom.report.adding.draft import draft_document, draft_json
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
-
-    from werrimbi_odom.inference.adding.added import Added
-    from werrimbi_odom.inference.diagnosis.diagnosis import Diagnosis
-    from werrimbi_odom.inference.drafting.draft import Draft
 
 
 @dataclass(frozen=True, repr=False, kw_only=True)
@@ -38,9 +43,6 @@ class Drafted(Result[Any]):
         InputError
             When it cannot be written.
         """
-        from werrimbi_odom.files.text_files import replacing
-        from werrimbi_odom.inference.drafting.package import package_of
-
         folder = Path(folder)
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -90,11 +92,6 @@ def drafted(given: Recordings, insist: str = "", show: Show = silent) -> Drafted
     insist
         What drafts whatever the verdict is, in words; "": that was asked for.
     """
-    from werrimbi_odom.inference.adding.adding import add_effects
-    from werrimbi_odom.inference.diagnosis.diagnosis import diagnose as search
-    from werrimbi_odom.inference.drafting.of_two import best_draft
-    from werrimbi_odom.report.adding.draft import draft_document, draft_json
-
     robot = given.robot
     diagnosis = search(
         given.runs,

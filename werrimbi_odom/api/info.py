@@ -4,22 +4,40 @@
 
 from __future__ import annotations
 
+import math
 import tempfile
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+
+import numpy as np
 
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
-
-if TYPE_CHECKING:
-    from werrimbi_odom.files.bag_contents import Measured, Wheels
-    from werrimbi_odom.files.first_robot import FirstRobot
-    from werrimbi_odom.files.robot_file import RobotFile
-    from werrimbi_odom.files.run import Run
-    from werrimbi_odom.inference.recording_info import Held, Info
+from werrimbi_odom.files.bag import opened_bag
+from werrimbi_odom.files.bag_contents import Measured, Wheels, contents_of
+from werrimbi_odom.files.first_robot import (
+    FirstRobot,
+    of_controller,
+    of_urdf,
+    with_driver,
+    with_steps,
+)
+from werrimbi_odom.files.read_run import bag_at, read_run
+from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.run import Run
+from werrimbi_odom.files.run_checks import refuse_unjudgeable
+from werrimbi_odom.files.stamps import stamps_of
+from werrimbi_odom.files.text_files import replacing
+from werrimbi_odom.files.wheel_joints import chosen_wheels, joints_told_apart, of_another_robot
+from werrimbi_odom.inference.legs.counters import counters_of
+from werrimbi_odom.inference.legs.cutting import record_of
+from werrimbi_odom.inference.legs.no_driving import looked_at
+from werrimbi_odom.inference.legs.spans import driven
+from werrimbi_odom.inference.recording_info import Held, Info
+from werrimbi_odom.inference.rules import FEW_POSES
+from werrimbi_odom.report.info import document_of, info_json
 
 DESCRIPTION = "/robot_description"
 
@@ -53,8 +71,6 @@ def info(
     InputError
         When a recording cannot be read at all, or a robot file cannot be written.
     """
-    from werrimbi_odom.report.info import document_of, info_json
-
     paths = [Path(each) for each in ([runs] if isinstance(runs, str | Path) else runs)]
     found = _look(paths, None if robot is None else Path(robot), ticks_topic, reference_topic)
     if out is not None:
@@ -69,10 +85,6 @@ def info(
 def _look(
     paths: Sequence[Path], robot: Path | None, ticks_topic: str | None, reference_topic: str | None
 ) -> Info:
-    from werrimbi_odom.files.first_robot import FirstRobot, of_controller
-    from werrimbi_odom.files.robot_file import read_robot_file
-    from werrimbi_odom.inference.recording_info import Info
-
     source, first = None, FirstRobot()
     if robot is not None:
         try:
@@ -98,9 +110,6 @@ def _held(
     ticks_topic: str | None,
     reference_topic: str | None,
 ) -> tuple[Held, FirstRobot]:
-    from werrimbi_odom.files.read_run import bag_at
-    from werrimbi_odom.inference.recording_info import Held
-
     bag = bag_at(path)
     if bag is None:
         run = _read(path, source, first, None, None)
@@ -127,13 +136,6 @@ def _of_bag(
     reference_topic: str | None,
 ) -> tuple[Held, FirstRobot]:
     """What a bag holds, and what it says of the robot."""
-    from werrimbi_odom.files.bag import opened_bag
-    from werrimbi_odom.files.bag_contents import contents_of
-    from werrimbi_odom.files.first_robot import of_urdf, with_driver
-    from werrimbi_odom.files.stamps import stamps_of
-    from werrimbi_odom.files.wheel_joints import chosen_wheels, joints_told_apart, of_another_robot
-    from werrimbi_odom.inference.recording_info import Held
-
     with opened_bag(bag) as opened:
         base = "" if source is None else str(source.values["base_frame_id"])
         contents = contents_of(opened, base)
@@ -164,8 +166,6 @@ def _best(references: Sequence[Measured], wish: str | None) -> Measured | None:
     """The one that is wished for, or that says most of those that are independent."""
     if wish is not None:
         return next((each for each in references if each.name == wish), None)
-    from werrimbi_odom.inference.rules import FEW_POSES
-
     order = ("poses", "positions", "yaw")
     usable = [each for each in references if each.independent and each.messages >= FEW_POSES]
     usable = usable or [each for each in references if each.independent]
@@ -174,12 +174,6 @@ def _best(references: Sequence[Measured], wish: str | None) -> Measured | None:
 
 def _with_ticks(path: Path, wheels: Wheels, first: FirstRobot) -> FirstRobot:
     """Counts a turn by the steps of the wheels' angles, where joints tell them."""
-    import math
-
-    import numpy as np
-
-    from werrimbi_odom.files.first_robot import with_steps
-
     if first.ticks is not None or wheels.gives != "positions" or not first.left:
         return first
     turn = 2.0 * math.pi
@@ -195,8 +189,6 @@ def _read(
     ticks_topic: str | None,
     reference_topic: str | None,
 ) -> Run:
-    from werrimbi_odom.files.read_run import read_run
-
     return read_run(
         path,
         source or robot_file_of(first),
@@ -207,8 +199,6 @@ def _read(
 
 def robot_file_of(first: FirstRobot) -> RobotFile:
     """A robot file of what is known; where sizes are not, of any."""
-    from werrimbi_odom.files.robot_file import read_robot_file
-
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "robot.yaml"
         path.write_text(first.text("what is known"), encoding="utf-8")
@@ -217,14 +207,6 @@ def robot_file_of(first: FirstRobot) -> RobotFile:
 
 def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
     """When it stood, drove, was held and carried, and what will be left out."""
-    import numpy as np
-
-    from werrimbi_odom.files.run_checks import refuse_unjudgeable
-    from werrimbi_odom.inference.legs.counters import counters_of
-    from werrimbi_odom.inference.legs.cutting import record_of
-    from werrimbi_odom.inference.legs.no_driving import looked_at
-    from werrimbi_odom.inference.legs.spans import driven
-
     assert held.run is not None
     robot_file = source or robot_file_of(first)
     robot, limits = robot_file.robot, robot_file.limits
@@ -256,8 +238,6 @@ def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:
 
 
 def _write(found: Info, out: Path, force: bool) -> Path:
-    from werrimbi_odom.files.text_files import replacing
-
     if found.given is not None:
         raise InputError(f"{found.given} is a robot file already; --out is for a first one")
     if not found.first.has_sizes:

@@ -7,27 +7,28 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TextIO, TypeVar
+from typing import Any, NamedTuple, TextIO, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from werrimbi_odom.api.drives import read_run
 from werrimbi_odom.api.result import Result
 from werrimbi_odom.errors import InputError
 from werrimbi_odom.files.robot_file import RobotFile
 from werrimbi_odom.files.run import Run
-from werrimbi_odom.model.pose import Floats, Pose
+from werrimbi_odom.files.start_pose import driven, start_of, with_learnt_phases
+from werrimbi_odom.files.text_files import replacing
+from werrimbi_odom.model.effect import view_of
+from werrimbi_odom.model.encoder import EncoderLimits
+from werrimbi_odom.model.pieces_online import PieceTolerance
+from werrimbi_odom.model.pose import Floats, Pose, wrap_all
+from werrimbi_odom.model.reference_measurement import Path as ShownPath
+from werrimbi_odom.model.reference_measurement import shown
+from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.model.trajectory import Trajectory, trajectory
 from werrimbi_odom.progress import Show, silent
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
-    from werrimbi_odom.model.reference_measurement import Path as ShownPath
-    from werrimbi_odom.model.robot import Robot
-    from werrimbi_odom.model.trajectory import Trajectory
-    from werrimbi_odom.report.reckoning import Reckoning
-
+from werrimbi_odom.report.reckoning import Reckoning, document_of, reckoning_of
 
 COLUMNS = "t_s,x_m,y_m,yaw_rad,xx,xy,xyaw,yy,yyaw,yawyaw"
 _BLOCK = 32768  # rows that are text at once
@@ -55,8 +56,6 @@ class Reckoned(Result[Any]):
         InputError
             When it cannot be written.
         """
-        from werrimbi_odom.files.text_files import replacing
-
         ticks, driven = self.found.run.ticks, self.found.driven
         with replacing(Path(path)) as file:
             shown = self.found.shown if as_reference else driven
@@ -78,11 +77,6 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
     InputError
         When the run cannot be used; the message says why.
     """
-    from werrimbi_odom.files.start_pose import start_of, with_learnt_phases
-    from werrimbi_odom.model.effect import view_of
-    from werrimbi_odom.model.reference_measurement import shown
-    from werrimbi_odom.report.reckoning import document_of, reckoning_of
-
     recorded = run if isinstance(run, Run) else read_run(run, robot)
     complete, learnt = _usable(recorded, lambda: with_learnt_phases(recorded, robot))
     start = _usable(recorded, lambda: start_of(recorded, complete))
@@ -98,8 +92,6 @@ def odom(robot: RobotFile, run: Run | str | Path) -> Reckoned:
 
 def _usable(recorded: Run, work: Callable[[], Found]) -> Found:
     """The result of some work on a run; what is wrong with the run names it."""
-    import numpy as np
-
     try:
         with np.errstate(all="ignore"):  # absurd numbers are found in the end, and said once
             return work()
@@ -108,10 +100,6 @@ def _usable(recorded: Run, work: Callable[[], Found]) -> Found:
 
 
 def _reckoned(recorded: Run, robot_file: RobotFile, start: Pose) -> Trajectory:
-    import numpy as np
-
-    from werrimbi_odom.files.start_pose import driven
-
     found = _usable(recorded, lambda: driven(recorded, robot_file, start))
     for values in (found.x, found.y, found.yaw, *found.covariance):
         wrong = np.flatnonzero(~np.isfinite(values))
@@ -131,8 +119,6 @@ def _write_rows(
     driven: Trajectory | ShownPath,
     show: Show,
 ) -> None:
-    import numpy as np
-
     estimates = (driven.x, driven.y, _half_open(driven.yaw), *driven.covariance)
     file.write(COLUMNS + "\n")
     for first in range(0, time.size, _BLOCK):
@@ -145,10 +131,6 @@ def _write_rows(
 
 def _half_open(yaw: Floats) -> Floats:
     """The same directions in (-pi, pi]."""
-    import numpy as np
-
-    from werrimbi_odom.model.pose import wrap_all
-
     wrapped = wrap_all(yaw)
     return np.minimum(np.where(wrapped <= -np.pi, wrapped + 2.0 * np.pi, wrapped), np.pi)
 
@@ -200,11 +182,6 @@ def odometry(
     ValueError
         When the arrays differ in length, or no row can be used.
     """
-    from werrimbi_odom.files.robot_file import RobotFile
-    from werrimbi_odom.model.encoder import EncoderLimits
-    from werrimbi_odom.model.pieces_online import PieceTolerance
-    from werrimbi_odom.model.trajectory import trajectory
-
     time, of_left, of_right = (np.atleast_1d(np.asarray(part)) for part in (t, left, right))
     if not time.shape == of_left.shape == of_right.shape or time.ndim != 1:
         raise ValueError(

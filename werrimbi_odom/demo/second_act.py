@@ -69,7 +69,7 @@ def second_act(out: Path) -> None:
     print("A robot in a physics engine, with an effect hidden in it. Which one is told at the end.")
     file, better = out / "robot.yaml", out / "better.yaml"
     out.mkdir(parents=True, exist_ok=True)
-    drives: list[Drive] = []
+    drives: list[OdometryError] = []
     for pace in PACES:
         drives = _round(pace, file, better)
         if drives:
@@ -82,7 +82,7 @@ def second_act(out: Path) -> None:
     print(f"    werrimbi simulate --out drives --hide random --seed {SEED}")
 
 
-def _round(pace: float, file: Path, better: Path) -> list[Drive]:
+def _round(pace: float, file: Path, better: Path) -> list[OdometryError]:
     """Both drives, or none where the nodes could not keep up with the robot's time."""
     for path in (file, better):
         path.unlink(missing_ok=True)
@@ -106,7 +106,7 @@ def _round(pace: float, file: Path, better: Path) -> list[Drive]:
     return [first, second]
 
 
-def _driven(stage: Stage, file: Path, new: Path) -> Drive | None:
+def _driven(stage: Stage, file: Path, new: Path) -> OdometryError | None:
     """A drive with a robot file, and what compare_node says of it; None where it was broken off."""
     print(f"\nIt drives with {file}, on its own odometry:")
     stage.forget()
@@ -131,7 +131,7 @@ def _driven(stage: Stage, file: Path, new: Path) -> Drive | None:
     return drive
 
 
-class Drive(NamedTuple):
+class OdometryError(NamedTuple):
     """Where odometry went against the truth; n instants of the reference."""
 
     way: Floats
@@ -142,7 +142,7 @@ class Drive(NamedTuple):
     """Radius [m] that the covariance says holds 95 % of such distances, its longest axis; (n,)."""
 
 
-def drive_of(odometry: Sequence[Any], measured: Sequence[Any]) -> Drive:
+def drive_of(odometry: Sequence[Any], measured: Sequence[Any]) -> OdometryError:
     """Messages of a drive that began at rest (nav_msgs/Odometry, geometry_msgs/PoseStamped)."""
     time, *path = np.array([_row(m.header.stamp, m.pose.pose) for m in odometry]).T
     seen = np.array([_row(m.header.stamp, m.pose) for m in measured])
@@ -155,7 +155,7 @@ def drive_of(odometry: Sequence[Any], measured: Sequence[Any]) -> Drive:
     yaw = float(np.angle(np.mean(np.exp(1j * seen[stands, 3]))))
     moved = seen[:, 1:3] - seen[stands, 1:3].mean(axis=0)
     turned = (moved[:, 0] + 1j * moved[:, 1]) * np.exp(-1j * yaw)
-    return Drive(way, np.abs(turned - (x + 1j * y)), promised)
+    return OdometryError(way, np.abs(turned - (x + 1j * y)), promised)
 
 
 def _row(stamp: Any, pose: Any) -> tuple[float, float, float, float]:
@@ -164,7 +164,7 @@ def _row(stamp: Any, pose: Any) -> tuple[float, float, float, float]:
     return seconds, pose.position.x, pose.position.y, 2.0 * math.atan2(turn.z, turn.w)
 
 
-def error_figure(drives: Mapping[str, Drive]) -> Figure:
+def error_figure(drives: Mapping[str, OdometryError]) -> Figure:
     """How far odometry was off along its way, and how far it said that it might be."""
     figure = blank()
     for (name, drive), colour in zip(drives.items(), (ORANGE, BLUE), strict=True):

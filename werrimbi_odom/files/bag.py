@@ -34,7 +34,7 @@ def topic_in_words(topic: Topic) -> str:
     return f"{topic.name} ({topic.kind})"
 
 
-class Message(NamedTuple):
+class BagMessage(NamedTuple):
     """A message of a bag."""
 
     topic: str
@@ -54,7 +54,7 @@ class Bag:
     _raw: Callable[[Sequence[str]], Iterator[Raw]]
     _types: Types
 
-    def messages(self, topics: Sequence[str]) -> Iterator[Message]:
+    def messages(self, topics: Sequence[str]) -> Iterator[BagMessage]:
         """Messages of some topics, in the order in which they were received.
 
         Raises
@@ -64,7 +64,7 @@ class Bag:
         """
         try:
             for raw in self._raw(topics):
-                yield Message(raw.topic, raw.received, self._read(raw))
+                yield BagMessage(raw.topic, raw.received, self._read(raw))
         except Exception as error:  # a damaged bag raises anything, from struct to zstd
             raise _unreadable(self.path, error) from error
 
@@ -232,7 +232,7 @@ def _in_a_line(error: Exception) -> str:
     return " ".join(str(error).split())[:300] or type(error).__name__
 
 
-def stamp_of(message: Message, header: Any = None) -> float:
+def stamp_of(message: BagMessage, header: Any = None) -> float:
     """Stamp of the header [s]; where that is zero, when the message was received."""
     stamp = (message.content if header is None else header).header.stamp
     nanoseconds = stamp.sec * 10**9 + stamp.nanosec

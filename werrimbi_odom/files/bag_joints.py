@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import Message, left_out_words, stamp_of
+from werrimbi_odom.files.bag import BagMessage, left_out_words, stamp_of
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Ticks, counts_of
+from werrimbi_odom.files.run import Ticks, counts_of, integrated
 from werrimbi_odom.model.counter_wraps import differences
 from werrimbi_odom.model.encoder import Counts
 from werrimbi_odom.model.pose import Floats
@@ -42,7 +42,7 @@ class JointsCollector:
         self._places: list[int] = []
         self._left_out: Counter[str] = Counter()
 
-    def take(self, message: Message) -> None:
+    def take(self, message: BagMessage) -> None:
         """Take a message."""
         content = message.content
         if content.name != self._names or not self._places:
@@ -67,7 +67,8 @@ class JointsCollector:
         words = left_out_words(self._left_out)
         if self._speeds_tell(positions):
             time, speeds = self._speeds.arrays(len(self._wheels))
-            positions, words = _integrated(time, speeds), [*words, INTEGRATED]
+            known = np.where(np.isfinite(speeds), speeds, 0.0)
+            positions, words = integrated(time, known), [*words, INTEGRATED]
         elif not time.size:
             raise InputError(f"{self._place}: {self._why_none()}")
         elif self._file.values["position_unit"] == "radians" and _begin_anew(positions):
@@ -117,14 +118,6 @@ class _Rows:
     def arrays(self, wheels: int) -> tuple[Floats, Floats]:
         """Shapes (n,) and (n, wheels)."""
         return np.array(self._time), np.array(self._values).reshape(-1, wheels)
-
-
-def _integrated(time: Floats, speeds: Floats) -> Floats:
-    """Angles from speeds, by trapezia; stamps that do not go forward add nothing."""
-    known = np.where(np.isfinite(speeds), speeds, 0.0)
-    lasted = np.diff(np.maximum.accumulate(time))[:, None]
-    turned = 0.5 * (known[1:] + known[:-1]) * lasted
-    return np.concatenate([np.zeros((1, speeds.shape[1])), np.cumsum(turned, axis=0)])
 
 
 def _begin_anew(angles: Floats) -> bool:

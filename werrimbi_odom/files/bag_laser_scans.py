@@ -9,10 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import Message, stamp_of
+from werrimbi_odom.files.bag import BagMessage, stamp_of
+from werrimbi_odom.files.bag_chain import Mount, MountingCollector
 from werrimbi_odom.files.bag_contents import Measured
 from werrimbi_odom.files.frames import Chain
-from werrimbi_odom.files.mounting import Mount, MountingCollector
 from werrimbi_odom.files.run import Collected, Reference
 from werrimbi_odom.model.pose import Floats
 from werrimbi_odom.scans.beam_order import AnyOrder, Order
@@ -50,7 +50,7 @@ class LidarCollector:
         self._echoes, self._reach = 0, (0.0, np.inf)
         self.topics = (source.name, *(self._mounting.topics if self._mounting else ()))
 
-    def take(self, message: Message) -> None:
+    def take(self, message: BagMessage) -> None:
         """Take a message of one of the topics."""
         if message.topic != self._name:
             assert self._mounting is not None

@@ -11,10 +11,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import Message, stamp_of
+from werrimbi_odom.files.bag import BagMessage, stamp_of
 from werrimbi_odom.files.bag_reference import planar
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Ticks
+from werrimbi_odom.files.run import Ticks, integrated
 from werrimbi_odom.model.pose import Floats
 
 TOLD = (
@@ -35,7 +35,7 @@ class OdometryTurnedBack:
         self._poses = array("d")
         self._twists = array("d")
 
-    def take(self, message: Message) -> None:
+    def take(self, message: BagMessage) -> None:
         """Take a message."""
         content = message.content
         self._time.append(stamp_of(message))
@@ -52,7 +52,7 @@ class OdometryTurnedBack:
         if not np.isfinite(x + y + yaw).any():
             raise InputError(f"{self._place}: no message holds a finite pose")
         if not (np.ptp(x[np.isfinite(x)]) or np.ptp(y[np.isfinite(y)])) and np.any(speed):
-            along, turned = _integrated(time, speed), _integrated(time, rate)
+            along, turned = integrated(time, speed), integrated(time, rate)
             words.append(FROM_TWIST)
         else:
             whole = np.isfinite(x + y + yaw)
@@ -81,8 +81,3 @@ def _driven(x: Floats, y: Floats, yaw: Floats) -> tuple[Floats, Floats]:
     chord = np.abs(steps) * np.where((steps * heading.conj()).real < 0.0, -1.0, 1.0)
     arc = chord / np.sinc(0.5 * turns / np.pi)
     return tuple(np.concatenate([[0.0], np.cumsum(part)]) for part in (arc, turns))  # type: ignore[return-value]
-
-
-def _integrated(time: Floats, rate: Floats) -> Floats:
-    lasted = np.diff(np.maximum.accumulate(time))
-    return np.concatenate([[0.0], np.cumsum(0.5 * (rate[1:] + rate[:-1]) * lasted)])

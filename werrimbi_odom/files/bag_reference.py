@@ -13,12 +13,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import Message, stamp_of
+from werrimbi_odom.files.bag import BagMessage, stamp_of
 from werrimbi_odom.files.bag_contents import FIX, IMU, SCAN, Measured
 from werrimbi_odom.files.frames import frame
 from werrimbi_odom.files.gyro import yaw_rate
 from werrimbi_odom.files.robot_file import RobotFile
-from werrimbi_odom.files.run import Collected, Reference, ReferenceKind
+from werrimbi_odom.files.run import Collected, Reference, ReferenceKind, integrated
 from werrimbi_odom.model.pose import Floats
 
 NAN = math.nan
@@ -57,7 +57,7 @@ class ReferenceCollector:
         self._found: dict[tuple[str, str], array[float]] = {}
         self._forces = array("d")
 
-    def take(self, message: Message) -> None:
+    def take(self, message: BagMessage) -> None:
         """Take a message of the source's topic."""
         if self._source.kind == IMU and message.content.linear_acceleration_covariance[0] != -1.0:
             force = message.content.linear_acceleration
@@ -77,7 +77,7 @@ class ReferenceCollector:
         table, mounted = np.array(self._found[parent, child]).reshape(-1, 6), ""
         if self._source.kind == IMU:
             rate, mounted = yaw_rate(table[:, 1:4], np.array(self._forces).reshape(-1, 3))
-            table[:, 1:3], table[:, 3] = NAN, _integrated(table[:, 0], rate)
+            table[:, 1:3], table[:, 3] = NAN, integrated(table[:, 0], rate)
         if self._source.kind == FIX:
             table[:, 1], table[:, 2] = east_and_north(self._place, *table[:, 1:4].T)
             table[:, 3] = NAN
@@ -124,13 +124,13 @@ def planar(point: Any, orientation: Any) -> tuple[float, float, float]:
     return x, y, _yaw(orientation)
 
 
-def _of_pose(message: Message) -> Iterator[_Row]:
+def _of_pose(message: BagMessage) -> Iterator[_Row]:
     pose, name = message.content.pose, message.content.header.frame_id
     measured = planar(pose.position, pose.orientation)
     yield _Row((frame(name), ""), (stamp_of(message), *measured, NAN, NAN))
 
 
-def _of_odometry(message: Message) -> Iterator[_Row]:
+def _of_odometry(message: BagMessage) -> Iterator[_Row]:
     """Its covariance is left alone: it grows along the way, and says nothing of a single pose."""
     content = message.content
     frames = (frame(content.header.frame_id), frame(content.child_frame_id))
@@ -138,7 +138,7 @@ def _of_odometry(message: Message) -> Iterator[_Row]:
     yield _Row(frames, (stamp_of(message), *measured, NAN, NAN))
 
 
-def _of_pose_with_covariance(message: Message) -> Iterator[_Row]:
+def _of_pose_with_covariance(message: BagMessage) -> Iterator[_Row]:
     stamped = message.content.pose
     measured = planar(stamped.pose.position, stamped.pose.orientation)
     xx, yy, yawyaw = (float(stamped.covariance[place]) for place in (0, 7, 35))
@@ -152,17 +152,17 @@ def _deviation(variance: float) -> float:
     return math.sqrt(variance) if 0.0 < variance < math.inf else NAN
 
 
-def _of_transform(message: Message) -> Iterator[_Row]:
+def _of_transform(message: BagMessage) -> Iterator[_Row]:
     yield _transform(message, message.content)
 
 
-def _transform(message: Message, content: Any) -> _Row:
+def _transform(message: BagMessage, content: Any) -> _Row:
     frames = (frame(content.header.frame_id), frame(content.child_frame_id))
     measured = planar(content.transform.translation, content.transform.rotation)
     return _Row(frames, (stamp_of(message, content), *measured, NAN, NAN))
 
 
-def _of_imu(message: Message) -> Iterator[_Row]:
+def _of_imu(message: BagMessage) -> Iterator[_Row]:
     """Rates about x, y and z stand in a pose's place until it is known which way is up."""
     turning = message.content.angular_velocity
     # Gyros of one axis leave the others unsaid.
@@ -174,14 +174,14 @@ def _of_imu(message: Message) -> Iterator[_Row]:
         yield _Row(("", name), (stamp_of(message), *rates, NAN, NAN))
 
 
-def _of_point(message: Message) -> Iterator[_Row]:
+def _of_point(message: BagMessage) -> Iterator[_Row]:
     point = message.content.point
     x, y = float(point.x), float(point.y)
     name = frame(message.content.header.frame_id)
     yield _Row((name, ""), (stamp_of(message), x, y, NAN, NAN, NAN))
 
 
-def _of_fix(message: Message) -> Iterator[_Row]:
+def _of_fix(message: BagMessage) -> Iterator[_Row]:
     """Degrees and the altitude stand in the place of a pose until the first fix is known."""
     content = message.content
     degrees = float(content.latitude), float(content.longitude)
@@ -193,14 +193,7 @@ def _of_fix(message: Message) -> Iterator[_Row]:
     yield _Row(("", name), (stamp_of(message), *degrees, float(content.altitude), sigma, NAN))
 
 
-def _integrated(time: Floats, rate: Floats) -> Floats:
-    """Yaw from a yaw rate, by trapezia; stamps that do not go forward add nothing."""
-    latest = np.maximum.accumulate(time)
-    turns = 0.5 * (rate[1:] + rate[:-1]) * np.diff(latest)
-    return np.concatenate([[0.0], np.cumsum(turns)])
-
-
-_ROWS: dict[str, Callable[[Message], Iterator[_Row]]] = {
+_ROWS: dict[str, Callable[[BagMessage], Iterator[_Row]]] = {
     "nav_msgs/msg/Odometry": _of_odometry,
     "geometry_msgs/msg/PoseStamped": _of_pose,
     LOCALISED: _of_pose_with_covariance,

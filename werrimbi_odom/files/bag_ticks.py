@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from werrimbi_odom.errors import InputError
-from werrimbi_odom.files.bag import Message, left_out_words, stamp_of, topic_in_words
+from werrimbi_odom.files.bag import BagMessage, left_out_words, stamp_of, topic_in_words
 from werrimbi_odom.files.bag_contents import (
     ARRAYS,
     FLOATS,
@@ -113,7 +113,7 @@ def _listed(sources: Sequence[Wheels]) -> str:
 class TicksCollector(Protocol):
     """Takes messages, one at a time, and gives the ticks at the end."""
 
-    def take(self, message: Message) -> None:
+    def take(self, message: BagMessage) -> None:
         """Take a message of one of the source's topics."""
 
     def ticks(self) -> tuple[Ticks, list[str]]:
@@ -167,7 +167,7 @@ class CountersCollector(_TwoCounts):
         self._driver = DRIVERS[source.kind]
         super().__init__(f"{path}: {source.name}", _width(robot_file, self._driver.bits))
 
-    def take(self, message: Message) -> None:
+    def take(self, message: BagMessage) -> None:
         """Take a message."""
         sides = (self._driver.left, self._driver.right)
         self._add(stamp_of(message), *(int(getattr(message.content, name)) for name in sides))
@@ -186,7 +186,7 @@ class MultiArrays(_TwoCounts):
         super().__init__(f"{path}: {source.name}", bits)
         self._left_out: Counter[str] = Counter()
 
-    def take(self, message: Message) -> None:
+    def take(self, message: BagMessage) -> None:
         """Take a message."""
         if len(message.content.data) != 2:
             self._left_out["not of two values, left and right"] += 1
@@ -221,7 +221,7 @@ class Pairs(_TwoCounts):
         self._window = float(robot_file.values["pairing_window"])  # type: ignore[arg-type]
         self._read_at, self._side, self._count = array("d"), array("b"), array("q")
 
-    def take(self, message: Message) -> None:
+    def take(self, message: BagMessage) -> None:
         """Take a message."""
         stamped = hasattr(message.content, "header")
         self._read_at.append(stamp_of(message) if stamped else message.received / 1e9)

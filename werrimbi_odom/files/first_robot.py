@@ -154,11 +154,9 @@ def _wheels(robot: ElementTree.Element) -> Iterator[_Wheel]:
 def _has_stops(joint: ElementTree.Element) -> bool:
     """Whether a joint stays within two turns, as an arm's does and no wheel's."""
     limit = joint.find("limit")
-    if (
-        joint.get("type") != "revolute"
-        or limit is None
-        or not {"lower", "upper"} & set(limit.keys())
-    ):
+    if joint.get("type") != "revolute" or limit is None:
+        return False
+    if not {"lower", "upper"} & set(limit.keys()):
         return False
     return float(limit.get("upper", "0")) - float(limit.get("lower", "0")) <= 2.0 * TURN
 
@@ -181,23 +179,14 @@ def _pose_of(link: str | None, joints: Mapping[str | None, ElementTree.Element])
 
 
 def _origin(element: ElementTree.Element | None) -> Floats:
+    from scipy.spatial.transform import Rotation
+
     pose = np.eye(4)
     if element is not None:
         pose[:3, 3] = _three(element.get("xyz"), (0.0, 0.0, 0.0))
-        pose[:3, :3] = _turned(_three(element.get("rpy"), (0.0, 0.0, 0.0)))
+        angles = _three(element.get("rpy"), (0.0, 0.0, 0.0))  # roll, pitch, yaw: fixed axes
+        pose[:3, :3] = Rotation.from_euler("xyz", angles).as_matrix()
     return pose
-
-
-def _turned(angles: Floats) -> Floats:
-    """Rotation of roll, pitch and yaw, as URDF has it."""
-    (cr, cp, cy), (sr, sp, sy) = np.cos(angles), np.sin(angles)
-    return np.array(
-        [
-            [cy * cp, cy * sp * sr - sy * cr, cy * sp * cr + sy * sr],
-            [sy * cp, sy * sp * sr + cy * cr, sy * sp * cr - cy * sr],
-            [-sp, cp * sr, cp * cr],
-        ]
-    )
 
 
 def _three(text: str | None, usual: tuple[float, float, float]) -> Floats:
@@ -281,11 +270,8 @@ def _blocks(content: Any) -> Iterator[Mapping[str, Any]]:
 def _names(value: Any) -> tuple[str, ...]:
     if isinstance(value, str):
         return (value,)
-    return tuple(value) if isinstance(value, list) and all(map(_is_text, value)) else ()
-
-
-def _is_text(value: object) -> bool:
-    return isinstance(value, str)
+    texts = isinstance(value, list) and all(isinstance(each, str) for each in value)
+    return tuple(value) if texts else ()
 
 
 def with_driver(first: FirstRobot, kind: str) -> FirstRobot:

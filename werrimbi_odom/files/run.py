@@ -25,6 +25,13 @@ adds up (a gyro); or on a map, with an error that wanders slowly as well (a loca
 Made = TypeVar("Made")
 
 
+def integrated(time: Floats, rates: Floats) -> Floats:
+    """Integral over time, (n, ...), by trapezia; stamps that do not go forward add nothing."""
+    lasted = np.diff(np.maximum.accumulate(time)).reshape(-1, *(1,) * (rates.ndim - 1))
+    steps = 0.5 * (rates[1:] + rates[:-1]) * lasted
+    return np.concatenate([np.zeros((1, *rates.shape[1:])), np.cumsum(steps, axis=0)])
+
+
 @dataclass(frozen=True, eq=False)
 class Ticks:
     """What the encoders counted; arrays of shape (n,)."""

@@ -27,6 +27,7 @@ from werrimbi_odom.files.text_files import read_small_text
 
 MAX_DEPTH = 8
 _ERRORS_OF_SCALARS = (ValueError, ArithmeticError, LookupError, TypeError, AttributeError)
+"""That ruamel lets out as they are (a date in month 13)."""
 _TAGS = ("!", *("tag:yaml.org,2002:" + kind for kind in ("str", "int", "float", "bool", "null")))
 
 _READ_OTHERWISE = re.compile(
@@ -87,15 +88,7 @@ def load(text: str, path: Path) -> CommentedMap:
             f"{path}{where}: a comment between a key and its value cannot be kept; put it on a "
             "line above them"
         ) from None
-    except (
-        YAMLError,
-        ValueError,
-        ArithmeticError,
-        LookupError,
-        TypeError,
-        AttributeError,
-    ) as error:
-        # ruamel lets some errors of its scalars out as they are (a date in month 13)
+    except (YAMLError, *_ERRORS_OF_SCALARS) as error:
         problem = " ".join(str(error).split())
         raise InputError(f"{path}: this is not YAML: {problem}") from None
     if content is None:

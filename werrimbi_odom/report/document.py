@@ -30,7 +30,7 @@ class Paragraph:
 
 
 @dataclass(frozen=True)
-class Entry:
+class Definition:
     """A name or a value, and below it what it is."""
 
     term: str
@@ -52,7 +52,7 @@ class Table:
     """What was left out."""
 
 
-Part = Paragraph | Entry | Table
+Part = Paragraph | Definition | Table
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from werrimbi_odom.files.text_files import readable, replacing
-from werrimbi_odom.report.document import Document, Entry, Paragraph, Part, Shown, Table
+from werrimbi_odom.report.document import Definition, Document, Paragraph, Part, Shown, Table
 from werrimbi_odom.report.style import IN_THE_DARK
 
 if TYPE_CHECKING:
@@ -127,7 +127,7 @@ def as_html(parts: Iterable[Part]) -> str:
 def _written_by(part: Part) -> Callable[[Sequence[Any]], str]:
     if isinstance(part, Table):
         return _tables
-    if isinstance(part, Entry):
+    if isinstance(part, Definition):
         return _entries
     return {"words": _paragraphs, "point": _points}.get(part.kind, _verbatim)
 
@@ -145,7 +145,7 @@ def _verbatim(parts: Sequence[Paragraph]) -> str:
     return "\n".join(f"<pre>{html.escape(part.text)}</pre>" for part in parts)
 
 
-def _entries(parts: Sequence[Entry]) -> str:
+def _entries(parts: Sequence[Definition]) -> str:
     rows = "".join(f"<dt>{_inline(part.term)}</dt><dd>{_inline(part.says)}</dd>" for part in parts)
     return f"<dl>{rows}</dl>"
 

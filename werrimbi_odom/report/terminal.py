@@ -7,7 +7,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable
 
-from werrimbi_odom.report.document import Document, Entry, Part, Table
+from werrimbi_odom.report.document import Definition, Document, Part, Table
 
 _WIDTH = 80
 _COMMAND = "    "
@@ -32,7 +32,7 @@ def as_text(parts: Iterable[Part]) -> str:
 
 
 def _as_text(part: Part) -> str:
-    if isinstance(part, Entry):
+    if isinstance(part, Definition):
         return f"  {part.term}\n{_filled(part.says, '    ', '    ')}"
     if isinstance(part, Table):
         lines = _columns(part) if part.heads else _pairs(part)

@@ -38,7 +38,7 @@ from werrimbi_odom.report.style import (
     plain,
     small,
 )
-from werrimbi_odom.workbench.steps import Step
+from werrimbi_odom.workbench.steps import ModelVersion
 
 BUTTONS = ["select2d", "lasso2d", "autoScale2d", "toImage"]
 """Of plotly's tool bar, that nobody needs here."""
@@ -190,7 +190,7 @@ def _joined(
     )
 
 
-def gain_figure(steps: Sequence[Step]) -> Figure:
+def gain_figure(steps: Sequence[ModelVersion]) -> Figure:
     """Held-out and fitted drives apart, and what noise alone would leave of the held-out ones."""
     added = steps[-1].added
     explained = added is not None and added.explained

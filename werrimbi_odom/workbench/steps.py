@@ -36,7 +36,7 @@ class Diagnosed:
 
 
 @dataclass(frozen=True, eq=False)
-class Step:
+class ModelVersion:
     """A robot, how it does, and what was added to get there."""
 
     look: Look
@@ -62,9 +62,9 @@ class Saved:
 class Session:
     """The steps of one tab; those after `at` were undone and can be done again."""
 
-    steps: tuple[Step, ...]
+    steps: tuple[ModelVersion, ...]
     at: int = 0
-    proposed: Step | None = None
+    proposed: ModelVersion | None = None
     """Fitted, but something speaks against it: the user has to say."""
     diagnoses: Mapping[int, Diagnosed] = field(default_factory=dict)
     """By the index of the step that was diagnosed."""
@@ -72,12 +72,12 @@ class Session:
     """Files that this tab wrote."""
 
     @property
-    def now(self) -> Step:
+    def now(self) -> ModelVersion:
         """The current step."""
         return self.steps[self.at]
 
     @property
-    def past(self) -> tuple[Step, ...]:
+    def past(self) -> tuple[ModelVersion, ...]:
         """Steps up to the current one."""
         return self.steps[: self.at + 1]
 
@@ -105,13 +105,13 @@ class Session:
         """With what is missing at the current step."""
         return replace(self, diagnoses={**self.diagnoses, self.at: diagnosis})
 
-    def fitted(self, step: Step) -> Session:
+    def fitted(self, step: ModelVersion) -> Session:
         """An effect was fitted: taken if nothing speaks against it, else proposed."""
         if step.added is not None and step.added.objection is not None:
             return replace(self, proposed=step)
         return self.taken(step)
 
-    def taken(self, step: Step) -> Session:
+    def taken(self, step: ModelVersion) -> Session:
         """A step further; what was undone is gone."""
         following = self.at + 1
         return replace(
@@ -150,4 +150,4 @@ class Session:
 
 def begun(look: Look) -> Session:
     """A session that has done nothing yet."""
-    return Session((Step(look),))
+    return Session((ModelVersion(look),))

@@ -17,7 +17,7 @@ from werrimbi_odom.report.diagnosis.figures import ideal_of, manoeuvre_figure, s
 from werrimbi_odom.report.over_variable import before_after_figure
 from werrimbi_odom.workbench.job import Add, Diagnose
 from werrimbi_odom.workbench.opened import Opened, split
-from werrimbi_odom.workbench.steps import Diagnosed, Step
+from werrimbi_odom.workbench.steps import Diagnosed, ModelVersion
 
 
 def diagnosed(task: Diagnose, given: Recordings, show: Show) -> Diagnosed:
@@ -48,7 +48,7 @@ def _figures(told: Told) -> dict[str, str]:
     return {name: str(figure.to_json()) for name, figure in figures.items()}
 
 
-def added(task: Add, opened: Opened, show: Show) -> Step:
+def added(task: Add, opened: Opened, show: Show) -> ModelVersion:
     """Fit, and compare over the same legs as before.
 
     Raises
@@ -60,4 +60,4 @@ def added(task: Add, opened: Opened, show: Show) -> Step:
     effects = [given.collection.find(name) for name in task.effects]
     fitted = added_by(given, effects, lambda share, words: show(0.8 * share, words)).found
     show(0.8, "comparing")
-    return Step(opened.look(fitted.robot), fitted)
+    return ModelVersion(opened.look(fitted.robot), fitted)

@@ -62,8 +62,8 @@ class Discrimination:
     minutes: float
     """Duration in minutes."""
     rises: Mapping[Pair, float]
-    """Expected rise of the wrong rival's cost for each pair that a drive can tell apart: the minimum
-    over which of the two is true."""
+    """Expected rise of the wrong rival's cost, for each pair that a drive can tell apart: the
+    minimum over which of the two is true."""
     apart: Callable[[Pair], Floats]
     """Difference of the legs between two rivals, (m, 3)."""
 

@@ -12,7 +12,7 @@ from werrimbi_odom.inference.adding.fitted_parameters import FittedParameter
 from werrimbi_odom.inference.fitting.free_parameters import MULTIPLIERS
 from werrimbi_odom.report.comparison.words import headline
 from werrimbi_odom.report.diagnosis.dependence import amount_words, variable_words
-from werrimbi_odom.report.document import Entry, Part, Table, paragraphs
+from werrimbi_odom.report.document import Definition, Part, Table, paragraphs
 from werrimbi_odom.report.events import events_json, events_words
 from werrimbi_odom.report.numbers import listed, picked, quantity, scaled_with_std
 from werrimbi_odom.report.phrases import jumps_words, left_out_json, left_out_words, sizes_words
@@ -47,9 +47,11 @@ def _headline(added: Added) -> str:
     return text
 
 
-def _parameters(added: Added) -> list[Entry]:
+def _parameters(added: Added) -> list[Definition]:
     return [
-        Entry(f"{name} = {value_told(item)}", item.declared.says + remark_told(item), number == 0)
+        Definition(
+            f"{name} = {value_told(item)}", item.declared.says + remark_told(item), number == 0
+        )
         for number, (name, item) in enumerate(added.parameters.items())
     ]
 

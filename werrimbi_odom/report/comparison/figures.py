@@ -13,7 +13,6 @@ from werrimbi_odom.report.style import (
     BLUE,
     GREEN,
     GREY,
-    INK,
     ORANGE,
     Figure,
     blank,
@@ -41,15 +40,12 @@ def nees_figure(comparison: Comparison) -> Figure:
     free = len(measured_channels(comparison))
     lengths = [f"{item.leg:g} m" for item in comparison.lengths]
     looks = {
-        "all": (INK, "diamond", None),
         "line": (BLUE, "circle", -0.24),
         "arc": (ORANGE, "square", 0.0),
         "spin": (GREEN, "triangle-up", 0.24),
     }
     drawn = False
     for kind, (colour, symbol, aside) in looks.items():
-        if aside is None:
-            continue
         at, values, low, high, texts = [], [], [], [], []
         for number, item in enumerate(comparison.lengths):
             found = item.by_motion[kind].figures

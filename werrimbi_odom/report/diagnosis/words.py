@@ -62,13 +62,8 @@ class NextSteps:
 def words_of(told: Told, steps: NextSteps) -> tuple[Paragraph, ...]:
     """All sentences, and the commands of the next step."""
     diagnosis = told.diagnosis
-    tell = {
-        "none": _none,
-        "named": _named,
-        "ambiguous": _ambiguous,
-        "unknown": _unknown,
-    }[diagnosis.verdict]
-    said = [*_changes(told), *tell(told, steps), *otherwise(diagnosis)]
+    tell = {"none": _none, "named": _named, "ambiguous": _ambiguous, "unknown": _unknown}
+    said = [*_changes(told), *tell[diagnosis.verdict](told, steps), *otherwise(diagnosis)]
     suspect = [f"But: {remark_words(remark)}" for remark in diagnosis.remarks]
     left_out = [*suspect, *left_out_words(diagnosis.left_out), *jumps_words(diagnosis.left_out)]
     left_out += events_words(diagnosis.happened, diagnosis.robot.track)
@@ -98,35 +93,21 @@ def _changes(told: Told) -> list[str]:
     ]
 
 
-_HEADS = (
-    "On the robot",
-    "What it is",
-    "How large",
-    "How sure",
-    "What it costs",
-    "Check it",
-    "Next",
-    "But",
-    "Why",
-)
+_HEADS = ["On the robot", "What it is", "How large", "How sure", "What it costs", "Check it"]
+_HEADS += ["Next", "But", "Why"]
 
 
 def _none(told: Told, steps: NextSteps) -> list[str]:
     diagnosis = told.diagnosis
     hidden = [sight for sight in told.sights if sight.hidden]
-    misfit = diagnosis.misfit is not None
     wanders = reference_wanders(diagnosis)
-    lines = [
-        "Nothing is missing that these drives could show"
-        + ("." if wanders or misfit else ": the model explains them to their noise."),
-        *law(told),
-    ]
-    errors = diagnosis.holdout.after
-    if math.isfinite(errors):
-        like = "" if wanders or misfit else ", and they look like noise"
-        lines.append(
-            f"Its errors on {judged(told)} are {error_words(errors, diagnosis.holdout.unit)}{like}."
-        )
+    noise = diagnosis.misfit is None and not wanders
+    ending = ": the model explains them to their noise." if noise else "."
+    lines = [f"Nothing is missing that these drives could show{ending}", *law(told)]
+    if math.isfinite(diagnosis.holdout.after):
+        errors = error_words(diagnosis.holdout.after, diagnosis.holdout.unit)
+        like = ", and they look like noise" if noise else ""
+        lines.append(f"Its errors on {judged(told)} are {errors}{like}.")
     lines += instead_of_held(diagnosis)
     if wanders:
         lines.append(
@@ -208,8 +189,8 @@ def _ambiguous(told: Told, steps: NextSteps) -> list[str]:
             "No manoeuvre of the library tells them apart in reasonable time; a ruler may."
         )
     rest = [other for other in diagnosis.found if other not in rivals]
-    lines.append("Or, if you know which it is, add it, for example:")
-    lines.append(f"    {steps.add([rivals[0], *rest])}")
+    command = steps.add([rivals[0], *rest])
+    lines += ["Or, if you know which it is, add it, for example:", f"    {command}"]
     for name in rivals[:3]:
         lines += ruler(diagnosis, diagnosis.effect_named(name), f"Check {name}")
     for other in diagnosis.found[1:]:
@@ -270,8 +251,8 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
             )
         )
     lines += at_bounds_told(diagnosis)
-    lines.append("Next: write it as an effect of your own, from what these drives show:")
-    lines.append(f"    {steps.draft}")
+    lines += ["Next: write it as an effect of your own, from what these drives show:"]
+    lines += [f"    {steps.draft}"]
     if told.manoeuvre is not None:
         move = told.manoeuvre
         lines.append(f"To know more first, {move.do} ({move.name}): {move.why}.")

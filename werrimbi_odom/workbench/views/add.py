@@ -10,7 +10,7 @@ from werrimbi_odom.report.document import Table
 from werrimbi_odom.report.numbers import listed
 from werrimbi_odom.workbench.drawings import gain_figure
 from werrimbi_odom.workbench.html import box, button, figure, prose, text
-from werrimbi_odom.workbench.steps import Step
+from werrimbi_odom.workbench.steps import ModelVersion
 from werrimbi_odom.workbench.tab import Tab, millimetres, percent
 
 NOTHING = (
@@ -76,7 +76,7 @@ def _values(number: int, added: Added) -> None:
             prose(words_of(added))
 
 
-def _proposed(tab: Tab, step: Step) -> None:
+def _proposed(tab: Tab, step: ModelVersion) -> None:
     assert step.added is not None
     with box("section", "proposed", aria_label="An objection"):
         text("p", f"{step.name}: not added, something speaks against it.", "headline")

@@ -1,0 +1,65 @@
+# SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
+# SPDX-License-Identifier: Apache-2.0
+"""Words of a diagnosis: costs that fall, what is not shown, sizes that no drive tells apart."""
+
+from __future__ import annotations
+
+from types import SimpleNamespace
+from typing import Any
+
+import pytest
+
+from werrimbi_odom.inference.diagnosis.estimated_values import Value
+from werrimbi_odom.inference.diagnosis.paired_comparison import Sides
+from werrimbi_odom.report.diagnosis.phrases import cost, hang_together, whole
+from werrimbi_odom.report.diagnosis.remarks import not_shown
+
+
+def told_of(after: float) -> Any:
+    """One thing that was found, and another, by a metre of driving."""
+    sides = Sides(3.5300e-3, after)
+    diagnosis = SimpleNamespace(
+        found=("track_width", "reference_delay"),
+        ranking=(SimpleNamespace(effect="track_width", holdout=sides),),
+        holdout=sides,
+    )
+    return SimpleNamespace(diagnosis=diagnosis, held_out=(), leg=0.25)
+
+
+@pytest.mark.parametrize(
+    ("after", "one", "all_of_it"),
+    [
+        (3.5299e-3, "hardly anything on a part put aside for judging", "stays at 3.5 mm"),
+        (1.2e-3, "falls from 3.5 mm to 1.2 mm when it is put in", "falls from 3.5 mm to 1.2 mm"),
+    ],
+)
+def test_what_it_costs(after: float, one: str, all_of_it: str) -> None:
+    told = told_of(after)
+    assert one in " ".join(cost(told, "track_width"))
+    assert all_of_it in " ".join(whole(told))
+
+
+def test_what_was_named_is_not_among_what_the_drives_cannot_show() -> None:
+    """A base that is 9 % off is seen where one of the usual 2 % would not be."""
+    sights = tuple(
+        SimpleNamespace(effect=name, hidden=True, shown_by="arcs", needs_more=False)
+        for name in ("track_width", "tyre_squash")
+    )
+    told: Any = SimpleNamespace(diagnosis=SimpleNamespace(found=("track_width",)), sights=sights)
+    (said,) = not_shown(told)
+    assert "tyre_squash (arcs would show it)" in said
+    assert "track_width" not in said
+
+
+def value(size: float, std: float, *, determined: bool = True) -> Value:
+    return Value(size, std, "rad", "an angle", 0.0, determined=determined)
+
+
+def test_two_that_may_each_be_none_hang_together() -> None:
+    assert "hang together" in hang_together([value(0.040, 0.044), value(-0.075, 0.071)])
+
+
+def test_one_that_is_known_says_it_all() -> None:
+    assert hang_together([value(0.040, 0.004), value(-0.075, 0.071)]) == ""
+    assert hang_together([value(0.040, 0.044)]) == ""
+    assert hang_together([value(0.04, 0.044), value(0.1, 0.2, determined=False)]) == ""
