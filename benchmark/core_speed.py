@@ -4,7 +4,8 @@
 
 All are timed by turns in one run, in processor time, so their ratio holds whatever else the machine
 does. What goes tick by tick is timed on a slice and scaled: it grows in proportion to the ticks.
-Recorded runs go along machine code where numba is installed, and along arrays where it is not.
+Recorded runs go along machine code where numba is installed, and along arrays where it is not; the
+quick odometer is the odometer with machine code.
 
     python benchmark/core_speed.py [--most TICKS]
 """
@@ -32,6 +33,7 @@ from test.model.drives import ROBOT, Ticks, random_drive, square
 from test.plain_twin import plain_run
 from werrimbi_odom.model import compiled
 from werrimbi_odom.model.odometer import Odometer
+from werrimbi_odom.model.quick_odometer import QuickOdometer
 from werrimbi_odom.model.trajectory import trajectory
 
 RECORDING = Path(__file__).resolve().parents[1] / "werrimbi_odom" / "recordings" / "square"
@@ -46,7 +48,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--most", type=int, default=MILLION, help="ticks that growth goes to")
     most = parser.parse_args().most
-    console = Console(width=120)
+    console = Console(width=150)
     drives = {
         "squares at 50 Hz": square(rate=50.0, laps=480),
         "squares at 200 Hz": square(rate=200.0, laps=120),
@@ -71,6 +73,8 @@ def race(drives: dict[str, Ticks]) -> Table:
         "arrays",
         "odometer",
         "asked for all",
+        "quick odometer",
+        "asked for all",
         "plain numpy",
         "plain Python",
     ):
@@ -79,15 +83,18 @@ def race(drives: dict[str, Ticks]) -> Table:
         part, scale = first(ticks, SLICE), ticks.time.size / SLICE
         agree(part)
         counts = part.left.tolist(), part.right.tolist()
-        machine, arrays, live, asked, plain, floats = shortest(
+        machine, arrays, live, asked, quick, quick_asked, plain, floats = shortest(
             partial(trajectory, ROBOT, *ticks),
             partial(in_arrays, ticks),
-            partial(streamed, part),
-            partial(streamed, part, ask=True),
+            partial(streamed, part, Odometer),
+            partial(streamed, part, Odometer, ask=True),
+            partial(streamed, part, QuickOdometer),
+            partial(streamed, part, QuickOdometer, ask=True),
             partial(plain_run, ROBOT, part.left, part.right),
             partial(per_tick, ROBOT, *counts),
         )
-        times = [machine, arrays, live * scale, asked * scale, plain * scale]
+        per_tick_each = (live, asked, quick, quick_asked, plain)
+        times = [machine, arrays, *(scale * each for each in per_tick_each)]
         table.add_row(
             name,
             f"{len(trajectory(ROBOT, *ticks).pieces):,}",
@@ -183,13 +190,13 @@ def messages(ticks: Ticks, begin: int, end: int) -> Iterator[tuple[float, int, i
         yield from zip(*some, strict=True)
 
 
-def streamed(ticks: Ticks, ask: bool = False) -> None:
-    """The record through the odometer; `ask`ed for all that the node publishes."""
-    odometer = Odometer(ROBOT)
+def streamed(ticks: Ticks, kind: type[Odometer], ask: bool = False) -> None:
+    """The record through an odometer; `ask`ed for all that the node publishes."""
+    odometer = kind(ROBOT)
     for message in zip(*(part.tolist() for part in ticks), strict=True):
         estimate = odometer.update(*message)
         if ask and estimate is not None:
-            _ = estimate.covariance, estimate.twist, estimate.twist_covariance
+            _ = estimate.pose, estimate.covariance, estimate.twist, estimate.twist_covariance
 
 
 def titled(title: str) -> Table:

@@ -52,7 +52,7 @@ DRIVE = 300.0
 DRIVES = 12
 """An hour of them."""
 
-LIMIT = 30.0
+LIMIT = 15.0
 """The hour's diagnosis should take less on 2 idle cores [s]."""
 
 ROBOT = TrueRobot(left_wheel_noise=4.0e-4, right_wheel_noise=5.8e-4)

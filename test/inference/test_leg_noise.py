@@ -43,9 +43,9 @@ def test_the_noise_of_legs_is_one_sum(
 ) -> None:
     model, runs = legs
     given = path_of(model, runs), runs, model.robot.track, seen_by(model, runs)
-    with patch.object(leg_noise, "compiled", lambda function: None):
+    with patch.object(leg_noise, "compiled_for", lambda *of, again: None):
         arrays = noise_of_legs(*given)
-    with patch.object(leg_noise, "compiled", lambda function: way):
+    with patch.object(leg_noise, "compiled_for", lambda *of, again: way):
         numbers = noise_of_legs(*given)
     for one, other in zip(numbers, arrays, strict=True):
         size = np.sqrt(np.einsum("mii->mi", other))
@@ -60,9 +60,9 @@ def test_machine_code_follows_the_steps_as_arrays_do(
 ) -> None:
     model, runs = legs
     motion = path_of(model, runs).motion
-    with patch.object(course, "compiled", lambda function: None):
+    with patch.object(course, "compiled_for", lambda *of, again: None):
         position, yaw = course.followed(motion)
-    with patch.object(course, "compiled", lambda function: way):
+    with patch.object(course, "compiled_for", lambda *of, again: way):
         its_position, its_yaw = course.followed(motion)
     assert np.ptp(yaw) > 1.0
     np.testing.assert_allclose(its_position, position, rtol=0.0, atol=1e-12)

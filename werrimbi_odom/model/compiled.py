@@ -26,9 +26,13 @@ WORTH_COMPILING = 200_000
 """Steps from which machine code saves more than it takes to load it (0.4 s)."""
 
 
-def compiled_for(steps: int, function: Function) -> Function | None:
-    """Machine code to go along so many steps, where it pays."""
-    return compiled(function) if steps >= WORTH_COMPILING else None
+WORTH_AGAIN = 30_000
+"""The same for who goes along them again and again, as a fit does (0.2 s for each function)."""
+
+
+def compiled_for(steps: int, function: Function, again: bool = False) -> Function | None:
+    """Machine code to go along so many steps, where it pays; `again` and again, or once."""
+    return compiled(function) if steps >= (WORTH_AGAIN if again else WORTH_COMPILING) else None
 
 
 @cache

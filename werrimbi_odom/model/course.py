@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from werrimbi_odom.model.compiled import compiled, compiled_for
+from werrimbi_odom.model.compiled import compiled_for
 from werrimbi_odom.model.covariance import (
     PathNoise,
     PoseCovariance,
@@ -140,10 +140,10 @@ def integrated(start: Pose, motion: BodyMotion[Floats]) -> Floats:
 def followed(motion: BodyMotion[Floats]) -> tuple[NDArray[np.complex128], Floats]:
     """Position and yaw from zero on, shape (n + 1,) each: `integrated`, the fastest way there is.
 
-    For who follows one run again and again, and has machine code loaded anyway.
+    For who follows one run again and again.
     """
     position = np.zeros(motion.turn.size + 1, dtype=np.complex128)
-    machine = compiled(follow)
+    machine = compiled_for(motion.turn.size, follow, again=True)
     if machine is None:
         x, y, yaw = integrated(Pose(), motion)
         position.real, position.imag = x, y

@@ -83,6 +83,48 @@ def noise_of_wheel_variances(left: Number, right: Number, track: float) -> PathN
     return PathNoise(0.25 * both, both / (track * track), 0.5 * (right - left) / track)
 
 
+class TwistCovariance(NamedTuple):
+    """Covariance of (forward speed, yaw rate) over the last interval."""
+
+    speed: float
+    """(m/s)²"""
+    cross: float
+    """m·rad/s²"""
+    yaw_rate: float
+    """(rad/s)²"""
+
+
+def twist_noise(
+    wheels: WheelNoise,
+    left_tick: float,
+    right_tick: float,
+    duration: float,
+    left: float,
+    right: float,
+    left_lost: float,
+    right_lost: float,
+) -> TwistCovariance:
+    """Covariance of the mean twist of a step.
+
+    A counter read at an instant is uniform over one count, so the difference of two readings has
+    a variance of a sixth of a squared count beside the noise of the wheel (equation 4).
+
+    Parameters
+    ----------
+    left_tick, right_tick : float
+        Travel for a count [m].
+    duration, left, right : float
+        Of the step [s] and of its wheels [m].
+    left_lost, right_lost : float
+        Variances of travel that no counter saw [m²].
+    """
+    left = wheels.left * abs(left) + left_tick * left_tick / 6.0
+    right = wheels.right * abs(right) + right_tick * right_tick / 6.0
+    a, b, c = noise_of_wheel_variances(left + left_lost, right + right_lost, wheels.track)
+    scale = 1.0 / (duration * duration)
+    return TwistCovariance(a * scale, c * scale, b * scale)
+
+
 def piece_covariance(
     motion: BodyMotion[Number], noise: PathNoise[Number], yaw: Number
 ) -> PoseCovariance[Number]:

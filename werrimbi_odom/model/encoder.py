@@ -269,6 +269,17 @@ class Encoder:
         self.tally.gaps += int(np.count_nonzero(durations > self.limits.gap_duration))
         self._last, self._doubted = last, None
 
+    def have_stepped(self, step: WheelStep, last: Reading) -> None:
+        """Go on behind a step that was taken elsewhere, counted, and heard by `pace`."""
+        self.lasted = step.duration
+        self._left_speed, self._right_speed = step.left / step.duration, step.right / step.duration
+        self._last, self._doubted = last, None
+
+    @property
+    def last(self) -> Reading | None:
+        """The last reading, where all is well: none since that is doubted."""
+        return self._last if self._doubted is None else None
+
     def _exceeds(self, start: Reading, end: Reading, duration: float) -> bool:
         bits = self.robot.encoder_bits
         left = wrapped(end.left - start.left, bits) * self.rule.left_tick

@@ -44,6 +44,13 @@ def wheels_to_body(travel: WheelTravel[Number], track: float) -> BodyMotion[Numb
     return BodyMotion(along, 0.0 * along, (right - left) / track)
 
 
+def mean_twist(motion: BodyMotion[Number], duration: float) -> BodyMotion[Number]:
+    """Speeds [m/s, m/s, rad/s] of a motion that took a duration [s]."""
+    along, sideways, turn = motion
+    per_second = 1.0 / duration
+    return BodyMotion(along * per_second, sideways * per_second, turn * per_second)
+
+
 @overload
 def sinc(x: float) -> float: ...
 @overload

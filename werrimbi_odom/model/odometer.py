@@ -10,14 +10,16 @@ from typing import NamedTuple
 from werrimbi_odom.model.covariance import (
     CERTAIN,
     PoseCovariance,
+    TwistCovariance,
     after_stretch,
     noise_of_wheel_variances,
     path_noise_of,
+    twist_noise,
 )
 from werrimbi_odom.model.driving import Channels, DrivenStep, Driving
 from werrimbi_odom.model.effect import wiring_of
 from werrimbi_odom.model.encoder import Encoder, EncoderLimits, EncoderTally, WheelStep
-from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement
+from werrimbi_odom.model.motion import BodyMotion, WheelTravel, displacement, mean_twist
 from werrimbi_odom.model.of_floats import of_floats
 from werrimbi_odom.model.pieces import OpenPiece, Piece
 from werrimbi_odom.model.pieces_online import PieceRule, PieceSums, PieceTolerance
@@ -28,17 +30,6 @@ from werrimbi_odom.model.uncertainty import Uncertainty, after_piece, known
 _displacement = of_floats(displacement)
 _path_noise = of_floats(path_noise_of)
 _after_stretch = of_floats(after_stretch)
-
-
-class TwistCovariance(NamedTuple):
-    """Covariance of (forward speed, yaw rate) over the last interval."""
-
-    speed: float
-    """(m/s)²"""
-    cross: float
-    """m·rad/s²"""
-    yaw_rate: float
-    """(rad/s)²"""
 
 
 class _Estimate(NamedTuple):
@@ -94,14 +85,14 @@ class Estimate(_Estimate):
         A message that came much too soon (a driver that hung, then sent several at once) is taken
         together with those before it: a few microseconds divide no travel.
         """
-        along, sideways, turn = self.late_motion
-        per_second = 1.0 / self.late.duration
-        return BodyMotion(along * per_second, sideways * per_second, turn * per_second)
+        return mean_twist(self.late_motion, self.late.duration)
 
     @cached_property
     def twist_covariance(self) -> TwistCovariance:
         """Of the twist: wheel noise over its interval, quantisation of the two readings."""
-        return twist_covariance(self.robot, self.late)
+        robot = self.robot
+        ticks = robot.left_tick, robot.right_tick
+        return twist_noise(robot.wheel_noise, *ticks, *self.late[1:])
 
 
 class Odometer:
@@ -320,18 +311,3 @@ def joined(
     time, *later = step
     sums = [a + b for a, b in zip(earlier, later, strict=True)]
     return WheelStep(time, *sums), BodyMotion(*(a + b for a, b in zip(moved, motion, strict=True)))
-
-
-def twist_covariance(robot: Robot, step: WheelStep) -> TwistCovariance:
-    """Covariance of the mean twist of a step.
-
-    A counter read at an instant is uniform over one count, so the difference of two readings has
-    a variance of a sixth of a squared count beside the noise of the wheel (equation 4).
-    """
-    _, duration, left, right, left_lost, right_lost = step
-    k_left, k_right, track = robot.wheel_noise
-    left = k_left * abs(left) + robot.left_tick * robot.left_tick / 6.0
-    right = k_right * abs(right) + robot.right_tick * robot.right_tick / 6.0
-    a, b, c = noise_of_wheel_variances(left + left_lost, right + right_lost, track)
-    scale = 1.0 / (duration * duration)
-    return TwistCovariance(a * scale, c * scale, b * scale)

@@ -105,6 +105,28 @@ def read_on(
     return at, Heard(usual, fastest, newer, room), lasted
 
 
+def onward(
+    rule: PieceRule,
+    wheels: WheelNoise,
+    at: Marching,
+    travel: WheelTravel[float],
+    motion: BodyMotion[float],
+) -> tuple[bool, Marching]:
+    """Whether a piece goes on with a step, or ends before it; and where the step leads."""
+    pose, covariance, start, covariance_start, earlier, stretch = at
+    dx, dy = displacement(motion, pose.yaw)
+    after = Pose(pose.x + dx, pose.y + dy, pose.yaw + motion.turn)
+    goes_on, longer = extended(rule, start, earlier, stretch, travel, motion, after)
+    if not goes_on:
+        start, covariance_start = pose, covariance
+        earlier += abs(stretch.left) + abs(stretch.right)
+        longer = extended(rule, start, earlier, NOTHING, travel, motion, after)[1]
+    noise = path_noise_of(wheels, longer.left, longer.right)
+    dx, dy = after.x - start.x, after.y - start.y
+    now = after_stretch(covariance_start, longer.motion, noise, longer.chord, dx, dy)
+    return goes_on, Marching(after, now, start, covariance_start, earlier, longer)
+
+
 def march(
     rule: PieceRule,
     wheels: WheelNoise,
@@ -138,33 +160,23 @@ def march(
     Marching, int
         Where that leads, and how many pieces have been begun then.
     """
-    pose, covariance, start, covariance_start, earlier, stretch = at
     for step in range(motions.turn.size):
         travel = WheelTravel(travels.left[step], travels.right[step])
         motion = BodyMotion(motions.along[step], motions.sideways[step], motions.turn[step])
-        dx, dy = displacement(motion, pose.yaw)
-        after = Pose(pose.x + dx, pose.y + dy, pose.yaw + motion.turn)
-        goes_on, longer = extended(rule, start, earlier, stretch, travel, motion, after)
-        begins = stretch.empty or not goes_on
+        before = at
+        goes_on, at = onward(rule, wheels, at, travel, motion)
         if not goes_on:
             last = pieces - 1
-            whole = sums_of(stretch)
+            whole = sums_of(before.stretch)
             sums[0, last], sums[1, last], sums[2, last], sums[3, last], sums[4, last] = whole
-            start, covariance_start = pose, covariance
-            earlier += abs(stretch.left) + abs(stretch.right)
-            longer = extended(rule, start, earlier, NOTHING, travel, motion, after)[1]
-        if begins:
+        if before.stretch.empty or not goes_on:
             starts[pieces] = done + step
             pieces += 1
-        stretch, pose = longer, after
-        noise = path_noise_of(wheels, stretch.left, stretch.right)
-        dx, dy = pose.x - start.x, pose.y - start.y
-        covariance = after_stretch(covariance_start, stretch.motion, noise, stretch.chord, dx, dy)
-        poses[0, step], poses[1, step], poses[2, step] = pose
-        xx, xy, xyaw, yy, yyaw, yawyaw = covariance
+        poses[0, step], poses[1, step], poses[2, step] = at.pose
+        xx, xy, xyaw, yy, yyaw, yawyaw = at.covariance
         covariances[0, step], covariances[1, step], covariances[2, step] = xx, xy, xyaw
         covariances[3, step], covariances[4, step], covariances[5, step] = yy, yyaw, yawyaw
-    return Marching(pose, covariance, start, covariance_start, earlier, stretch), pieces
+    return at, pieces
 
 
 def follow(motion: BodyMotion[Floats], position: Floats, yaw: Floats) -> None:
