@@ -5,7 +5,6 @@
 from __future__ import annotations
 
 import math
-import tempfile
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
@@ -25,7 +24,7 @@ from werrimbi_odom.files.first_robot import (
     with_steps,
 )
 from werrimbi_odom.files.read_run import bag_at, read_run
-from werrimbi_odom.files.robot_file import RobotFile, read_robot_file
+from werrimbi_odom.files.robot_file import RobotFile, read_robot_file, robot_file_of_text
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.files.run_checks import refuse_unjudgeable
 from werrimbi_odom.files.stamps import stamps_of
@@ -199,10 +198,7 @@ def _read(
 
 def robot_file_of(first: FirstRobot) -> RobotFile:
     """A robot file of what is known; where sizes are not, of any."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = Path(folder) / "robot.yaml"
-        path.write_text(first.text("what is known"), encoding="utf-8")
-        return read_robot_file(path)
+    return robot_file_of_text(first.text("what is known"), Path("robot.yaml"))
 
 
 def _judged(held: Held, source: RobotFile | None, first: FirstRobot) -> Held:

@@ -125,7 +125,7 @@ def read_robot_file(path: str | Path, effects: Collection | None = None) -> Robo
         When it cannot be used; the message names file, line, parameter, and the mend.
     """
     path = Path(path)
-    return _understood(read_text(path), path, None if effects is None else effects.find)
+    return robot_file_of_text(read_text(path), path, None if effects is None else effects.find)
 
 
 def write_robot_file(
@@ -219,12 +219,13 @@ def _read_back(
     """What was written, as it will be read; None where it cannot be."""
     collection = Collection(tuple(item.effect for item in (*effects, *source.effects)))
     try:
-        return _understood(text, out, collection.find)
+        return robot_file_of_text(text, out, collection.find)
     except InputError:
         return None
 
 
-def _understood(text: str, path: Path, find_effect: Find | None = None) -> RobotFile:
+def robot_file_of_text(text: str, path: Path, find_effect: Find | None = None) -> RobotFile:
+    """A robot file by its text, as `read_robot_file` has it; `path`: what errors call it."""
     node, block = _parameter_block(load(text, path), path)
     given: dict[str, Value] = {}
     wrong: list[tuple[int, str]] = []

@@ -11,24 +11,10 @@ import numpy as np
 
 from werrimbi_odom.inference.events.common_cause import Alike
 from werrimbi_odom.inference.events.events import Event, Events, Way
+from werrimbi_odom.report import style
 from werrimbi_odom.report.numbers import from_start, in_unit, picked, with_std
 from werrimbi_odom.report.path_figure import add_path
-from werrimbi_odom.report.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    MOST,
-    ORANGE,
-    PAPER,
-    Figure,
-    along_path,
-    blank,
-    escaped,
-    from_above,
-    paled,
-    plain,
-    small,
-)
+from werrimbi_odom.report.style import Figure
 
 _TOLD = 6
 """Events that are told one by one, the largest against their noise."""
@@ -190,10 +176,10 @@ _SURELY = 3.0
 
 
 _LOOKS = {
-    "along": ("along", ORANGE, "square"),
-    "sideways": ("sideways", BLUE, "diamond"),
-    "heading": ("heading", GREEN, "circle"),
-    "reference": ("the reference jumped", GREY, "x"),
+    "along": ("along", style.ORANGE, "square"),
+    "sideways": ("sideways", style.BLUE, "diamond"),
+    "heading": ("heading", style.GREEN, "circle"),
+    "reference": ("the reference jumped", style.GREY, "x"),
 }
 _DRIVE = 30  # height of a drive's line [pixels]
 
@@ -203,35 +189,35 @@ def on_the_path(happened: Events, track: float) -> Figure | None:
     seen = [way for way in happened.ways if np.isfinite(way.x).any()]
     if not seen:
         return None
-    figure = blank()
+    figure = style.blank()
     for number, way in enumerate(seen):
-        rows = along_path(way.x + 1j * way.y, max(MOST // len(seen), 200))
+        rows = style.along_path(way.x + 1j * way.y, max(style.MOST // len(seen), 200))
         add_path(
             figure,
-            small(way.x[rows]),
-            small(way.y[rows]),
+            style.small(way.x[rows]),
+            style.small(way.y[rows]),
             "measured",
-            {"color": paled(GREY, 0.5), "width": 3},
-            said=escaped(_name(way)),
+            {"color": style.paled(style.GREY, 0.5), "width": 3},
+            said=style.escaped(_name(way)),
             legendgroup="measured",
             showlegend=number == 0,
         )
     _marks(figure, happened, track, [event.place for event in happened.events])
-    return from_above(figure, 620, zeroline=False)
+    return style.from_above(figure, 620, zeroline=False)
 
 
 def over_time(happened: Events, track: float) -> Figure:
     """When events happened, drive by drive."""
-    figure = blank()
+    figure = style.blank()
     starts = {}
     for way in happened.ways:
-        name = escaped(_name(way))
+        name = style.escaped(_name(way))
         starts[(way.run, way.held_out)] = (name, float(way.time[0]))
         figure.add_scatter(
             x=[0.0, float(way.time[-1] - way.time[0])],
             y=[name, name],
             mode="lines",
-            line={"color": paled(GREY, 0.5), "width": 3},
+            line={"color": style.paled(style.GREY, 0.5), "width": 3},
             showlegend=False,
             hoverinfo="skip",
         )
@@ -242,7 +228,7 @@ def over_time(happened: Events, track: float) -> Figure:
     _marks(figure, happened, track, places)
     figure.update_xaxes(title="time since the drive's first pose [s]", zeroline=False)
     figure.update_yaxes(autorange="reversed", showgrid=False)
-    return plain(figure, height=140 + _DRIVE * len(happened.ways))
+    return style.plain(figure, height=140 + _DRIVE * len(happened.ways))
 
 
 def _marks(
@@ -264,7 +250,7 @@ def _marks(
                 "color": colour,
                 "symbol": symbol,
                 "size": 12,
-                "line": {"color": PAPER, "width": 1.5},
+                "line": {"color": style.PAPER, "width": 1.5},
             },
             hovertext=[_said(happened, happened.events[index], track) for index in own],
             hovertemplate="%{hovertext}<extra></extra>",
@@ -272,8 +258,8 @@ def _marks(
 
 
 def _said(happened: Events, event: Event, track: float) -> str:
-    where = f"{escaped(event.run.name)}, {when(event)}"
-    return f"{where}<br>{escaped(event_words(event, track, either=either(happened)))}"
+    where = f"{style.escaped(event.run.name)}, {when(event)}"
+    return f"{where}<br>{style.escaped(event_words(event, track, either=either(happened)))}"
 
 
 def _name(way: Way) -> str:

@@ -11,6 +11,7 @@ from io import StringIO
 from pathlib import Path
 
 from werrimbi_odom.errors import InputError
+from werrimbi_odom.report import style
 from werrimbi_odom.report.document import Document, Shown, Table
 from werrimbi_odom.report.fleet import (
     ERROR,
@@ -23,27 +24,16 @@ from werrimbi_odom.report.fleet import (
 )
 from werrimbi_odom.report.page import table_html
 from werrimbi_odom.report.save import save_report
-from werrimbi_odom.report.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    ORANGE,
-    PAPER,
-    Figure,
-    blank,
-    escaped,
-    plain,
-)
+from werrimbi_odom.report.style import Figure
 from werrimbi_odom.report.terminal import as_text
 
-_FREQUENT = ((BLUE, "circle"), (ORANGE, "square"), (GREEN, "diamond"))
+_FREQUENT = ((style.BLUE, "circle"), (style.ORANGE, "square"), (style.GREEN, "diamond"))
 """Colour and mark of the effects that most robots miss."""
 _OTHERS = {
-    "something else": (INK, "triangle-up"),
-    "ambiguous": (GREY, "cross"),
-    "unknown": (GREY, "x"),
-    "nothing": (GREY, "pentagon"),
+    "something else": (style.INK, "triangle-up"),
+    "ambiguous": (style.GREY, "cross"),
+    "unknown": (style.GREY, "x"),
+    "nothing": (style.GREY, "pentagon"),
 }
 _LOGARITHMIC = 20.0
 """From this ratio of the largest to the smallest error on the axis is logarithmic."""
@@ -57,14 +47,14 @@ def fleet_figure(fleet: Fleet) -> Figure | None:
     if not shown:
         return None
     looks = _looks(fleet)
-    figure = blank()
+    figure = style.blank()
     for group, (colour, mark) in looks.items():
         rows = [row for row in shown if _group(row, looks) == group]
         if not rows:
             continue
         before = [1e3 * row.errors[0] for row in rows]
         after = [1e3 * row.errors[1] for row in rows]
-        names = [escaped(row.robot) for row in rows]
+        names = [style.escaped(row.robot) for row in rows]
         common = {"legendgroup": group, "y": names}
         lines: dict[str, list[object]] = {"x": [], "y": []}
         for name, first, last in zip(names, before, after, strict=True):
@@ -83,7 +73,7 @@ def fleet_figure(fleet: Fleet) -> Figure | None:
             x=before,
             mode="markers",
             marker={
-                "color": PAPER,
+                "color": style.PAPER,
                 "symbol": mark,
                 "size": 9,
                 "line": {"color": colour, "width": 2},
@@ -97,12 +87,14 @@ def fleet_figure(fleet: Fleet) -> Figure | None:
             mode="markers",
             name=f"{group} ({len(rows)})",
             marker={"color": colour, "symbol": mark, "size": 10},
-            customdata=[escaped(" ".join("; ".join(missing_words(row)).split())) for row in rows],
+            customdata=[
+                style.escaped(" ".join("; ".join(missing_words(row)).split())) for row in rows
+            ],
             hovertemplate="%{y}: %{x:.2f} mm<br>missing: %{customdata}<extra></extra>",
         )
     _axes(figure, shown)
     height = max(150 + (26 if len(shown) <= _CLOSE else 15) * len(shown), 260)
-    plain(figure, height=height)
+    style.plain(figure, height=height)
     figure.update_layout(legend={"y": 1.0 + 12.0 / height})
     return figure
 
@@ -121,7 +113,7 @@ def _axes(figure: Figure, shown: list[Row]) -> None:
     figure.update_yaxes(
         type="category",
         categoryorder="array",
-        categoryarray=[escaped(row.robot) for row in shown],
+        categoryarray=[style.escaped(row.robot) for row in shown],
         range=[len(shown) - 0.4, -0.6],  # the first robot on top
         tickmode="linear",
         dtick=1,
@@ -215,8 +207,8 @@ def fleet_table(fleet: Fleet, width: int = 100) -> str:
         from rich.table import Table as Grid
         from rich.text import Text
     except ModuleNotFoundError:
-        plain = [[" ".join(cell.split()) for cell in row] for row in rows]
-        return as_text([Table("The robots", HEADS, plain)])
+        single = [[" ".join(cell.split()) for cell in row] for row in rows]
+        return as_text([Table("The robots", HEADS, single)])
     made = Grid(box=box.SIMPLE_HEAD, pad_edge=False, padding=(0, 1, 0, 0), expand=True)
     for number, head in enumerate(HEADS):
         made.add_column(

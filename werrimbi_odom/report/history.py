@@ -13,6 +13,7 @@ import numpy as np
 from werrimbi_odom.inference.changes.dated import Dated, History
 from werrimbi_odom.inference.changes.history import Number
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report import style
 from werrimbi_odom.report.changes import changes_json
 from werrimbi_odom.report.document import Document, Shown
 from werrimbi_odom.report.history_words import (
@@ -26,17 +27,7 @@ from werrimbi_odom.report.history_words import (
     words_of,
 )
 from werrimbi_odom.report.numbers import picked
-from werrimbi_odom.report.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    Figure,
-    escaped,
-    paled,
-    plain,
-    spread_and_extremes,
-)
+from werrimbi_odom.report.style import Figure
 
 _HEIGHT = 190
 """Of a panel."""
@@ -73,7 +64,7 @@ def history_figure(history: History) -> Figure:
     from plotly.subplots import make_subplots
 
     numbers = history.course.numbers
-    titles = [f"{TITLES.get(each.name, escaped(each.name))}{_unit(each)}" for each in numbers]
+    titles = [f"{TITLES.get(each.name, style.escaped(each.name))}{_unit(each)}" for each in numbers]
     figure = make_subplots(
         rows=len(numbers),
         cols=1,
@@ -82,10 +73,10 @@ def history_figure(history: History) -> Figure:
         subplot_titles=titles,
     )
     dates = _dates(history)
-    names = [escaped(name) for name in dated_names(history)]
+    names = [style.escaped(name) for name in dated_names(history)]
     for row, number in enumerate(numbers, start=1):
         _panel(figure, row, number, history, dates, names)
-    figure = plain(figure, height=120 + _HEIGHT * len(numbers))
+    figure = style.plain(figure, height=120 + _HEIGHT * len(numbers))
     figure.update_xaxes(showticklabels=True)
     return figure.update_layout(legend={"y": 1.0 + 40.0 / figure.layout.height})
 
@@ -103,7 +94,7 @@ def _panel(
     std = number.own_std
     usual = float(np.nanmedian(std))
     told = np.flatnonzero(np.isfinite(number.own) & ~(std > _UNSURE * usual))
-    told = told[spread_and_extremes(number.own[told] - number.level[told])]
+    told = told[style.spread_and_extremes(number.own[told] - number.level[told])]
 
     def drawn(values: Floats) -> list[float]:
         return [float(factor * (value - offset)) for value in values]
@@ -114,12 +105,12 @@ def _panel(
         y=drawn(number.own[told]),
         error_y={
             "array": [2.0 * factor * float(each) for each in std[told]],
-            "color": paled(BLUE, 0.4),
+            "color": style.paled(style.BLUE, 0.4),
             "thickness": 1,
             "width": 0,
         },
         mode="markers",
-        marker={"color": BLUE, "size": 5},
+        marker={"color": style.BLUE, "size": 5},
         name="a drive by itself",
         legendgroup="own",
         showlegend=first,
@@ -131,7 +122,7 @@ def _panel(
         x=dates,
         y=drawn(number.level),
         mode="lines",
-        line={"color": ORANGE, "width": 2, "shape": "hv"},
+        line={"color": style.ORANGE, "width": 2, "shape": "hv"},
         name="between the changes",
         legendgroup="level",
         showlegend=first,
@@ -139,8 +130,8 @@ def _panel(
         **at,
     )
     for value, colour, name in (
-        (number.given, GREY, "robot file"),
-        *(((there(history, number), GREEN, "the other file"),) if history.like else ()),
+        (number.given, style.GREY, "robot file"),
+        *(((there(history, number), style.GREEN, "the other file"),) if history.like else ()),
     ):
         figure.add_scatter(
             x=[dates[0], dates[-1]],
@@ -156,7 +147,9 @@ def _panel(
     changes = (move for move in history.course.changes if _moves(move.what, number.name))
     changed = {int(move.from_run) for move in changes}
     for index in sorted(changed):
-        figure.add_vline(x=dates[index], line={"color": GREY, "width": 1, "dash": "dot"}, **at)
+        figure.add_vline(
+            x=dates[index], line={"color": style.GREY, "width": 1, "dash": "dot"}, **at
+        )
 
 
 def _moves(what: str, name: str) -> bool:

@@ -18,23 +18,10 @@ from werrimbi_odom.inference.diagnosis.evidence import Dependence
 from werrimbi_odom.inference.diagnosis.response import BeforeAfter
 from werrimbi_odom.inference.fitting.candidates import CALIBRATED
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report import style
 from werrimbi_odom.report.comparison.figures import CHANNELS, measured_channels
 from werrimbi_odom.report.diagnosis.dependence import error_of, label_of, unit_of
-from werrimbi_odom.report.style import (
-    BLUE,
-    FAINT,
-    GREEN,
-    GREY,
-    MARKS,
-    ORANGE,
-    Figure,
-    blank,
-    escaped,
-    paled,
-    plain,
-    small,
-    spread_and_extremes,
-)
+from werrimbi_odom.report.style import Figure
 
 WHEEL_ANGLES = ("left wheel's angle [°]", "right wheel's angle [°]")
 
@@ -44,12 +31,12 @@ _MOST_RUNS = 6
 _FEWEST = 6  # parts of a turn, that a wave is laid through
 
 _LOOKS = (
-    (BLUE, "solid", "circle"),
-    (ORANGE, "solid", "square"),
-    (GREEN, "solid", "triangle-up"),
-    (GREY, "solid", "diamond"),
-    (BLUE, "dash", "x"),
-    (ORANGE, "dash", "cross"),
+    (style.BLUE, "solid", "circle"),
+    (style.ORANGE, "solid", "square"),
+    (style.GREEN, "solid", "triangle-up"),
+    (style.GREY, "solid", "diamond"),
+    (style.BLUE, "dash", "x"),
+    (style.ORANGE, "dash", "cross"),
 )
 
 
@@ -60,17 +47,17 @@ def _bars(std: Floats, colour: str, thickness: float = 2, width: float = 5) -> d
 
 def over(figure: Figure, variable: str, error: str, height: int, *, turn: bool) -> Figure:
     """Zero is a line; `turn`: over one turn, in degrees."""
-    figure.add_hline(y=0.0, line={"color": GREY, "width": 1})
+    figure.add_hline(y=0.0, line={"color": style.GREY, "width": 1})
     figure.update_xaxes(title=variable, **({"dtick": 45, "range": [0, 360]} if turn else {}))
     figure.update_yaxes(title=error)
-    return plain(figure, height=height)
+    return style.plain(figure, height=height)
 
 
 def wheel_angle_figure(comparison: Comparison, variable: str) -> Figure:
     """Error of a wheel's travel, in mm for each metre rolled, over its turn; a wave a run."""
     side = -1 if variable == WHEEL_ANGLES[0] else 1
     word = "left" if side < 0 else "right"
-    figure = blank()
+    figure = style.blank()
     longest = sorted(
         range(len(comparison.runs)), key=lambda index: -comparison.runs[index].distance_m
     )[:_MOST_RUNS]
@@ -79,23 +66,23 @@ def wheel_angle_figure(comparison: Comparison, variable: str) -> Figure:
         if np.isfinite(mean).sum() < _FEWEST:
             continue
         amplitude, std, wave = once_a_turn(centre, mean, spread)
-        name = escaped(comparison.runs[index].run.name)
+        name = style.escaped(comparison.runs[index].run.name)
         figure.add_scatter(
             x=centre,
             y=mean,
             mode="markers",
             legendgroup=name,
             showlegend=False,
-            marker={"symbol": symbol, "size": 8, "color": paled(colour, 0.6)},
-            error_y=_bars(spread, paled(colour, 0.3), 1, 0),
+            marker={"symbol": symbol, "size": 8, "color": style.paled(colour, 0.6)},
+            error_y=_bars(spread, style.paled(colour, 0.3), 1, 0),
             hovertemplate=(
                 f"{name}<br>%{{x:.0f}}°: %{{y:+.2f}} ± %{{error_y.array:.2f}} mm per m"
                 "<extra></extra>"
             ),
         )
         figure.add_scatter(
-            x=small(FINE),
-            y=small(wave),
+            x=style.small(FINE),
+            y=style.small(wave),
             mode="lines",
             name=f"{name}: once a turn {amplitude:.1f} ± {std:.1f}",
             legendgroup=name,
@@ -147,15 +134,15 @@ def error_against_figure(comparison: Comparison, variable: str) -> Figure:
         name, unit, factor = CHANNELS[column]
         error = factor * legs.errors.error[:, column]
         rows = np.flatnonzero(known & np.isfinite(error))
-        drawn = rows[spread_and_extremes(error[rows], MARKS // 2)]
+        drawn = rows[style.spread_and_extremes(error[rows], style.MARKS // 2)]
         figure.add_scatter(
-            x=small(values[drawn]),
-            y=small(error[drawn]),
+            x=style.small(values[drawn]),
+            y=style.small(error[drawn]),
             mode="markers",
             name="a leg",
             legendgroup="leg",
             showlegend=place == 1,
-            marker={"color": paled(GREY, 0.55), "size": 5},
+            marker={"color": style.paled(style.GREY, 0.55), "size": 5},
             hovertemplate=f"%{{x:.3g}}<br>{name} %{{y:.2f}} {unit}<extra></extra>",
             row=place,
             col=1,
@@ -168,9 +155,9 @@ def error_against_figure(comparison: Comparison, variable: str) -> Figure:
             name="mean, ± 2 standard errors",
             legendgroup="mean",
             showlegend=place == 1,
-            line={"color": BLUE, "width": 2},
-            marker={"color": BLUE, "size": 8},
-            error_y=_bars(spread, BLUE),
+            line={"color": style.BLUE, "width": 2},
+            marker={"color": style.BLUE, "size": 8},
+            error_y=_bars(spread, style.BLUE),
             customdata=count,
             hovertemplate=(
                 f"%{{x:.3g}}<br>{name} %{{y:.2f}} ± %{{error_y.array:.2f}} {unit}"
@@ -181,12 +168,12 @@ def error_against_figure(comparison: Comparison, variable: str) -> Figure:
         )
         figure.update_yaxes(title=f"{name} [{unit}]", row=place, col=1)
         _range(figure, error[rows], place)
-    plain(figure, height=150 + 175 * len(columns))
+    style.plain(figure, height=150 + 175 * len(columns))
     label = variable.replace("[rad]", "[°]") if is_angle else variable
     figure.update_xaxes(title=label, row=len(columns), col=1)
     if is_angle:
         figure.update_xaxes(dtick=45, range=[-185, 185])
-    figure.update_xaxes(gridcolor=FAINT)
+    figure.update_xaxes(gridcolor=style.FAINT)
     return figure
 
 
@@ -203,17 +190,17 @@ def before_after_figure(found: BeforeAfter) -> Figure:
     """Error along the variable with error bars, before (and after)."""
     unit, factor = unit_of(found.cell.amount)
     scale = float(np.degrees(1.0)) if found.turns else 1.0
-    figure = blank()
+    figure = style.blank()
     words = f"with {found.effect}" if found.effect else ""
     for name, item, colour, symbol, dash in (
         (
             "before: calibrated alone" if found.effect not in CALIBRATED else "before: as given",
             found.before,
-            ORANGE,
+            style.ORANGE,
             "square",
             "dot",
         ),
-        (f"after: {words}", found.after, BLUE, "circle", "solid"),
+        (f"after: {words}", found.after, style.BLUE, "circle", "solid"),
     ):
         if item is None:
             continue

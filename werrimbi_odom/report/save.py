@@ -50,18 +50,18 @@ def save_png(figure: Figure, path: Path, *, scale: float = 1.5) -> bool:
         return False
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_name(path.stem + ".part.png")
-    _draw([(figure, temporary)], {"scale": scale})
+    _draw([(figure, temporary, {"scale": scale})])
     temporary.replace(path)
     return True
 
 
-def _draw(pictures: Iterable[tuple[Figure, Path]], *options: Mapping[str, object]) -> None:
-    """By one browser, each with its own options."""
+def _draw(pictures: Iterable[tuple[Figure, Path, Mapping[str, object]]]) -> None:
+    """Figures to files by one browser, each with options of its own."""
     import kaleido
 
     drawn = [
-        {"fig": figure, "path": path, "opts": {"format": path.suffix[1:].lower(), **how}}
-        for (figure, path), how in zip(pictures, options, strict=True)
+        {"fig": figure, "path": path, "opts": {"format": path.suffix[1:].lower(), **options}}
+        for figure, path, options in pictures
     ]
     # Its browser's first words may be cut short; it logs that with a traceback and goes on well.
     logging.disable(logging.CRITICAL)
@@ -127,10 +127,11 @@ def save_pictures(pictures: Sequence[tuple[Figure, Path]], *, scale: float = 2.0
         drawn = [
             Path(folder) / f"{number}{file.suffix}" for number, (_, file) in enumerate(pictures)
         ]
-        figures = [figure for figure, _ in pictures]
         size = {"scale": scale, "width": 1000}
-        sizes = [{**size, "height": int(each.layout.height or 600)} for each in figures]
-        _draw(zip(figures, drawn, strict=True), *sizes)
+        _draw(
+            (figure, part, {**size, "height": int(figure.layout.height or 600)})
+            for (figure, _), part in zip(pictures, drawn, strict=True)
+        )
         for (_, file), part in zip(pictures, drawn, strict=True):
             try:
                 beside = file.with_name(f".{file.name}.part")

@@ -11,28 +11,13 @@ import numpy as np
 
 from werrimbi_odom.inference.adding.added import Added
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report import style
 from werrimbi_odom.report.adding.words import words_of
 from werrimbi_odom.report.diagnosis.document import effect_card
 from werrimbi_odom.report.diagnosis.evidence_figures import evidence_map_figure
 from werrimbi_odom.report.document import Document, Shown
 from werrimbi_odom.report.numbers import listed
-from werrimbi_odom.report.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    MARKS,
-    ORANGE,
-    PAPER,
-    Figure,
-    blank,
-    escaped,
-    from_above,
-    paled,
-    plain,
-    small,
-    spread_and_extremes,
-)
+from werrimbi_odom.report.style import Figure
 
 
 def document_of(added: Added) -> Document:
@@ -127,7 +112,7 @@ def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float = float("na
     floor : float
         Position error of the held-out drives that noise alone would make [m]; NaN: not drawn.
     """
-    figure = blank()
+    figure = style.blank()
     largest = max(
         (value for step in steps for value in (step.train, step.holdout) if np.isfinite(value)),
         default=1.0,
@@ -136,15 +121,20 @@ def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float = float("na
     of_headings = bool(steps) and steps[0].unit == "rad"
     if of_headings:
         unit, factor = "°", np.degrees(1.0)
-    names = [escaped(step.name) for step in steps]
+    names = [style.escaped(step.name) for step in steps]
     for name, values, ink, look in (
         (
             "drives of the fit",
             [factor * step.train for step in steps],
-            INK,
-            {"color": paled(GREY, 0.25), "line": {"color": GREY, "width": 1.5}},
+            style.INK,
+            {"color": style.paled(style.GREY, 0.25), "line": {"color": style.GREY, "width": 1.5}},
         ),
-        ("held-out drives", [factor * step.holdout for step in steps], PAPER, {"color": BLUE}),
+        (
+            "held-out drives",
+            [factor * step.holdout for step in steps],
+            style.PAPER,
+            {"color": style.BLUE},
+        ),
     ):
         figure.add_bar(
             x=names,
@@ -160,17 +150,19 @@ def error_falling_figure(steps: Sequence[ErrorOfModel], floor: float = float("na
             hovertemplate=f"%{{x}}, {name}<br>%{{y:.3g}} {unit}<extra></extra>",
         )
     if np.isfinite(floor):
-        figure.add_hline(y=factor * floor, line={"color": GREEN, "width": 2.5, "dash": "dash"})
+        figure.add_hline(
+            y=factor * floor, line={"color": style.GREEN, "width": 2.5, "dash": "dash"}
+        )
         figure.add_scatter(
             x=[None],
             y=[None],
             mode="lines",
-            line={"color": GREEN, "width": 2.5, "dash": "dash"},
+            line={"color": style.GREEN, "width": 2.5, "dash": "dash"},
             name=f"floor: what noise alone leaves, {factor * floor:.2f} {unit}",
         )
     figure.update_yaxes(title=f"error of a leg, rms [{unit}]", range=[0.0, 1.16 * factor * largest])
     figure.update_xaxes(showgrid=False)
-    plain(figure, height=420)
+    style.plain(figure, height=420)
     return figure.update_layout(barmode="group", bargap=0.35)
 
 
@@ -179,8 +171,8 @@ def held_out_legs_figure(added: Added) -> Figure:
     clouds = [
         (name, legs.errors.error[~legs.outlier], colour, symbol)
         for name, legs, colour, symbol in (
-            ("as given", added.holdout.before, ORANGE, "x"),
-            (f"with {added.name.replace(',', ', ')}", added.holdout.after, BLUE, "circle"),
+            ("as given", added.holdout.before, style.ORANGE, "x"),
+            (f"with {added.name.replace(',', ', ')}", added.holdout.after, style.BLUE, "circle"),
         )
     ]
     return clouds_of_legs(clouds, digits=2, height=560)
@@ -199,22 +191,22 @@ def clouds_of_legs(
     digits
         After the point, of millimetres.
     """
-    figure = blank()
+    figure = style.blank()
     for name, errors, colour, symbol in clouds:
         known = 1e3 * errors[np.isfinite(errors[:, :2]).all(axis=1)]
         if known.size == 0:
             continue
         size = np.hypot(known[:, 0], known[:, 1])
-        drawn = known[spread_and_extremes(size, MARKS // 2)]
+        drawn = known[style.spread_and_extremes(size, style.MARKS // 2)]
         figure.add_scatter(
-            x=small(drawn[:, 0]),
-            y=small(drawn[:, 1]),
+            x=style.small(drawn[:, 0]),
+            y=style.small(drawn[:, 1]),
             mode="markers",
             name=f"{name}: median {np.median(size):.{digits}f} mm",
-            marker={"color": paled(colour, 0.75), "symbol": symbol, "size": 8},
+            marker={"color": style.paled(colour, 0.75), "symbol": symbol, "size": 8},
             hovertemplate=(
-                f"{escaped(name)}<br>along %{{x:.{digits}f}} mm<br>sideways %{{y:.{digits}f}} mm"
-                "<extra></extra>"
+                f"{style.escaped(name)}<br>along %{{x:.{digits}f}} mm"
+                f"<br>sideways %{{y:.{digits}f}} mm<extra></extra>"
             ),
         )
-    return from_above(figure, height, "error along [mm]", "error sideways [mm]")
+    return style.from_above(figure, height, "error along [mm]", "error sideways [mm]")

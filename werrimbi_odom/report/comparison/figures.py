@@ -9,16 +9,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from werrimbi_odom.inference.comparison.compare import KINDS, Comparison
-from werrimbi_odom.report.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    ORANGE,
-    Figure,
-    blank,
-    paled,
-    plain,
-)
+from werrimbi_odom.report import style
+from werrimbi_odom.report.style import Figure
 
 NAMES = {"line": "straight", "arc": "curves", "spin": "spins"}
 CHANNELS = (("along", "mm", 1e3), ("sideways", "mm", 1e3), ("heading", "°", float(np.degrees(1.0))))
@@ -36,13 +28,13 @@ def nees_figure(comparison: Comparison) -> Figure:
     """NEES by length of leg and type of motion, with the range that an honest one lies in."""
     from scipy.stats import chi2
 
-    figure = blank()
+    figure = style.blank()
     free = len(measured_channels(comparison))
     lengths = [f"{item.leg:g} m" for item in comparison.lengths]
     looks = {
-        "line": (BLUE, "circle", -0.24),
-        "arc": (ORANGE, "square", 0.0),
-        "spin": (GREEN, "triangle-up", 0.24),
+        "line": (style.BLUE, "circle", -0.24),
+        "arc": (style.ORANGE, "square", 0.0),
+        "spin": (style.GREEN, "triangle-up", 0.24),
     }
     drawn = False
     for kind, (colour, symbol, aside) in looks.items():
@@ -69,7 +61,7 @@ def nees_figure(comparison: Comparison) -> Figure:
             x=x,
             y=y,
             mode="lines",
-            line={"color": paled(GREY, 0.45), "width": 16},
+            line={"color": style.paled(style.GREY, 0.45), "width": 16},
             name="where an honest covariance lies, 19 times in 20",
             legendgroup="bounds",
             showlegend=not drawn,
@@ -85,12 +77,12 @@ def nees_figure(comparison: Comparison) -> Figure:
             hovertemplate="%{text}<extra></extra>",
             marker={"color": colour, "symbol": symbol, "size": 12},
         )
-    figure.add_hline(y=1.0, line={"color": GREY, "width": 1.5, "dash": "dash"})
+    figure.add_hline(y=1.0, line={"color": style.GREY, "width": 1.5, "dash": "dash"})
     figure.update_xaxes(
         title="length of the legs", tickvals=list(range(len(lengths))), ticktext=lengths
     )
     figure.update_yaxes(title="NEES (1 is honest)")
-    plain(figure, height=430)
+    style.plain(figure, height=430)
     ticks = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1e3, 1e4, 1e5]
     figure.update_yaxes(type="log", tickvals=ticks, ticktext=[f"{tick:g}" for tick in ticks])
     figure.update_xaxes(zeroline=False)
@@ -146,8 +138,8 @@ def legs_by_motion_figure(comparison: Comparison) -> Figure:
                 name="errors of the legs: half of them in the box, 95 % within the whiskers",
                 legendgroup="errors",
                 showlegend=place == 1 and kind == _first_kind(comparison),
-                line={"color": BLUE, "width": 2},
-                fillcolor=paled(BLUE, 0.25),
+                line={"color": style.BLUE, "width": 2},
+                fillcolor=style.paled(style.BLUE, 0.25),
                 width=0.38,
                 hoverinfo="skip",
                 row=1,
@@ -157,7 +149,7 @@ def legs_by_motion_figure(comparison: Comparison) -> Figure:
                 x=[NAMES[kind]],
                 y=[middle],
                 mode="markers",
-                marker={"color": BLUE, "size": 14, "opacity": 0.0},
+                marker={"color": style.BLUE, "size": 14, "opacity": 0.0},
                 showlegend=False,
                 hovertemplate=(
                     f"{NAMES[kind]}, {name}: {values.size} legs<br>mean {values.mean():+.2f} {unit}"
@@ -169,7 +161,7 @@ def legs_by_motion_figure(comparison: Comparison) -> Figure:
             )
     figure.update_xaxes(categoryorder="array", categoryarray=list(NAMES.values()))
     figure.update_yaxes(zeroline=True)
-    return plain(figure, height=430).update_layout(
+    return style.plain(figure, height=430).update_layout(
         margin={"t": 90}, legend={"y": 1.13}, boxmode="overlay", barmode="overlay"
     )
 
@@ -191,9 +183,9 @@ def _promise(
         legendgroup="promised",
         showlegend=first and not any(trace.type == "bar" for trace in figure.data),
         marker={
-            "color": paled(GREY, 0.18),
-            "line": {"color": GREY, "width": 1},
-            "pattern": {"shape": "/", "fgcolor": paled(GREY, 0.5), "size": 7},
+            "color": style.paled(style.GREY, 0.18),
+            "line": {"color": style.GREY, "width": 1},
+            "pattern": {"shape": "/", "fgcolor": style.paled(style.GREY, 0.5), "size": 7},
         },
         hovertemplate=f"promised ± {promised:.2f} {unit}<extra></extra>",
         row=1,

@@ -9,27 +9,11 @@ import numpy as np
 from werrimbi_odom.inference.comparison.compare import Comparison
 from werrimbi_odom.inference.comparison.dead_reckoning import covariance_along, middles
 from werrimbi_odom.model.pose import Floats
+from werrimbi_odom.report import style
 from werrimbi_odom.report.comparison.figures import CHANNELS
 from werrimbi_odom.report.comparison.phrases import leg_when
 from werrimbi_odom.report.path_figure import add_mark, add_path, ellipse, spread_along_path
-from werrimbi_odom.report.style import (
-    BLUE,
-    FEWEST,
-    GREEN,
-    GREY,
-    MOST,
-    ORANGE,
-    PAPER,
-    Figure,
-    along_path,
-    blank,
-    coloured,
-    escaped,
-    from_above,
-    paled,
-    small,
-    spread_and_extremes,
-)
+from werrimbi_odom.report.style import Figure
 
 _FEW = 3  # runs, of which the dead reckoning is drawn too when all are shown at once
 _ELLIPSES = 12
@@ -43,10 +27,10 @@ def path_figure(comparison: Comparison, run: int | None = None) -> Figure:
     run : int, optional
         Index of one run; None: all of them, and the model's paths only where they are few.
     """
-    figure = blank()
+    figure = style.blank()
     which = range(len(comparison.paths)) if run is None else (run,)
     single = len(which) == 1
-    most = max(FEWEST, MOST // max(len(which), 1))
+    most = max(style.FEWEST, style.MOST // max(len(which), 1))
     for index in which:
         _paths(
             figure, comparison, index, most, predicted=len(which) <= _FEW, first=index == which[0]
@@ -56,7 +40,7 @@ def path_figure(comparison: Comparison, run: int | None = None) -> Figure:
         _ellipses(figure, comparison, which[0])
     for index in which if len(which) <= _FEW else ():
         _ends(figure, comparison, index, first=index == which[0])
-    return from_above(figure, 680, zeroline=False).update_layout(dragmode="pan")
+    return style.from_above(figure, 680, zeroline=False).update_layout(dragmode="pan")
 
 
 def _paths(
@@ -69,30 +53,30 @@ def _paths(
     first: bool,
 ) -> None:
     path = comparison.paths[index]
-    name = escaped(comparison.runs[index].run.name)
-    rows = along_path(path.measured, most)
+    name = style.escaped(comparison.runs[index].run.name)
+    rows = style.along_path(path.measured, most)
     after = [end for _, end in comparison.runs[index].run.taken_out]
     pieces = np.searchsorted(path.time[rows], after)  # nothing is drawn across a cut
     measured = np.insert(path.measured[rows], pieces, np.nan)
     add_path(
         figure,
-        small(measured.real),
-        small(measured.imag),
+        style.small(measured.real),
+        style.small(measured.imag),
         "measured",
-        {"color": paled(GREY, 0.5), "width": 7},
+        {"color": style.paled(style.GREY, 0.5), "width": 7},
         said=f"{name}, measured",
         legendgroup="measured",
         showlegend=first,
     )
     if not predicted:
         return
-    model = path.predicted[along_path(path.predicted, most)]
+    model = path.predicted[style.along_path(path.predicted, most)]
     add_path(
         figure,
-        small(model.real),
-        small(model.imag),
+        style.small(model.real),
+        style.small(model.imag),
         "model (dead reckoning from the start)",
-        {"color": BLUE, "width": 2},
+        {"color": style.BLUE, "width": 2},
         said=f"{name}, model",
         legendgroup="model",
         showlegend=first,
@@ -106,11 +90,11 @@ def _ends(figure: Figure, comparison: Comparison, index: int, *, first: bool) ->
         return
     begin, end = known[0], known[-1]
     for at, name, symbol, colour in (
-        (path.measured[begin], "start", "circle", GREEN),
-        (path.measured[end], "end, measured", "x", GREY),
-        (path.predicted[end], "end, model", "square", BLUE),
+        (path.measured[begin], "start", "circle", style.GREEN),
+        (path.measured[end], "end, measured", "x", style.GREY),
+        (path.predicted[end], "end, model", "square", style.BLUE),
     ):
-        edge = {"width": 1.5, "color": PAPER}
+        edge = {"width": 1.5, "color": style.PAPER}
         marker = {"symbol": symbol, "size": 12, "color": colour, "line": edge}
         add_mark(figure, at, name, marker, legendgroup=name, showlegend=first)
 
@@ -131,23 +115,23 @@ def _legs(figure: Figure, comparison: Comparison, run: int | None) -> None:
     top = float(np.quantile(finite, 0.98)) if finite.size else 1.0
     mine = np.isfinite(size) & (kept if run is None else kept & (legs.run == run))
     rows = np.flatnonzero(mine)
-    rows = rows[spread_and_extremes(size[rows])]
+    rows = rows[style.spread_and_extremes(size[rows])]
     # Small ones first, so that the large are on top.
     rows = rows[np.argsort(size[rows])]
     texts = [_told(comparison, row) for row in rows.tolist()]
     middle = middles(comparison)[rows]
     figure.add_scatter(
-        x=small(middle.real),
-        y=small(middle.imag),
+        x=style.small(middle.real),
+        y=style.small(middle.imag),
         mode="markers",
         showlegend=False,
         text=texts,
         hovertemplate="%{text}<extra></extra>",
         marker={
-            "color": small(size[rows]),
+            "color": style.small(size[rows]),
             "coloraxis": "coloraxis",
-            "size": small(8.0 + 8.0 * np.clip(size[rows] / max(top, 1e-9), 0.0, 1.0)),
-            "line": {"width": 1, "color": PAPER},
+            "size": style.small(8.0 + 8.0 * np.clip(size[rows] / max(top, 1e-9), 0.0, 1.0)),
+            "line": {"width": 1, "color": style.PAPER},
         },
     )
     # A mark for the legend alone: that of many colours is black there, and not seen in the dark.
@@ -156,10 +140,10 @@ def _legs(figure: Figure, comparison: Comparison, run: int | None) -> None:
         y=[None],
         mode="markers",
         name="leg, coloured by its error",
-        marker={"color": GREY, "size": 12},
+        marker={"color": style.GREY, "size": 12},
         hoverinfo="skip",
     )
-    coloured(figure, max(top, 1e-9), f"error of<br>a leg [{unit}]")
+    style.coloured(figure, max(top, 1e-9), f"error of<br>a leg [{unit}]")
 
 
 def _told(comparison: Comparison, row: int) -> str:
@@ -167,7 +151,7 @@ def _told(comparison: Comparison, row: int) -> str:
     legs = comparison.legs
     error = legs.errors.error[row]
     promised = np.sqrt(np.diagonal(legs.errors.covariance[row]))
-    name = escaped(comparison.runs[int(legs.run[row])].run.name)
+    name = style.escaped(comparison.runs[int(legs.run[row])].run.name)
     lines = [f"{name}, {leg_when(comparison, row)}", str(legs.errors.kind[row])]
     for (word, unit, scale), value, sigma in zip(CHANNELS, error, promised, strict=True):
         if np.isfinite(value):
@@ -189,12 +173,12 @@ def _ellipses(figure: Figure, comparison: Comparison, index: int) -> None:
     ]
     x, y = np.concatenate(outlines, axis=1)
     figure.add_scatter(
-        x=small(x),
-        y=small(y),
+        x=style.small(x),
+        y=style.small(y),
         mode="lines",
         name="where the truth should be (95 % ellipse)",
-        line={"color": ORANGE, "width": 1.5},
+        line={"color": style.ORANGE, "width": 1.5},
         fill="toself",
-        fillcolor=paled(ORANGE, 0.13),
+        fillcolor=style.paled(style.ORANGE, 0.13),
         hoverinfo="skip",
     )

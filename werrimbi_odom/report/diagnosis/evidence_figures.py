@@ -11,23 +11,10 @@ import numpy as np
 from werrimbi_odom.inference.diagnosis.diagnosis import VERY_SURE
 from werrimbi_odom.inference.diagnosis.evidence import CHANNELS, Dependence
 from werrimbi_odom.inference.diagnosis.variables import CONSTANT, functions_of
+from werrimbi_odom.report import style
 from werrimbi_odom.report.diagnosis.dependence import VARIABLES, error_of, label_of, unit_of
 from werrimbi_odom.report.over_variable import labelled, over
-from werrimbi_odom.report.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    MARKS,
-    ORANGE,
-    Figure,
-    blank,
-    coloured,
-    escaped,
-    from_above,
-    plain,
-    small,
-)
+from werrimbi_odom.report.style import Figure
 
 FAINTEST = 150.0
 """Fall of chi-squared that is given full colour at the least: noise alone stays pale."""
@@ -69,7 +56,7 @@ def evidence_map_figure(
     names.sort(key=lambda name: (places.get(name, len(places)), name))
     grid = [[best.get((channel, name)) for name in names] for channel in CHANNELS]
     top = max((max(_worth(cell), 0.0) for cell in best.values()), default=0.0)
-    figure = blank()
+    figure = style.blank()
     figure.add_heatmap(
         z=np.array([[_shade(cell) for cell in row] for row in grid]),
         x=[label_of(name) for name in names],
@@ -106,7 +93,7 @@ def evidence_map_figure(
     )
     full = float(np.sqrt(max(top, FAINTEST)))
     shown = _ticks(max(top, FAINTEST))
-    coloured(
+    style.coloured(
         figure,
         full,
         "explained<br>(fall of χ²)",
@@ -121,7 +108,7 @@ def evidence_map_figure(
         ticktext=[_CHANNELS.get(channel, channel) for channel in CHANNELS],
     )
     figure.update_xaxes(tickangle=-40, title="goes with", showgrid=False)
-    plain(figure, height=height, legend=False)
+    style.plain(figure, height=height, legend=False)
     figure.update_layout(dragmode=False, margin={"t": 40})
     return figure
 
@@ -155,7 +142,7 @@ def dependence_figure(cell: Dependence, run_names: Sequence[str] = ()) -> Figure
     """The error of a cell over its variable, as the evidence map has fitted it."""
     if cell.form == "place":
         return _floor(cell)
-    figure = blank()
+    figure = style.blank()
     unit, factor = unit_of(cell.amount)
     if cell.form == "turns":
         _turns(figure, cell, unit, factor, run_names)
@@ -181,17 +168,17 @@ def _curve(figure: Figure, cell: Dependence, unit: str, factor: float) -> None:
     chosen = np.unique(order[np.linspace(0, values.size - 1, _POINTS).astype(int)])
     chosen = chosen[np.argsort(values[chosen])]
     figure.add_scatter(
-        x=small(values[chosen]),
-        y=small(factor * (functions[chosen] @ cell.coefficients)),
+        x=style.small(values[chosen]),
+        y=style.small(factor * (functions[chosen] @ cell.coefficients)),
         mode="lines",
-        line={"color": BLUE, "width": 3},
+        line={"color": style.BLUE, "width": 3},
         name=cell.form,
         hovertemplate=f"%{{x:.3g}}: %{{y:+.3g}} {unit}<extra></extra>",
         showlegend=False,
     )
     if cell.variable.name == CONSTANT:
         level = factor * float(cell.coefficients[0])
-        figure.add_hline(y=level, line={"color": BLUE, "width": 3})
+        figure.add_hline(y=level, line={"color": style.BLUE, "width": 3})
         figure.add_annotation(
             text=f"{level:+.3g} {unit}, whatever is driven",
             x=0.5,
@@ -210,22 +197,22 @@ def _turns(
         [np.cos(cell.variable.harmonic * angle), np.sin(cell.variable.harmonic * angle)], axis=-1
     )
     looks = (
-        (BLUE, "solid"),
-        (ORANGE, "dash"),
-        (GREEN, "dot"),
-        (INK, "dashdot"),
-        (GREY, "solid"),
-        (ORANGE, "solid"),
+        (style.BLUE, "solid"),
+        (style.ORANGE, "dash"),
+        (style.GREEN, "dot"),
+        (style.INK, "dashdot"),
+        (style.GREY, "solid"),
+        (style.ORANGE, "solid"),
     )
     own = np.atleast_2d(cell.coefficients)
     for number, (coefficients, (colour, dash)) in enumerate(zip(own, looks, strict=False)):
         name = run_names[number] if cell.variable.per_run and number < len(run_names) else ""
         figure.add_scatter(
-            x=small(np.degrees(angle)),
-            y=small(factor * (waves @ coefficients)),
+            x=style.small(np.degrees(angle)),
+            y=style.small(factor * (waves @ coefficients)),
             mode="lines",
             line={"color": colour, "width": 2.5, "dash": dash},
-            name=escaped(name),
+            name=style.escaped(name),
             showlegend=bool(name),
             hovertemplate=f"%{{x:.0f}}°: %{{y:+.3g}} {unit}<extra></extra>",
         )
@@ -236,29 +223,29 @@ def _floor(cell: Dependence) -> Figure:
     unit, factor = unit_of(cell.amount)
     cells, _ = functions_of(cell.variable)["place"]
     values = factor * (cells @ cell.coefficients)
-    rows = np.linspace(0, values.size - 1, min(values.size, MARKS)).astype(int)
+    rows = np.linspace(0, values.size - 1, min(values.size, style.MARKS)).astype(int)
     x, y, error = cell.variable.left[rows], cell.variable.right[rows], values[rows]
     largest = max(float(np.max(np.abs(error), initial=0.0)), 1e-12)
-    figure = blank()
+    figure = style.blank()
     for name, which, symbol in (
         ("more than predicted", error > 0.0, "triangle-up"),
         ("less than predicted", error <= 0.0, "triangle-down"),
     ):
         figure.add_scatter(
-            x=small(x[which]),
-            y=small(y[which]),
+            x=style.small(x[which]),
+            y=style.small(y[which]),
             mode="markers",
             name=name,
             marker={
                 "symbol": symbol,
-                "size": small(5.0 + 7.0 * np.abs(error[which]) / largest),
-                "color": small(np.abs(error[which])),
+                "size": style.small(5.0 + 7.0 * np.abs(error[which]) / largest),
+                "color": style.small(np.abs(error[which])),
                 "coloraxis": "coloraxis",
                 "line": {"width": 0},
             },
-            customdata=small(error[which]),
+            customdata=style.small(error[which]),
             hovertemplate=f"x %{{x:.2f}} m, y %{{y:.2f}} m<br>%{{customdata:+.3g}} {unit}"
             "<extra></extra>",
         )
-    coloured(figure, largest, f"{error_of(cell.amount)}<br>[{unit}]")
-    return from_above(figure, 480)
+    style.coloured(figure, largest, f"{error_of(cell.amount)}<br>[{unit}]")
+    return style.from_above(figure, 480)

@@ -16,22 +16,9 @@ from werrimbi_odom.inference.manoeuvres.drives import MANOEUVRES, Ideal, Pace, i
 from werrimbi_odom.model.effect import view_of
 from werrimbi_odom.model.pose import Floats, wrap_all
 from werrimbi_odom.model.robot import Robot
+from werrimbi_odom.report import style
 from werrimbi_odom.report.numbers import error_words, p_words
-from werrimbi_odom.report.style import (
-    BLUE,
-    GREEN,
-    GREY,
-    INK,
-    MARKS,
-    ORANGE,
-    Figure,
-    blank,
-    escaped,
-    from_above,
-    paled,
-    plain,
-    small,
-)
+from werrimbi_odom.report.style import Figure
 
 _MOST_BARS = 10
 _PER_EFFECT = 52  # height of its two bars and the gap [pixels]
@@ -45,13 +32,13 @@ def ranking_figure(diagnosis: Diagnosis) -> Figure:
     A filled bar is the error of held-out drives, the outlined one that of the drives of the fit.
     """
     ranked = [item for item in diagnosis.ranking if item.holdout or item.train][:_MOST_BARS]
-    figure = blank()
+    figure = style.blank()
     names = [_label(item, diagnosis) for item in ranked]
     for word, side, look in (
         (
             "drives of the fit",
             "train",
-            {"color": paled(GREY, 0.25), "line": {"color": GREY, "width": 1.5}},
+            {"color": style.paled(style.GREY, 0.25), "line": {"color": style.GREY, "width": 1.5}},
         ),
         ("held-out drives", "holdout", {"color": [_colour(item, diagnosis) for item in ranked]}),
     ):
@@ -98,19 +85,19 @@ def ranking_figure(diagnosis: Diagnosis) -> Figure:
                 yshift=-0.25 * _PER_EFFECT * (1.0 - _GAP),
                 showarrow=False,
             )
-    plain(figure, height=130 + _PER_EFFECT * max(len(ranked), 2))
+    style.plain(figure, height=130 + _PER_EFFECT * max(len(ranked), 2))
     return figure.update_layout(barmode="group", bargap=_GAP)
 
 
 def _label(item: Ranked, diagnosis: Diagnosis) -> str:
-    name = escaped(item.effect)
+    name = style.escaped(item.effect)
     return f"<b>{name}</b>" if item.effect in (*diagnosis.found, *diagnosis.rivals) else name
 
 
 def _colour(item: Ranked, diagnosis: Diagnosis) -> str:
     if item.effect in diagnosis.rivals:
-        return ORANGE
-    return BLUE if item.effect in diagnosis.found else GREY
+        return style.ORANGE
+    return style.BLUE if item.effect in diagnosis.found else style.GREY
 
 
 def _gain(sides: Sides | None) -> float:
@@ -140,20 +127,20 @@ def set_up_figure(diagnosis: Diagnosis) -> Figure:
     )
     runs = diagnosis.runs
     for name, robot, colour, symbol in (
-        ("as the robot file says", diagnosis.given, ORANGE, "x"),
-        ("with that put right", diagnosis.set_up.robot, BLUE, "circle"),
+        ("as the robot file says", diagnosis.given, style.ORANGE, "x"),
+        ("with that put right", diagnosis.set_up.robot, style.BLUE, "circle"),
     ):
         measured, predicted = _legs(diagnosis, robot)
-        rows = np.linspace(0, runs.count - 1, min(runs.count, MARKS // 4)).astype(int)
+        rows = np.linspace(0, runs.count - 1, min(runs.count, style.MARKS // 4)).astype(int)
         for place, column, factor, unit in ((1, 2, float(np.degrees(1.0)), "°"), (2, 0, 1.0, "m")):
             figure.add_scatter(
-                x=small(factor * predicted[rows, column]),
-                y=small(factor * measured[rows, column]),
+                x=style.small(factor * predicted[rows, column]),
+                y=style.small(factor * measured[rows, column]),
                 mode="markers",
                 name=name,
                 legendgroup=name,
                 showlegend=place == 1,
-                marker={"color": paled(colour, 0.7), "symbol": symbol, "size": 7},
+                marker={"color": style.paled(colour, 0.7), "symbol": symbol, "size": 7},
                 hovertemplate=(
                     f"{name}<br>predicted %{{x:.2f}} {unit}, measured %{{y:.2f}} {unit}"
                     "<extra></extra>"
@@ -173,7 +160,7 @@ def set_up_figure(diagnosis: Diagnosis) -> Figure:
             x=[-largest, largest],
             y=[-largest, largest],
             mode="lines",
-            line={"color": GREEN, "width": 2, "dash": "dash"},
+            line={"color": style.GREEN, "width": 2, "dash": "dash"},
             name="measured as predicted",
             legendgroup="right",
             showlegend=place == 1,
@@ -183,7 +170,7 @@ def set_up_figure(diagnosis: Diagnosis) -> Figure:
         )
         figure.update_xaxes(title="predicted", row=1, col=place)
         figure.update_yaxes(title="measured", row=1, col=place)
-    plain(figure, height=470)
+    style.plain(figure, height=470)
     return figure.update_layout(margin={"t": 80}, legend={"y": 1.12})
 
 
@@ -224,16 +211,19 @@ def manoeuvre_figure(ideal: Ideal, robot: Robot, pace: Pace) -> Figure:
     yaw = np.unwrap(reference.yaw)
     time = reference.time
     half = 0.5 * robot.track
-    figure = blank()
-    for side, colour, name in ((1.0, BLUE, "left wheel"), (-1.0, ORANGE, "right wheel")):
+    figure = style.blank()
+    for side, colour, name in (
+        (1.0, style.BLUE, "left wheel"),
+        (-1.0, style.ORANGE, "right wheel"),
+    ):
         track = place + side * half * 1j * np.exp(1j * yaw)
         figure.add_scatter(
-            x=small(track.real),
-            y=small(track.imag),
+            x=style.small(track.real),
+            y=style.small(track.imag),
             mode="lines",
             name=f"track of the {name}",
-            line={"color": paled(colour, 0.75), "width": 2},
-            customdata=small(time),
+            line={"color": style.paled(colour, 0.75), "width": 2},
+            customdata=style.small(time),
             hovertemplate=(
                 f"{name}<br>x %{{x:.2f}} m, y %{{y:.2f}} m<br>after %{{customdata:.0f}} s"
                 "<extra></extra>"
@@ -241,7 +231,7 @@ def manoeuvre_figure(ideal: Ideal, robot: Robot, pace: Pace) -> Figure:
         )
     _arrows(figure, place, yaw, half)
     _robot(figure, half)
-    return from_above(figure, 480)
+    return style.from_above(figure, 480)
 
 
 def _arrows(figure: Figure, place: np.ndarray, yaw: Floats, half: float) -> None:
@@ -254,15 +244,15 @@ def _arrows(figure: Figure, place: np.ndarray, yaw: Floats, half: float) -> None
     at = np.clip(np.searchsorted(length, wanted), 1, place.size - 1)
     course = np.degrees(np.angle(place[at] - place[at - 1]))
     figure.add_scatter(
-        x=small(place[at].real),
-        y=small(place[at].imag),
+        x=style.small(place[at].real),
+        y=style.small(place[at].imag),
         mode="markers",
         name="way of the robot",
         marker={
             "symbol": "arrow",
             "size": 13,
             "angle": (90.0 - course).tolist(),
-            "color": GREEN,
+            "color": style.GREEN,
         },
         hoverinfo="skip",
     )
@@ -286,12 +276,12 @@ def _robot(figure: Figure, half: float) -> None:
     gap = np.array([np.nan + 0j])
     line = np.concatenate([piece for part in parts for piece in (part, gap)])
     figure.add_scatter(
-        x=small(line.real),
-        y=small(line.imag),
+        x=style.small(line.real),
+        y=style.small(line.imag),
         mode="lines",
         name="the robot at the start, to scale",
-        line={"color": INK, "width": 2},
+        line={"color": style.INK, "width": 2},
         fill="toself",
-        fillcolor=paled(GREY, 0.25),
+        fillcolor=style.paled(style.GREY, 0.25),
         hoverinfo="skip",
     )
