@@ -89,7 +89,7 @@ ELSEWHERE = {
         "_LOWEST": "where the search of a variance ends",
     },
     "fitting/placed.py": {"FINE": "a grid", "_ROUNDS": "rounds of a fit"},
-    "fitting/prediction.py": {"_BLOCK": "size of a block"},
+    "fitting/leg_noise.py": {"_BLOCK": "size of a block"},
     "fitting/concatenated_runs.py": {
         "MODELS": "size of a cache",
         "DELAYS": "size of a cache",
