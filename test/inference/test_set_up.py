@@ -144,6 +144,22 @@ def test_two_mistakes_at_once_are_both_found(session: list[Run]) -> None:
     }
 
 
+def test_millimetres_are_told_beside_half_a_base_and_swapped_wheels(session: list[Run]) -> None:
+    mistakes = WIRING["swapped"], SIZES["base 2"], REFERENCE["millimetres"]
+    found = both(*mistakes)([without_yaw(run) for run in session])
+    assert found.to_convert is not None
+    assert "millimetres" in found.to_convert
+    assert both(*mistakes[:2])(session).to_convert is None
+
+
+def test_wiring_is_told_before_sizes(session: list[Run]) -> None:
+    """Whichever of them makes the larger errors, for that hangs on how often there is a pose."""
+    assert (
+        both(WIRING["swapped"], SIZES["base 1/4"])(session).findings[0].effect == "wheels_swapped"
+    )
+    assert both(WIRING["swapped"], SIZES["base 2"])(session).findings[0].effect == "wheels_swapped"
+
+
 def test_an_effect_that_the_file_holds_already_is_changed_not_doubled(session: list[Run]) -> None:
     held = Robot(
         0.35,

@@ -79,6 +79,12 @@ ARM_TOLD = 0.02
 """Relative standard deviation of the base up to which a lever arm is fitted beside it: on circles
 base and arm are one, and neither would be told."""
 
+# ---------------------------------------------------------------------- positions in millimetres
+
+MILLIMETRES_FROM = 100.0
+"""Factor from which on base and radii are both too small because the reference is in millimetres.
+Chosen: beyond 57.3, which is radians for degrees, and ten times below 1000."""
+
 # --------------------------------------------------------------------------------- yaw in degrees
 
 DEGREES_RANGE = 2.1 * math.pi

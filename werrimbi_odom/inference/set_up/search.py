@@ -20,7 +20,7 @@ from werrimbi_odom.files.evaluation import EvaluationOptions
 from werrimbi_odom.files.run import Run
 from werrimbi_odom.inference.calibration_sizes import skidding
 from werrimbi_odom.inference.legs.no_driving import looked_at
-from werrimbi_odom.inference.rules import FEWEST_CUTS, MOST_CREEP, SURE_SIZE
+from werrimbi_odom.inference.rules import FEWEST_CUTS, MILLIMETRES_FROM, MOST_CREEP, SURE_SIZE
 from werrimbi_odom.inference.set_up.delay import lag_of
 from werrimbi_odom.inference.set_up.explanation import Estimate, Setting, setting_of, wirings
 from werrimbi_odom.inference.set_up.findings import (
@@ -77,9 +77,10 @@ class SetUp:
         for finding in self.findings:
             if finding.effect == IN_DEGREES:
                 return finding.words
-        thousand = {each.effect: each.words for each in self.findings if each.factor == "1000"}
-        both = thousand.get("track_width"), thousand.get("wheel_radius_scale")
-        return IN_MILLIMETRES if both[0] is not None and both[0] == both[1] else None
+        # Base and radii need not be right for that: half the base may be entered beside.
+        larger = {each.effect: each.values.get("multiplier", 1.0) for each in self.findings}
+        sizes = (larger.get(name, 1.0) for name in ("track_width", "wheel_radius_scale"))
+        return IN_MILLIMETRES if all(size > MILLIMETRES_FROM for size in sizes) else None
 
 
 def look_for_mistakes(
@@ -124,7 +125,12 @@ def look_for_mistakes(
     else:
         found, setting = _search_headings(records, robot)
     mount = [each for each in found if find(each.effect).stage == "reference"]
-    wheels = sorted((each for each in found if each not in mount), key=lambda each: -each.gain)
+    # How the wheels are wired first: sizes mean nothing before, and which of two mistakes makes the
+    # larger errors may be another one with every second pose.
+    wheels = sorted(
+        (each for each in found if each not in mount),
+        key=lambda each: (each.effect not in WIRING_WORDS, -each.gain),
+    )
     if skidding(robot):
         wheels = [as_skid(each) for each in wheels]
     degrees = [each for each in extra if each.effect == IN_DEGREES]

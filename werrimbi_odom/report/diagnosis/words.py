@@ -251,8 +251,15 @@ def _unknown(told: Told, steps: NextSteps) -> list[str]:
             )
         )
     lines += at_bounds_told(diagnosis)
-    lines += ["Next: write it as an effect of your own, from what these drives show:"]
-    lines += [f"    {steps.draft}"]
+    if cells:
+        lines.append("Next: write it as an effect of your own, from what these drives show:")
+        lines.append(f"    {steps.draft}")
+    else:
+        lines.append(
+            "It goes with nothing that was looked at, so there is no law to write. Next: see where "
+            "both paths part, by `werrimbi compare` with --report. A clock that is off by a large "
+            "part of a second, a reference that loses its place, or one of another drive look so."
+        )
     if told.manoeuvre is not None:
         move = told.manoeuvre
         lines.append(f"To know more first, {move.do} ({move.name}): {move.why}.")
