@@ -256,6 +256,21 @@ def _values(item: Parameter) -> st.SearchStrategy[Value]:
 CHANGES = st.fixed_dictionaries({}, optional={item.name: _values(item) for item in PARAMETERS})
 
 
+@pytest.mark.parametrize(
+    "names", [("front_left",), ("other", "front_left"), ("x", "0", "y", "0"), ("rear_left",)]
+)
+def test_the_comment_beside_the_last_wheel_stays_when_that_wheel_goes(
+    commented: RobotFile, tmp_path: Path, names: tuple[str, ...]
+) -> None:
+    out = tmp_path / "new.yaml"
+    first = write_robot_file(commented, {"left_wheel_names": names}, out)
+    assert read_robot_file(out).values["left_wheel_names"] == names
+    again = names[-2:-1] or ("other",)
+    write_robot_file(first, {"left_wheel_names": again}, out, force=True)
+    assert read_robot_file(out).values["left_wheel_names"] == again
+    assert "# rubber" in out.read_text()
+
+
 @settings(
     max_examples=75,
     deadline=None,

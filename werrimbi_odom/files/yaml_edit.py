@@ -154,7 +154,7 @@ class _Block:
         nexts.append(self.text.index("\n", ends[-1]))
         beside = {name: self.text[a:b] for name, a, b in zip(old, ends, nexts, strict=True)}
         if old[-1] not in value and not named:
-            beside.setdefault(value[-1], beside[old[-1]])
+            beside[value[-1]] = beside.get(value[-1], "") + beside[old[-1]]
         lines = [f"- {_written(item)}{beside.get(item, '')}" for item in value]
         return f"\n{' ' * int(node.start_mark.column)}".join(lines)
 

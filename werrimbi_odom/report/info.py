@@ -44,7 +44,7 @@ def _json_of(held: Held, found: Info) -> dict[str, Any]:
     taken = "" if held.wheels is None else held.wheels.name
     can, cannot = can_tell(held, found.sizes)
     return {
-        "run": held.path,
+        "run": str(held.path),
         "problem": held.problem or None,
         "wheels": [
             picked(each, "topic:name type:kind gives joints messages")

@@ -139,9 +139,10 @@ def plain(value: Any) -> Any:
 
 
 def picked(item: object, names: str) -> dict[str, Any]:
-    """Some of its attributes by name; KEY:ATTRIBUTE under another one."""
+    """Some of its attributes for JSON by name, KEY:ATTRIBUTE under another one; paths are text."""
     pairs = (name.partition(":") for name in names.split())
-    return {key: attrgetter(attribute or key)(item) for key, _, attribute in pairs}
+    values = {key: attrgetter(attribute or key)(item) for key, _, attribute in pairs}
+    return {key: str(each) if isinstance(each, Path) else each for key, each in values.items()}
 
 
 def counted(number: int, word: str) -> str:
