@@ -1,11 +1,11 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Every number that decides a verdict, with its derivation or the reason why it was chosen.
+"""Every number that decides a verdict, with its derivation or the reason for its choice.
 
-Where a number could be derived, its reason says from what. Where it was chosen, it says so, and
-what speaks for it. Tolerances of numerics (a rank, a step of a derivative, the size of a block)
-decide nothing and stand where they are used. By how much right and wrong verdicts stood off these
-numbers is plotted in docs/evidence.md.
+If a number is derived, its docstring says from what. If it was chosen, it says so, and why.
+Numerical tolerances (a rank, a step of a derivative, the size of a block) decide nothing and stay
+where they are used. The margins of right and wrong verdicts to these numbers are plotted in
+docs/evidence.md.
 """
 
 from werrimbi_odom.inference.rules.calibrations import *  # noqa: F401, F403

@@ -1,42 +1,44 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""Calibration by UMBmark and by drives out and back: how many, how well driven, what they tell."""
+"""Calibration by UMBmark and by drives out and back: how many drives, and how well driven."""
 
 from __future__ import annotations
 
 # ---------------------------------------------------------------------------- squares of UMBmark
 
 LEAST_SQUARES, ADVISED_SQUARES = 2, 5
-"""Squares a sense: one alone has no scatter; the paper drives five."""
+"""Squares in each sense, at least and recommended: one alone has no scatter; the paper drives
+five."""
 
 LARGEST_OFFSET = 2.0
-"""Offsets larger than this, in sides, are not those of a square that was meant to close: corners of
-56 degrees for 90 make it (`LARGEST_MISTAKE` makes 1.3)."""
+"""Offset of a lap [sides] above which the square was not meant to close: corners of 56 degrees in
+place of 90 make it (`LARGEST_MISTAKE` makes 1.3)."""
 
 LARGEST_MISTAKE = 0.25
-"""A base or a ratio of radii off by more is a slip of the pen, not a matter of calibration. Less
-than `ORDINARY`: the paper's equations are of first order, and who drives squares has measured."""
+"""Error of the base or of the ratio of radii above which it is a typing mistake, no matter of
+calibration. Less than `ORDINARY`, since the paper's equations are of first order, and who drives
+squares has measured the robot."""
 
 TURN_TOLERANCE = 0.6
-"""A lap turns by a whole turn to within this [rad], by odometry that may be off by 10 % of it."""
+"""Deviation of a lap's turn from a whole turn [rad], by odometry that may be off by 10 % of it."""
 
 LEG_TOLERANCE = 0.1
-"""Legs are as long as the side to within this share of it: a radius may be off by as much."""
+"""Relative deviation of a leg from the side: a radius may be off by as much."""
 
 LAP_TOLERANCE = 0.25
-"""A lap ends where it began, by odometry or by the reference, to within this share of the side:
-four corners of 85 degrees put it there."""
+"""Distance from the start of a lap to its end, as a share of the side, by odometry or by the
+reference: four corners of 85 degrees make it."""
 
 # ---------------------------------------------------------------------------- drives out and back
 
 LEAST_RUNS, ADVISED_RUNS = 5, 30
-"""Runs: four make a covariance of three coordinates, and one more tells whether a model fits it;
-thirty give k to 13 % (1 / sqrt(2 * 29))."""
+"""Runs, at least and recommended. Four determine a covariance of three coordinates, and one more
+tests whether a model fits it. Thirty determine k to 13 % (1 / sqrt(2 * 29))."""
 
 UNKNOWN_SPLIT = 0.5
-"""The split (k_R² - k_L²) / (k_R² + k_L²) lies within ±1: with a standard deviation of this, the
-whole of that is within two, and it is unknown."""
+"""Standard deviation above which the split (k_R² - k_L²) / (k_R² + k_L²) is unknown: it lies within
+±1, which is then within two standard deviations."""
 
 LEAST_KNOWN = 0.5
-"""Share of a noise that its standard deviation counts for at the most: beyond it the noise is not
-determined, and its law no longer told by its curvature."""
+"""Largest relative standard deviation of a noise that is used. Above it the noise is not
+determined, and the curvature no longer describes its distribution."""

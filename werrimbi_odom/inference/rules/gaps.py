@@ -1,23 +1,23 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is a gap in a record: a silence in which more was driven than is usual."""
+"""Gaps of a record: silences with more travel than usual."""
 
 GAP_INTERVALS = 10.0
-"""Times the usual interval, from which on a silence is a gap.
+"""Length of a gap in multiples of the median interval.
 
-Of messages that come at random with a steady mean one interval in 1000 is as long (an exponential
-variable is above ten medians with a chance of 2^-10); of those that come at a rate none is.
+Of messages at random times with a constant rate, one interval in 1000 is as long (an exponential
+variable exceeds ten medians with a probability of 2^-10); of periodic messages none is.
 """
 
 GAP_WAYS = 3.0
-"""Times the usual way of an interval, that must have been gone in a gap.
+"""Travel in a gap in multiples of the median travel of an interval.
 
-A localisation that speaks every quarter of a metre is silent for as long as the robot stands, and
-its next interval is as long a way as any: that is its habit, no gap.
+A localiser that reports every quarter of a metre is silent as long as the robot stands, and its
+next interval has the usual travel: that is its habit, no gap.
 """
 
 GAP_LEG = 0.25
-"""Share of a leg that must have been gone in a gap: less makes no leg longer than others are."""
+"""Travel in a gap as a share of a leg: less makes no leg longer than others are."""
 
 GAP_FEWEST = 20
-"""Intervals with travel in them, below which nobody knows what is usual: poses taken by hand."""
+"""Fewest intervals with travel for a median: with fewer, poses were taken by hand."""

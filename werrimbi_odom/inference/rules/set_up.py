@@ -1,6 +1,6 @@
 # SPDX-FileCopyrightText: 2026 The werrimbi_odom authors
 # SPDX-License-Identifier: Apache-2.0
-"""What is set up wrongly: counters, sizes, mounts, clocks and units."""
+"""Set-up mistakes: counters, sizes, mounts, clocks and units."""
 
 from __future__ import annotations
 
@@ -8,76 +8,77 @@ import math
 
 # ------------------------------------------------------------- which explanation is the simplest
 
-# How a wiring is weighed: minus log10 of how often robots are set up so, where each mistake alone
-# is made on one robot in ten. That tenth is chosen: only ratios of the four numbers count.
+# Prior of a wiring: its weight is minus log10 of its frequency among robots, where each single
+# mistake is on one robot in ten. That tenth is chosen: only ratios of the four numbers count.
 
 BOTH_REVERSED = 1.6
-"""Weight of two counters of the wrong sign: one convention makes both, so it is one robot in 40 and
-not the one in 100 of two mistakes that have nothing to do with each other."""
+"""Weight of two counters with the wrong sign: one convention causes both, so it is one robot in 40
+and not the one in 100 of two independent mistakes."""
 
 ASKEW = 0.3
-"""Mounts turned by less [rad] are left to the fits, where a derivative finds them: the sine is a
-line to 1.5 % up to there. Turned by more is a mistake, of weight 1."""
+"""Angle [rad] of a mount below which it is left to the fits, where a derivative finds it: the sine
+is linear to 1.5 % up to there. A larger one is a mistake, of weight 1."""
 
 ASKEW_BY = 0.15
-"""Weight of each radian of a mount (an exponential law of its angle, of mean 2.9 rad). It decides
-between explanations that have as many mistakes: a mount that looks astern is had a third as often
-as one that looks ahead, 10^(-0.15 pi)."""
+"""Weight of each radian of a mount (exponential distribution of its angle, with mean 2.9 rad). It
+decides between explanations with the same number of mistakes: a mount that looks astern has a third
+of the prior of one that looks ahead, 10^(-0.15 pi)."""
 
 TWIN_WITHIN = 0.7
-"""Difference of weights up to which another explanation is told as a twin: it is the likelier one
+"""Difference of weights up to which another explanation is reported as a twin: it is the right one
 on one robot in six (odds of 10^0.7 = 5)."""
 
 # -------------------------------------------------------------------------------- sizes and units
 
 NEAR = 1.13
-"""A value within this ratio of a simple factor is taken for it: pi and 4, the nearest two, are 1.27
-apart, and sqrt(4 / pi) = 1.128 is half way."""
+"""Ratio to a simple factor within which a value is taken for it: pi and 4, the nearest two, are
+1.27 apart, and sqrt(4 / pi) = 1.128 is half way."""
 
 ORDINARY = 1.3
-"""A value within this ratio of 1 is a matter of calibration, not of set-up. The nearest simple
+"""Ratio to 1 within which a value is a matter of calibration, not of set-up. The nearest simple
 factors are 2 and 1/2, half way to which is sqrt(2) = 1.41; a loaded tyre or a skidding base is
 seldom off by more."""
 
 MOST_OF_A_SKID = 2.5
-"""Effective over true base up to which robots are found that skid round a turn (Jackal 1.5, Husky
-1.875 by their makers' parameter files): a matter of four wheels, no mistake."""
+"""Largest ratio of effective to true base of robots that skid in turns (Jackal 1.5, Husky 1.875 by
+their makers' parameter files): a property of four wheels, no mistake."""
 
 WIDE = 1.5
-"""A finding makes the typical error at least this much smaller. Chosen: the
-smallest mistake, a factor of 1.3, errs by a third of the way where a calibrated robot errs by
-parts in a hundred, so a right finding gains far more wherever the drives show it."""
+"""Least factor by which a finding lowers the typical error. Chosen: the smallest mistake, a factor
+of 1.3, errs by a third of the way where a calibrated robot errs by parts in a hundred, so a right
+finding gains far more if the drives show it."""
 
 ONE_WHEEL_FACTOR = 5.0
-"""Factors below this (and above one in it) are tried for one wheel alone: with a factor of 57 or
-1000 on one side the robot spins, which nobody would still call odometry."""
+"""Factors below this (and above its inverse) are tried for one wheel alone: with a factor of 57 or
+1000 on one side the robot spins, which nobody would call odometry."""
 
 LONGEST_ARM = 5.0
-"""Longest lever arm that is told [m]: what the bounds of `reference_lever_arm` allow."""
+"""Longest lever arm that is reported [m]: the bounds of `reference_lever_arm`."""
 
 # ---------------------------------------------------------------------- what regressions must show
 
 CUTS, MOST_CUTS = 300, 8000
-"""Cuts of a whole session. Where half turns of the wheel make fewer than 300, cuts are shorter (so
-many tell a size to 6 % of a cut's scatter), and longer where they make more than 8000 (time)."""
+"""Cuts of a whole session. If half turns of the wheel make fewer than 300, cuts are shorter (so
+many determine a size to 6 % of a cut's scatter), and longer if they make more than 8000 (for
+time)."""
 
 FEWEST_CUTS = 20
-"""Cuts, or rows of a reference, that a regression is trusted with: five numbers at the most, and
-fifteen left to tell the scatter to 18 %."""
+"""Fewest cuts, or rows of a reference, for a regression: five parameters at most, and fifteen left
+to determine the scatter to 18 %."""
 
 SURE_SIZE = 8.0
-"""Standard deviations that a wheel's or the base's size must lie from zero to be one. Chosen: its
-sign decides of the wiring, and neighbouring cuts err alike, which makes deviations too small by
-some times."""
+"""Standard deviations of a wheel's or the base's size from zero, for it to be accepted. Chosen: its
+sign decides the wiring, and errors of neighbouring cuts are correlated, which makes standard
+deviations several times too small."""
 
 MOST_CREEP = 0.35
-"""Rate [rad/s] at which a gyro creeps at the most: 20 degrees a second are what the cheapest state
-before they are calibrated. Without a limit a robot that drives straight at one speed on a reversed
-wheel is one that spins before a gyro that is off by just that rate."""
+"""Largest bias of a gyro [rad/s]: the cheapest state 20 degrees a second before calibration.
+Without a limit, a robot that drives straight at one speed with a reversed wheel would equal one
+that spins before a gyro with just that bias."""
 
 ARM_TOLD = 0.02
 """Relative standard deviation of the base up to which a lever arm is fitted beside it: on circles
-base and arm are one, and neither would be told."""
+base and arm are equivalent, and neither would be determined."""
 
 # ---------------------------------------------------------------------- positions in millimetres
 
@@ -88,99 +89,100 @@ Chosen: beyond 57.3, which is radians for degrees, and ten times below 1000."""
 # --------------------------------------------------------------------------------- yaw in degrees
 
 DEGREES_RANGE = 2.1 * math.pi
-"""Range of the recorded yaw from which on it may be degrees: in radians, wrapped, it is 2 pi at the
+"""Range of the recorded yaw above which it may be in degrees: in radians, wrapped, it is 2 pi at
 most, and a robot that turned by less than that many degrees never turned."""
 
 DEGREES_WRAPS, RADIANS_WRAPS = (300.0, 361.0), (4.0, 7.0)
-"""Leaps of a yaw by itself that are wraps, in degrees and in radians: a whole turn, less what the
-robot turns in one interval (60 degrees; 2.3 rad)."""
+"""Steps of a yaw that are wraps, in degrees and in radians: a whole turn, less the robot's turn in
+one interval (60 degrees; 2.3 rad)."""
 
 DEGREES_BETTER = 2.0
-"""Times by which poses must fit better for their yaw to be degrees. Chosen: the wrong unit is 57
-times off, so the right one gains far more on any drive with turns."""
+"""Factor by which poses must fit better for their yaw to be in degrees. Chosen: the wrong unit is
+57 times off, so the right one gains far more on any drive with turns."""
 
 # ------------------------------------------------------------------ a clock that is off by seconds
 
 DELAY_WINDOW = 0.5
-"""Seconds over which turns and ways are compared. A robot turns and drives off in about as long;
-and stamps of a slow driver, which wander by a tenth or two and together, have their lateness in
-common at lag zero from one reading to the next, over half a second a fifth as much."""
+"""Time [s] over which turns and ways are compared. A robot turns and drives off in about as long.
+And stamps of a slow driver have a common delay of a tenth or two, so that at lag zero their errors
+agree from one reading to the next, over half a second a fifth as much."""
 
 DELAY_LONGEST = 5.0
-"""Lags looked at, both ways [s]: the bounds of `reference_delay`."""
+"""Largest trial lag, both ways [s]: the bounds of `reference_delay`."""
 
 DELAY_SHORTEST = 0.25
-"""Smaller ones are left to the fits [s]: a derivative finds them, for a turn lasts longer."""
+"""Lag [s] below which it is left to the fits: a derivative finds it, as a turn lasts longer."""
 
 DELAY_BETTER = 1.1
-"""How many times less another lag must leave unexplained to be called better. Chosen: with less to
-gain than a tenth the drives show no turn that any lag could suit."""
+"""Factor by which another lag must lower the unexplained variance to be called better. Chosen: with
+less than a tenth to gain, the drives have no turn that determines a lag."""
 
 DELAY_EVIDENCE = 15.0
-"""Logarithm of that over all independent seconds: a log-likelihood. Of the 101 lags chance shows as
-much in 101 exp(-15) = 3e-5 of sessions."""
+"""Logarithm of that ratio times the number of independent seconds, a log-likelihood, for a lag to
+be found. Of the 101 lags chance exceeds it in 101 exp(-15) = 3e-5 of sessions."""
 
 DELAY_SPANS = 4
-"""Times the longest lag that a run must last: so that three quarters of it are left to compare
-with at that lag, on either side."""
+"""Shortest run in multiples of the largest lag, so that three quarters of it are left to compare at
+that lag, on either side."""
 
 DELAY_ROWS = 100
-"""Rows of the grid (ten seconds) that all runs must have together to speak of a lag."""
+"""Rows of the grid (ten seconds) that all runs together must have for an estimate of a lag."""
 
 DELAY_UNEXPLAINED = 1e-3
-"""Share of the variance that no lag explains at the least: so that a record without noise, of a
-simulation, is not infinitely sure of the lag that is nearest."""
+"""Least share of the variance that is taken as unexplained by any lag, so that a simulated record
+without noise does not give infinite evidence for the nearest lag."""
 
 DELAY_TAMED = 3.0
-"""Times the ninth decile that a step counts for at the most: a failed match may be a hundred."""
+"""Limit of a step in multiples of the ninth decile (winsorising): a failed match may be a
+hundred."""
 
 # ----------------------------------------------------------------------------- positions alone
 
 POSITION_CUTS = 60
-"""Cuts of a session of positions alone, at the least: five windows."""
+"""Fewest cuts of a session with positions alone: five windows."""
 
 WINDOW = 12
-"""Cuts in a window, each with a heading of its own: six turns of the wheel, two metres of a small
+"""Cuts in a window, each window with its own heading: six turns of the wheel, two metres of a small
 robot, over which its heading bends the path by more than the reference's noise."""
 
 COARSE_WINDOWS, FINE_WINDOWS = 20, 60
-"""Windows looked at, spread over all drives: over the whole range, and while refining. Chosen for
-time: 1260 set-ups are tried on the first."""
+"""Windows used, spread over all drives: for the search of the whole range, and for the refinement.
+Chosen for time: 1260 set-ups are tried on the first."""
 
 POSITIONS_REFINED = 6
-"""The best of those set-ups that are refined: chosen, for the right one need not be the best of
-all on the coarse windows."""
+"""Best of those set-ups that are refined: chosen, as the right one need not be the best of all on
+the coarse windows."""
 
 GIVEN_AS_GOOD = 1.05
-"""Times the best error up to which the sizes as entered are kept, and no lever arm is believed.
-Chosen: a search of 1260 set-ups finds one that is a little better by chance, and on circles any arm
-is as good as a base."""
+"""Error relative to the best up to which the sizes as entered are kept, and no lever arm is
+accepted. Chosen: a search of 1260 set-ups finds one that is slightly better by chance, and on
+circles any arm is as good as a base."""
 
 POSITIONS_WIDE = 2.0
-"""Times by which another set-up must make the typical error smaller than the given one. More than
-`WIDE`, since every window has a heading of its own that may hide what is wrong or make it up."""
+"""Factor by which another set-up must lower the typical error. More than `WIDE`, since every window
+has its own heading, which may hide or imitate a mistake."""
 
 WINDOW_FLOOR = 0.01
-"""Share of a cut's length below which one error of a window is as good as another."""
+"""Floor of a window's error as a share of a cut's length: smaller errors are treated as equal."""
 
 # ------------------------------------------------------------------------------- two poses a drive
 
 SPARSE_CUTS, SPARSE_CUTS_MORE = 4, 16
-"""Cuts a drive, and more in all, below which the reference is too rare to follow the robot: poses
-at the start and the end, and two or three between; a session of one drive has twenty."""
+"""Cuts per drive, and more in all, below which the reference is too sparse to follow the robot:
+poses at the start and the end, and two or three between; a session of one drive has twenty."""
 
 SPARSE_SHARES = (0.002, 0.005, 0.01, 0.02, 0.04)
-"""What a robot that is set up right may err by, of its path and turning; the likeliest counts. From
-a calibrated robot on a hard floor to one that was measured with a tape."""
+"""Trial error levels of a robot with the right set-up, as shares of its path and turn; the
+likeliest counts. From a calibrated robot on a hard floor to one that was measured with a tape."""
 
 SPARSE_TURN, SPARSE_MOVE = 0.005, 0.003
-"""What it may err by without having driven [rad, m]: noise of two poses by tape, each `TAPE_XY`
-(2 sqrt(2) = 2.8 mm) and `TAPE_YAW`."""
+"""Error without any driving [rad, m]: noise of two poses by tape, each `TAPE_XY` (2 sqrt(2) = 2.8
+mm) and `TAPE_YAW`."""
 
 SPARSE_MARGIN = 10.0
-"""Log-likelihood by which a set-up must be better than the one entered: of 516 that are tried
-chance makes one so in 516 exp(-10) = 2 % of sessions."""
+"""Log-likelihood by which a set-up must exceed the one entered: of 516 that are tried, chance makes
+one exceed it in 516 exp(-10) = 2 % of sessions."""
 
 SPARSE_APART = 5.0
-"""Log-likelihood by which it must be better than any that says otherwise: a Bayes factor of 150, as
+"""Log-likelihood by which it must exceed any contradicting set-up: a Bayes factor of 150, as
 `RIVAL`, which is in units of minus two."""

@@ -109,7 +109,7 @@ def _outliers(comparison: Comparison) -> list[dict[str, Any]]:
     legs = comparison.legs
     return [
         {
-            "run": comparison.runs[legs.run[index]].run.path,
+            "run": str(comparison.runs[legs.run[index]].run.path),
             "t_start_s": float(legs.start_time[index]),
             "t_end_s": float(legs.end_time[index]),
         }
